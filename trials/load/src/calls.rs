@@ -1,4 +1,4 @@
-//! Calls per second, and this program's own processor time and memory.
+//! Measures calls per second, and this program's own processor time and memory for them.
 
 use crate::provider::ProviderProcess;
 use std::{
@@ -16,7 +16,7 @@ use wayword_remote::{ModelServices, RemoteConfig, RemoteModel, RequestConcurrenc
 use wayword_run::{error::CommandError, output::CommandOutput};
 use wayword_testkit::resources;
 
-/// A model of a provider, with a ledger on disk.
+/// A model of a provider, with a ledger in a temporary folder.
 pub(super) struct TrialClient {
     pub(super) model: Arc<RemoteModel>,
     concurrency: RequestConcurrency,
@@ -82,6 +82,7 @@ fn build_request(message: ChatMessage) -> ModelRequest {
 /// The memory is measured after these numbers of calls.
 const MEMORY_CHECK_CALLS: [usize; 3] = [1_000, 10_000, 100_000];
 
+/// Makes calls against a provider that takes `latency_ms` for each, and prints their rate, processor time and memory.
 pub(super) fn measure_calls(
     calls: usize,
     latency_ms: u64,
@@ -90,12 +91,12 @@ pub(super) fn measure_calls(
 ) -> Result<(), CommandError> {
     let provider = ProviderProcess::start(&["--latency-ms".to_owned(), latency_ms.to_string()])?;
     let client = TrialClient::new(&provider.base_url, "server/words", RequestConcurrency::Fixed(concurrency), 30.0)?;
-    // Connections and threads are made once, so they are made before the measurement.
+    // Connections and threads are made once, so they are made before the measurement. No measured call has such a high number.
     client.make_calls(concurrency, |number| words_request(usize::MAX / 2 + number));
-    let (begun, cpu) = (Instant::now(), resources::processor_time());
+    let (begun, time_before) = (Instant::now(), resources::processor_time());
     let mut done = 0;
     let mut lines = Vec::new();
-    for until in MEMORY_CHECK_CALLS.into_iter().filter(|look| *look < calls).chain([calls]) {
+    for until in MEMORY_CHECK_CALLS.into_iter().filter(|count| *count < calls).chain([calls]) {
         let failed = client.make_calls(until - done, |number| words_request(done + number));
         done = until;
         lines.push(format!(
@@ -108,7 +109,7 @@ pub(super) fn measure_calls(
     lines.push(describe_throughput(calls, took, latency_ms, concurrency));
     lines.push(format!(
         "{} of this program's processor time per call",
-        per_call(resources::processor_time() - cpu, calls)
+        per_call(resources::processor_time() - time_before, calls)
     ));
     provider.stop_and_report()?;
     output.print_result(&(), lines.join("\n"));
@@ -125,27 +126,30 @@ fn describe_throughput(calls: usize, took: Duration, latency_ms: u64, concurrenc
     format!("{per_s:.1} calls/s, {:.1} % of the ideal {ideal:.1}", 100.0 * per_s / ideal)
 }
 
+/// The time of one call, as text.
 fn per_call(time: Duration, calls: usize) -> String {
     format!("{:.2} ms", time.as_secs_f64() * 1e3 / calls as f64)
 }
 
-/// Calls with pictures: each picture asked about once, then ten times.
+/// Makes calls with pictures, each asked about once and then ten times, and prints the processor time per call.
 pub(super) fn measure_pictures(calls: usize, output: &CommandOutput) -> Result<(), CommandError> {
     let provider = ProviderProcess::start(&[])?;
     let mut lines = Vec::new();
-    for (asked, what) in [(1, "each picture asked about once"), (10, "each picture asked about ten times")] {
+    for (calls_per_picture, title) in [(1, "each picture asked about once"), (10, "each picture asked about ten times")]
+    {
         let client = TrialClient::new(&provider.base_url, "server/eye", RequestConcurrency::Fixed(8), 30.0)?;
-        let images: Vec<Arc<Image>> =
-            (0..calls / asked).filter_map(|number| noise_picture(number + asked).ok().map(Arc::new)).collect();
-        let cpu = resources::processor_time();
+        let images: Vec<Arc<Image>> = (0..calls / calls_per_picture)
+            .filter_map(|number| noise_picture(number + calls_per_picture).ok().map(Arc::new))
+            .collect();
+        let time_before = resources::processor_time();
         let failed = client.make_calls(calls, |number| {
-            let image = images.get(number / asked).cloned().into_iter().collect();
+            let image = images.get(number / calls_per_picture).cloned().into_iter().collect();
             build_request(ChatMessage::about_images(format!("Question: what is {number}?\nAnswer:"), image))
         });
-        let own: Duration = resources::processor_time() - cpu;
+        let spent: Duration = resources::processor_time() - time_before;
         lines.push(format!(
-            "{what} (640 x 480): {} of this program's processor time per call, {} failed",
-            per_call(own, calls),
+            "{title} (640 x 480): {} of this program's processor time per call, {} failed",
+            per_call(spent, calls),
             failed.len()
         ));
     }

@@ -37,7 +37,7 @@ pub(super) struct ProviderArgs {
 /// The report of a provider, one line of JSON.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct ProviderReport {
-    /// Its address.
+    /// The address of its API.
     pub(super) base_url: String,
     /// Requests that were let in.
     pub(super) admitted: u64,
@@ -51,6 +51,7 @@ pub(super) struct ProviderReport {
 
 /// Serves until standard input closes. Prints a report with its address at the beginning, and one with its counts at the end.
 pub(super) fn serve_provider(flags: &ProviderArgs, output: &CommandOutput) -> Result<(), CommandError> {
+    // The eye hallucinates 15 % of the objects that it names, and the text roles make mistakes with a probability of 20 %.
     let cast = ScriptedCast::new(FlawedEye::new(PictureGallery::default(), flags.seed, 0.15), flags.seed, 0.2);
     let rate = (flags.requests_per_second > 0.0).then_some(ProviderRequestRate {
         requests_per_s: flags.requests_per_second,
@@ -69,20 +70,20 @@ pub(super) fn serve_provider(flags: &ProviderArgs, output: &CommandOutput) -> Re
         doing: "serve on",
         source,
     })?;
-    let tell = || {
+    let print_report = || {
         let log = provider.log();
-        let told = ProviderReport {
+        let report = ProviderReport {
             base_url: provider.base_url(ProviderDialect::OpenAi),
             admitted: log.admitted,
             answered: log.answered,
             faults: log.faults_committed(),
             rate_limited: log.rate_limited,
         };
-        output.print_result(&told, serde_json::to_string(&told).unwrap_or_default());
+        output.print_result(&report, serde_json::to_string(&report).unwrap_or_default());
     };
-    tell();
+    print_report();
     let _ = std::io::stdin().read_to_end(&mut Vec::new());
-    tell();
+    print_report();
     Ok(())
 }
 
@@ -94,7 +95,7 @@ pub(super) struct ProviderProcess {
 }
 
 impl ProviderProcess {
-    /// Starts one with these flags.
+    /// Starts a provider with these flags, and waits until it listens.
     pub(super) fn start(flags: &[String]) -> Result<Self, CommandError> {
         let failed = |source| CommandError::Io { path: "wayword-trials".into(), doing: "start", source };
         let own = std::env::current_exe().map_err(failed)?;
@@ -111,6 +112,7 @@ impl ProviderProcess {
         Ok(process)
     }
 
+    /// The next report of the process.
     fn read_report(&mut self) -> Result<ProviderReport, CommandError> {
         let line = self.lines.next().and_then(Result::ok).unwrap_or_default();
         serde_json::from_str(&line)
@@ -120,8 +122,8 @@ impl ProviderProcess {
     /// Stops the process, and returns its last report.
     pub(super) fn stop_and_report(mut self) -> Result<ProviderReport, CommandError> {
         drop(self.child.stdin.take());
-        let told = self.read_report();
+        let report = self.read_report();
         let _ = self.child.wait();
-        told
+        report
     }
 }

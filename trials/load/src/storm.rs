@@ -11,6 +11,7 @@ use wayword_run::{error::CommandError, output::CommandOutput};
 /// A slow, partial answer is given up after this time, seconds. Every whole answer takes less.
 const TIMEOUT_S: f64 = 3.0;
 
+/// Makes calls against a provider that accepts `per_s` requests per second and fails a `share` of them, and prints how many succeed.
 pub(super) fn measure_storm(
     calls: usize,
     per_s: f64,
@@ -33,9 +34,9 @@ pub(super) fn measure_storm(
     let begun = Instant::now();
     let failed = client.make_calls(calls, words_request);
     let took_s = begun.elapsed().as_secs_f64();
-    let told = provider.stop_and_report()?;
+    let report = provider.stop_and_report()?;
     let mut lines = goodput_lines(calls, &failed, took_s, per_s * (1.0 - share));
-    let ProviderReport { admitted, faults, rate_limited, .. } = told;
+    let ProviderReport { admitted, faults, rate_limited, .. } = report;
     lines.insert(2, format!("{admitted} requests let in, {faults} faults, {rate_limited} refused by the rate limit"));
     output.print_result(&(), lines.join("\n"));
     Ok(())
@@ -44,15 +45,15 @@ pub(super) fn measure_storm(
 /// The answers, compared with the most that are possible per second; then why the others failed.
 fn goodput_lines(calls: usize, failed: &[String], took_s: f64, bound_per_s: f64) -> Vec<String> {
     let answered = calls - failed.len();
-    let good = answered as f64 / took_s;
+    let answers_per_s = answered as f64 / took_s;
     let mut reasons: BTreeMap<&str, usize> = BTreeMap::new();
     for reason in failed {
         *reasons.entry(reason.as_str()).or_default() += 1;
     }
-    let share = 100.0 * good / bound_per_s;
+    let share = 100.0 * answers_per_s / bound_per_s;
     let mut lines = vec![
         format!("{calls} calls: {answered} answered, {} failed, in {took_s:.1} s", failed.len()),
-        format!("{good:.1} answers/s, {share:.1} % of {bound_per_s:.1} (allowed rate x share without fault)"),
+        format!("{answers_per_s:.1} answers/s, {share:.1} % of {bound_per_s:.1} (allowed rate x share without fault)"),
     ];
     lines.extend(reasons.into_iter().map(|(reason, count)| format!("  {count} x {reason}")));
     lines

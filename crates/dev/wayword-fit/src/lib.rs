@@ -3,7 +3,7 @@
 //!
 //! # Where things are
 //! - [`fit_evidence`]: the weights of the checks in an open world, `open/weights.toml` of `wayword-checks`.
-//! - [`fit_follower`]: those of the follower, with the map and without, and the table by which its thresholds are chosen.
+//! - [`fit_follower`]: the weights of the follower, with the map and without, and the table by which its thresholds are chosen.
 
 pub mod fit_evidence;
 pub mod fit_follower;

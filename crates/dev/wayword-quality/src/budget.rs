@@ -13,9 +13,11 @@ use wayword_run::{
 /// What a run with a budget made, and what it spent.
 #[derive(Debug)]
 struct BudgetFigures {
+    /// Frames of all paths that were asked for.
     frames: usize,
     /// Items that were made.
     done: usize,
+    /// The requests of the run and their cost.
     spent: CallSpending,
 }
 
@@ -39,6 +41,7 @@ pub fn measure_budget(
     Ok(())
 }
 
+/// Makes the run, with a price list in which every token costs something.
 fn budget_figures(stage: &MeasurementStage, paths: usize, max_usd: f64) -> Result<BudgetFigures, CommandError> {
     let job = stage.writing_job(paths)?;
     let service = Service { max_usd: Some(max_usd), prices: Some(stage.write_prices()?), ..job.service };

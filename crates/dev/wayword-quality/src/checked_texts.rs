@@ -46,7 +46,8 @@ pub(crate) fn check_in_memory(
     let io = |source| CommandError::Io { path: std::env::temp_dir(), doing: "write a file of texts in", source };
     let folder = tempfile::tempdir().map_err(io)?;
     check.file = folder.path().join("texts.json");
-    let items: Vec<Episode> = texts.iter().enumerate().map(|(at, (of, text))| text_item(at, of, text)).collect();
+    let items: Vec<Episode> =
+        texts.iter().enumerate().map(|(at, (episode, text))| text_item(at, episode, text)).collect();
     write_items(&check.file, &items)?;
     sort_findings(&check_texts(&check, output)?, texts.len())
 }
@@ -57,16 +58,18 @@ pub(crate) fn write_items(file: &Path, items: &[Episode]) -> Result<(), FormatEr
     if has_objects { reverie::write_reverie_file(file, items) } else { r2r::write_r2r_file(file, items) }
 }
 
-/// An item for one text. `check` tells items apart by their names, so the name is the text's number.
-pub(crate) fn text_item(number: usize, of: &Episode, text: &str) -> Episode {
-    let mut item = Episode::new(number.to_string(), number.to_string(), of.scene.clone());
-    item.viewpoints.clone_from(&of.viewpoints);
-    item.start_heading = of.start_heading;
-    item.target_object.clone_from(&of.target_object);
+/// An item for one text about the path of `episode`. `check` keeps items apart by their names, so the name is the text's
+/// number.
+pub(crate) fn text_item(number: usize, episode: &Episode, text: &str) -> Episode {
+    let mut item = Episode::new(number.to_string(), number.to_string(), episode.scene.clone());
+    item.viewpoints.clone_from(&episode.viewpoints);
+    item.start_heading = episode.start_heading;
+    item.target_object.clone_from(&episode.target_object);
     item.instructions = vec![text.to_owned()];
     item
 }
 
+/// Sorts the report of `check` by the numbers of the texts.
 fn sort_findings(report: &CheckReport, texts: usize) -> Result<CheckedTexts, CommandError> {
     let (mut findings, mut doubts) = (vec![Vec::new(); texts], vec![Vec::new(); texts]);
     for text in &report.not_passed {
@@ -99,15 +102,15 @@ pub(crate) fn report_words(report: &Map<String, Value>) -> Vec<String> {
     let words = |value: &Value| match value {
         Value::String(word) => Some(word.clone()),
         Value::Array(list) => list.iter().map(Value::as_str).collect::<Option<Vec<_>>>().map(|list| list.join(", ")),
-        // Names with numbers of texts, as the worlds.
+        // Names with counts of texts, such as the worlds in which they were checked.
         Value::Object(counts) => {
             let counts = counts.iter().map(|(name, texts)| Some(format!("{name} ({})", texts.as_u64()?)));
             counts.collect::<Option<Vec<_>>>().map(|counts| counts.join(", "))
         }
         _ => None,
     };
-    let told = report.iter().filter_map(|(key, value)| Some((key, words(value).filter(|words| !words.is_empty())?)));
-    told.map(|(key, words)| format!("{}: {words}", key.replace('_', " "))).collect()
+    let shown = report.iter().filter_map(|(key, value)| Some((key, words(value).filter(|words| !words.is_empty())?)));
+    shown.map(|(key, words)| format!("{}: {words}", key.replace('_', " "))).collect()
 }
 
 /// Whether a finding is about words of this byte range.

@@ -115,16 +115,17 @@ fn claims_job(stage: &MeasurementStage, flags: &ClaimsArgs) -> Result<RunJob, Co
     Ok(job)
 }
 
+/// Checks claims of every kind about each path. Also returns a line for each wrong verdict that is shown.
 fn count_verdicts(known: &[ClaimedPath], flags: &ClaimsArgs) -> (SeededClaimCounts, Vec<String>) {
     let names = seeded::ClaimNamePool::from_paths(known);
     let style = InstructionStyle { name: "claims".to_owned(), ..InstructionStyle::default() };
     let mut counts = SeededClaimCounts::new();
     let mut shown: BTreeMap<(&str, SeededClaimKind), usize> = BTreeMap::new();
     let mut wrong = Vec::new();
-    for one in known {
-        let mut rng = seeded_rng(flags.world.seed, &["claims", &one.walk.path.id]);
-        for SeededClaim { kind, text } in seeded::make_claims(one, &names, flags.claims, &mut rng) {
-            for (source, evidence) in [("labels", &one.labels), ("captions", &one.captions)] {
+    for path in known {
+        let mut rng = seeded_rng(flags.world.seed, &["claims", &path.walk.path.id]);
+        for SeededClaim { kind, text } in seeded::make_claims(path, &names, flags.claims, &mut rng) {
+            for (source, evidence) in [("labels", &path.labels), ("captions", &path.captions)] {
                 let checked = check_text(&text, CheckSubject::closed_world(evidence, &style, None));
                 let places = |check| matches!(check, CheckKind::Landmarks | CheckKind::Order | CheckKind::Turns);
                 let verdicts = checked.findings.iter().filter(|finding| places(finding.check));
@@ -143,7 +144,7 @@ fn count_verdicts(known: &[ClaimedPath], flags: &ClaimsArgs) -> (SeededClaimCoun
                     wrong.push(format!(
                         "{source}, {}: {verdict:?}: {text} ({why}) [{}]",
                         kind.name(),
-                        one.walk.path.id
+                        path.walk.path.id
                     ));
                 }
             }
@@ -152,12 +153,13 @@ fn count_verdicts(known: &[ClaimedPath], flags: &ClaimsArgs) -> (SeededClaimCoun
     (counts, wrong)
 }
 
+/// The lines of the table that is printed.
 fn describe_counts(known: &[ClaimedPath], counts: &SeededClaimCounts, flags: &ClaimsArgs) -> String {
     let views: usize =
-        known.iter().map(|one| one.walk.observations.iter().map(|seen| seen.looks.len()).sum::<usize>()).sum();
+        known.iter().map(|path| path.walk.observations.iter().map(|seen| seen.looks.len()).sum::<usize>()).sum();
     let transcripts =
         |seen: &FrameObservation| seen.looks.iter().map(|look| look.caption.transcript.len()).sum::<usize>();
-    let calls: usize = known.iter().flat_map(|one| &one.walk.observations).map(transcripts).sum();
+    let calls: usize = known.iter().flat_map(|path| &path.walk.observations).map(transcripts).sum();
     let mut lines = vec![
         format!(
             "{} paths, {views} views, {:.2} requests a view; a scripted eye with {:.0} % hallucinated objects and doubts",

@@ -38,6 +38,7 @@ pub(super) enum InstructionCorruption {
 }
 
 impl InstructionCorruption {
+    /// All kinds.
     pub(super) const ALL: [Self; 10] = [
         Self::TurnFlipped,
         Self::LandmarkAbsent,
@@ -51,6 +52,7 @@ impl InstructionCorruption {
         Self::TaskUnasked,
     ];
 
+    /// Its name in the table.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::TurnFlipped => "turn flipped",
@@ -95,7 +97,8 @@ const ABSENT_OBJECTS: [&str; 24] = [
     "rocking chair",
 ];
 
-/// A corrupted text, or `None` if this kind of corruption is not possible.
+/// A corrupted text, or `None` if this kind of corruption is not possible. `others`: the names of the things along all
+/// paths of the scene.
 pub(super) fn corrupt_instruction(
     kind: InstructionCorruption,
     record: &InstructionRecord,

@@ -30,9 +30,13 @@ pub struct CorruptionFindingArgs {
 
 /// A corrupted text and the text that it was made from.
 struct CorruptedPair<'k> {
+    /// The entry of the key.
     corruption: &'k TextCorruption,
+    /// The item of the corrupted text.
     episode: Episode,
+    /// The corrupted text.
     now: String,
+    /// The original text.
     was: String,
     /// The clauses of the changed words, and one on each side of them.
     near_now: Vec<[usize; 2]>,
@@ -43,7 +47,9 @@ struct CorruptedPair<'k> {
 /// The findings in both texts of a pair.
 struct PairFindings<'p> {
     pair: &'p CorruptedPair<'p>,
+    /// In the corrupted text.
     now: &'p [CheckFinding],
+    /// In the original text.
     was: &'p [CheckFinding],
 }
 
@@ -84,8 +90,9 @@ pub fn measure_corruption_findings(flags: CorruptionFindingArgs, output: &Comman
         output.say(line);
     }
     let rows = kind_rows(&outcomes, seed);
-    let said = [format!("seed of the corruptions: {}; intervals of 95 %, clustered by path", key.seed)];
-    let lines = [rows_table(&rows)].into_iter().chain(said).chain(report_words(&report)).collect::<Vec<_>>().join("\n");
+    let notes = [format!("seed of the corruptions: {}; intervals of 95 %, clustered by path", key.seed)];
+    let lines =
+        [rows_table(&rows)].into_iter().chain(notes).chain(report_words(&report)).collect::<Vec<_>>().join("\n");
     output.print_result(&json!({ "seed": key.seed, "rows": rows, "check": report }), lines);
     Ok(())
 }
@@ -113,6 +120,7 @@ fn read_pairs<'k>(file: &Path, key: &'k CorruptionKey) -> Result<Vec<CorruptedPa
 
 /// The corrupted texts, and each original text once.
 struct PairTexts<'p> {
+    /// All texts with their items: the corrupted ones in the order of the pairs, then the originals.
     all: Vec<(&'p Episode, &'p str)>,
     /// For each pair, the place of its original text in `all`.
     old: Vec<usize>,
@@ -134,6 +142,7 @@ impl<'p> PairTexts<'p> {
 }
 
 impl PairFindings<'_> {
+    /// Whether the corrupted text fails at the changed words or next to them.
     fn is_found(&self) -> bool {
         fails_at(self.now, &self.pair.near_now)
     }
@@ -144,6 +153,7 @@ impl PairFindings<'_> {
         self.now.iter().any(|finding| changes.iter().any(|change| is_about(finding, change.span)))
     }
 
+    /// Whether the original text fails at the words that were changed, or next to them.
     fn is_found_before(&self) -> bool {
         fails_at(self.was, &self.pair.near_was)
     }

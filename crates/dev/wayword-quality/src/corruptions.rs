@@ -22,7 +22,9 @@ use wayword_run::{
 
 /// The records of a run that passed, with everything that checking them again needs.
 struct LabelledRun {
+    /// The styles of the run.
     styles: Vec<InstructionStyle>,
+    /// The records that passed.
     records: Vec<InstructionRecord>,
     /// The evidence from labels, by the path's id.
     evidence: BTreeMap<String, Evidence>,
@@ -61,6 +63,7 @@ fn count_caught(all: &[(&LabelledRun, &InstructionRecord)], count: usize, seed: 
     let mut counts = CatchCounts::new();
     let mut missed = Vec::new();
     for kind in InstructionCorruption::ALL {
+        // Some kinds are not possible in most texts, so the search for one ends after 100 tries for each corruption.
         let mut tries = 0;
         while counts.entry(kind).or_default().1 < count / InstructionCorruption::ALL.len() && tries < 100 * count {
             tries += 1;
@@ -85,11 +88,12 @@ fn catch_table(counts: &CatchCounts) -> String {
     let line = |name: &str, (caught, total): (usize, usize)| {
         format!("{name:<39} {caught:>5} of {total:>5}  {:>5.1} %", 100.0 * caught as f64 / total.max(1) as f64)
     };
-    let sum = counts.values().fold((0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
+    let sum = counts.values().fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1));
     let kinds = counts.iter().map(|(kind, count)| line(kind.name(), *count));
     kinds.chain([line("all", sum)]).collect::<Vec<_>>().join("\n")
 }
 
+/// Reads a run, with evidence from labels for the paths of all records that passed.
 fn open_run(folder: &Path, output: &CommandOutput) -> Result<LabelledRun, CommandError> {
     let settings = settings_of(folder)?;
     let platform = platforms::open_platform(&settings)?;
@@ -123,6 +127,7 @@ fn label_evidence(platform: &dyn Platform, path: &wayword_core::Path) -> Result<
 }
 
 impl LabelledRun {
+    /// The evidence and the style of a record, and the names of the things in its scene.
     fn needed_for(&self, record: &InstructionRecord) -> Option<(&Evidence, &InstructionStyle, &BTreeSet<String>)> {
         let style = self.styles.iter().find(|style| style.name == record.instruction.style)?;
         Some((self.evidence.get(&record.path.id)?, style, self.names.get(&record.path.scene)?))

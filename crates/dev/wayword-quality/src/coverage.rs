@@ -34,7 +34,7 @@ pub fn measure_coverage(flags: &CoverageArgs, output: &CommandOutput) -> Result<
         let mut counts = UnderstandingCounts::default();
         for episode in wayword_formats::read_any_format(file)? {
             let scan = episode.scene.as_str();
-            let is_in = |scans: &[String]| scans.iter().any(|one| one == scan);
+            let is_in = |scans: &[String]| scans.iter().any(|name| name == scan);
             if (flags.scans.is_empty() || is_in(&flags.scans)) && !is_in(&flags.except) {
                 episode.instructions.iter().for_each(|text| counts.add_text(text));
             }
@@ -48,11 +48,14 @@ pub fn measure_coverage(flags: &CoverageArgs, output: &CommandOutput) -> Result<
 #[derive(Debug, Default)]
 struct UnderstandingCounts {
     texts: usize,
+    /// Texts of which every clause is understood.
     whole_texts: usize,
+    /// Words without marks and stop words.
     words: usize,
     understood_words: usize,
     clauses: usize,
     understood_clauses: usize,
+    /// How often each word that is not understood occurs, in lower case.
     unknown: BTreeMap<String, usize>,
 }
 
@@ -61,15 +64,15 @@ impl UnderstandingCounts {
         let TextReading { words, clauses, .. } = read_instruction(text, &BTreeSet::new());
         let counted = || words.iter().filter(|word| word.is_counted);
         let unknown = counted().filter(|word| !word.is_understood());
-        let said = |span: [usize; 2]| text.get(span[0]..span[1]).unwrap_or_default().to_lowercase();
-        unknown.for_each(|word| *self.unknown.entry(said(word.span)).or_default() += 1);
-        let spoken = || clauses.iter().filter(|clause| clause.span[0] < clause.span[1]);
+        let spelling = |span: [usize; 2]| text.get(span[0]..span[1]).unwrap_or_default().to_lowercase();
+        unknown.for_each(|word| *self.unknown.entry(spelling(word.span)).or_default() += 1);
+        let worded = || clauses.iter().filter(|clause| clause.span[0] < clause.span[1]);
         self.texts += 1;
         self.words += counted().count();
         self.understood_words += counted().filter(|word| word.is_understood()).count();
-        self.clauses += spoken().count();
-        self.understood_clauses += spoken().filter(|clause| clause.understood).count();
-        self.whole_texts += usize::from(spoken().all(|clause| clause.understood));
+        self.clauses += worded().count();
+        self.understood_clauses += worded().filter(|clause| clause.understood).count();
+        self.whole_texts += usize::from(worded().all(|clause| clause.understood));
     }
 
     fn report_lines(&self, show: usize) -> Vec<String> {

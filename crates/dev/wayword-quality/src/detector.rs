@@ -1,8 +1,8 @@
 //! Measures the use of a detector with a known recall and a known rate of false alarms.
 //!
-//! The detector is played by the test kit. Its figures are measured on half of the paths. On the other half, true and wrong landmarks are
-//! checked by its finds. Last, texts are written from a flawed eye's captions with the detector and without, and the hallucinated objects
-//! in them are counted.
+//! The test kit plays the detector. Its figures are measured on half of the paths. On the other half, true and wrong landmarks
+//! are checked by its finds. At the end, texts are written from a flawed eye's captions with the detector and without, and the
+//! hallucinated objects in them are counted.
 
 use crate::{
     eye::NamedObjectCounts,
@@ -131,28 +131,29 @@ fn judge_landmarks(
         let Some(labels) = Evidence::from_labels(&path, &path_panoramas(&world, &path)?) else { continue };
         places.extend(path.frames.iter().map(|frame| (path.scene.clone(), frame.place_key())));
         let things = labels.frames.iter().flat_map(|frame| &frame.things).map(|thing| normalise_name(&thing.name));
-        let there: BTreeSet<String> = things.filter(|name| is_landmark(name)).collect();
+        let present: BTreeSet<String> = things.filter(|name| is_landmark(name)).collect();
         let absent =
-            pool.iter().filter(|name| is_landmark(name) && !there.iter().any(|other| names_agree(other, name)));
+            pool.iter().filter(|name| is_landmark(name) && !present.iter().any(|other| names_agree(other, name)));
         let mut rng = seeded_rng(flags.world.seed, &["landmarks", &path.id]);
-        let mut some = |mut names: Vec<String>| {
+        let mut draw_names = |mut names: Vec<String>| {
             names.shuffle(&mut rng);
             names.truncate(flags.claims);
             names
         };
-        let (there, absent) = (some(there.iter().cloned().collect()), some(absent.cloned().collect()));
-        let evidence = detect_evidence(&path, &world, there.iter().chain(&absent), &lookout)?;
-        there.iter().for_each(|name| right.add_verdict(judge_landmark(name, &evidence)));
+        let (present, absent) = (draw_names(present.iter().cloned().collect()), draw_names(absent.cloned().collect()));
+        let evidence = detect_evidence(&path, &world, present.iter().chain(&absent), &lookout)?;
+        present.iter().for_each(|name| right.add_verdict(judge_landmark(name, &evidence)));
         absent.iter().for_each(|name| wrong.add_verdict(judge_landmark(name, &evidence)));
     }
     Ok((right, wrong, places.len()))
 }
 
-/// Whether a text would use the thing as a landmark.
+/// Whether a text would use the thing as a landmark, by its salience in the lexicon.
 fn is_landmark(name: &str) -> bool {
     find_thing(name).is_some_and(|thing| thing.salience >= 2)
 }
 
+/// The evidence from the finds and misses of the detector, which looks for `names` from every frame of a path.
 fn detect_evidence<'a>(
     path: &Path,
     world: &RememberingPlatform<'_>,

@@ -17,7 +17,7 @@ use wayword_follower::{
 };
 use wayword_run::{error::CommandError, output::CommandOutput};
 
-/// The table shows which gain these shares of the words exceed.
+/// The table shows, for each of these shares, the gain that this share of the words exceeds.
 const EXCEEDING_SHARES: [f64; 5] = [0.005, 0.01, 0.02, 0.05, 0.1];
 
 /// The flags of `doubts`.
@@ -40,8 +40,9 @@ pub struct DoubtsArgs {
 struct TextDoubtSites {
     /// The number of its scene.
     scene: usize,
+    /// The words that the follower could doubt, each with the gains of their alternatives.
     sites: Vec<DoubtSite>,
-    /// The grade of the words of a turn that was flipped; `None` without a turn.
+    /// The grade of the words of a turn that was flipped: `None` without a turn in the text, `Some(None)` without a doubt.
     flipped: Option<Option<DoubtGrade>>,
 }
 
@@ -54,14 +55,15 @@ pub fn measure_doubts(flags: &DoubtsArgs, output: &CommandOutput) -> Result<(), 
     let all: Vec<WalkedText> = files.into_iter().flatten().collect();
     let every = flags.limit.map_or(1, |limit| all.len().div_ceil(limit.max(1))).max(1);
     let picked: Vec<usize> = (0..all.len()).step_by(every).collect();
-    let held: Vec<TextDoubtSites> =
+    let judged: Vec<TextDoubtSites> =
         picked.par_iter().map(|at| find_doubt_sites(&scenes, &all[*at], *at, flags.seed)).collect();
-    output.print_result(&(), report_lines(&held, flags.seed).join("\n"));
+    output.print_result(&(), report_lines(&judged, flags.seed).join("\n"));
     Ok(())
 }
 
+/// The sites of a text, and the grade of a turn that is flipped in it. `at`: the number of the text, for the seed.
 fn find_doubt_sites(scenes: &[FollowerScene], text: &WalkedText, at: usize, seed: u64) -> TextDoubtSites {
-    let found = |words: &str, guide: &Guide| {
+    let sites_in = |words: &str, guide: &Guide| {
         let building = &scenes[text.scene].building;
         let known = KnownWalk { building, walk: &text.walk, heading_rad: text.heading_rad };
         find_sites(words, guide, known, FeatureWeights::fitted())
@@ -69,31 +71,34 @@ fn find_doubt_sites(scenes: &[FollowerScene], text: &WalkedText, at: usize, seed
     let turned = flip_one_turn(&text.words, &mut seeded_rng(seed, &["doubts", "turn", &at.to_string()]));
     let flipped = turned.map(|turned| {
         let place = text.words.bytes().zip(turned.bytes()).position(|(a, b)| a != b).unwrap_or_default();
-        let sites = found(&turned, &Guide::read_text(&turned));
+        let sites = sites_in(&turned, &Guide::read_text(&turned));
         let here = sites.iter().filter(|site| spans_overlap(site.span, [place, place + 1]));
         here.filter_map(|site| DoubtBounds::default().grade_gain(site.source, site.best_gain())).max()
     });
-    TextDoubtSites { scene: text.scene, sites: found(&text.words, &text.guide), flipped }
+    TextDoubtSites { scene: text.scene, sites: sites_in(&text.words, &text.guide), flipped }
 }
 
-fn report_lines(held: &[TextDoubtSites], seed: u64) -> Vec<String> {
+fn report_lines(judged: &[TextDoubtSites], seed: u64) -> Vec<String> {
     let mut rows = vec![table_head()];
-    rows.extend(DoubtSource::ALL.into_iter().map(|source| source_row(held, source)));
-    let share = |is: &dyn Fn(&TextDoubtSites) -> Option<bool>| {
-        let cases = held.iter().filter_map(|text| Some((text.scene, is(text)?)));
+    rows.extend(DoubtSource::ALL.into_iter().map(|source| source_row(judged, source)));
+    let share = |counts: &dyn Fn(&TextDoubtSites) -> Option<bool>| {
+        let cases = judged.iter().filter_map(|text| Some((text.scene, counts(text)?)));
         share_cell(ClusteredShare::from_cases(cases, seed).as_ref())
     };
     let mut lines =
-        vec![aligned_table(&rows), format!("{} texts; intervals of 95 %, clustered by building", held.len())];
+        vec![aligned_table(&rows), format!("{} texts; intervals of 95 %, clustered by building", judged.len())];
     for grade in DoubtGrade::ALL {
-        let own = share(&|text| Some(text.sites.iter().any(|site| at_least(site, grade))));
+        let original = share(&|text| Some(text.sites.iter().any(|site| at_least(site, grade))));
         let flipped = share(&|text| Some(text.flipped? >= Some(grade)));
         let name = grade.name();
-        lines.push(format!("{name} or worse: {own} of the texts by a change, {flipped} of turns that were flipped"));
+        lines.push(format!(
+            "{name} or worse: {original} of the texts by a change, {flipped} of turns that were flipped"
+        ));
     }
     lines
 }
 
+/// Whether the default bounds give the words of a site this grade or a worse one.
 fn at_least(site: &DoubtSite, grade: DoubtGrade) -> bool {
     DoubtBounds::default().grade_gain(site.source, site.best_gain()) >= Some(grade)
 }
@@ -105,8 +110,8 @@ fn table_head() -> Vec<String> {
 }
 
 /// A row of the table: the gains that [`EXCEEDING_SHARES`] of the words exceed, and the shares of words that the bounds call doubtful.
-fn source_row(held: &[TextDoubtSites], source: DoubtSource) -> Vec<String> {
-    let of_source = || held.iter().flat_map(|text| &text.sites).filter(move |site| site.source == source);
+fn source_row(judged: &[TextDoubtSites], source: DoubtSource) -> Vec<String> {
+    let of_source = || judged.iter().flat_map(|text| &text.sites).filter(move |site| site.source == source);
     let mut gains: Vec<f64> = of_source().map(DoubtSite::best_gain).collect();
     gains.sort_by(|a, b| b.total_cmp(a));
     let at = |share: f64| gains.get((share * gains.len() as f64) as usize).map(|gain| format!("{gain:.2}"));

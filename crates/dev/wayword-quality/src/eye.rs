@@ -18,11 +18,17 @@ use wayword_synthesis::repair::WritingOutcome;
 /// Counts of the objects that instructions name, and of those that no label along the path confirms.
 #[derive(Debug, Default)]
 pub(super) struct NamedObjectCounts {
+    /// Texts that were accepted.
     pub(super) texts: usize,
+    /// Texts that were rejected.
     pub(super) rejected: usize,
+    /// Accepted texts that rules finished, because the model's text failed.
     finished_by_rules: usize,
+    /// Objects that the labels confirm or deny.
     pub(super) objects: usize,
+    /// Those among them that the labels deny.
     pub(super) hallucinated: usize,
+    /// Texts with at least one denied object.
     pub(super) with_hallucinations: usize,
 }
 
@@ -79,6 +85,7 @@ pub fn measure_eye(
 }
 
 impl NamedObjectCounts {
+    /// Counts the objects in all texts of an item. Without labels, nothing is counted.
     pub(super) fn count_item(&mut self, made: &MadeItem, world: &dyn Platform) -> Result<(), CommandError> {
         let panoramas = path_panoramas(world, &made.walk.path)?;
         let Some(labels) = Evidence::from_labels(&made.walk.path, &panoramas) else { return Ok(()) };

@@ -10,7 +10,7 @@ use wayword_render::PinholeCamera;
 use wayword_run::{error::CommandError, output::CommandOutput};
 use wayword_testkit::resources;
 
-/// From this share of a picture on, it counts as a picture of bare wall.
+/// A picture with at least this share of bare wall counts as bare.
 const BARE_WALL_SHARE: f64 = 0.5;
 /// Width and height of the pictures, pixels.
 const SIZE_PX: [u32; 2] = [640, 480];
@@ -48,8 +48,11 @@ struct BareWallReport {
 
 /// One view on a walk.
 struct WalkedView {
+    /// The seed of the house, and the number of the walk in it.
     walk: (u64, u64),
+    /// The word for the room in which the walker is.
     room: &'static str,
+    /// Whether at least [`BARE_WALL_SHARE`] of the picture is bare wall.
     is_bare: bool,
 }
 
@@ -75,8 +78,8 @@ pub fn measure_house_views(flags: &HouseViewsArgs, output: &CommandOutput) -> Re
             });
         }
     }
-    let told = summarise_views(&seen, flags.seed, spent);
-    output.print_result(&told, &told);
+    let report = summarise_views(&seen, flags.seed, spent);
+    output.print_result(&report, &report);
     Ok(())
 }
 
@@ -98,7 +101,9 @@ fn walk_poses(flags: &HouseViewsArgs, house: u64) -> Result<Vec<(u64, Pose)>, Co
 
 /// The share of a picture's pixels that show the wall itself. Hangings, doors and windows are objects with ids of their own.
 fn bare_share(home: &HouseScene, ids: &[u32]) -> f64 {
-    let is_wall = |id: &&u32| home.objects.get(id).is_some_and(|it| it.role == ObjectRole::Shell && it.name == "wall");
+    let is_wall = |id: &&u32| {
+        home.objects.get(id).is_some_and(|object| object.role == ObjectRole::Shell && object.name == "wall")
+    };
     ids.iter().filter(is_wall).count() as f64 / ids.len().max(1) as f64
 }
 

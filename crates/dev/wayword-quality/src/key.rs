@@ -7,7 +7,7 @@ use wayword_world::files;
 
 /// The format of a key, with its version.
 const KEY_FORMAT: &str = "wayword-corruptions/1";
-/// Largest key, bytes.
+/// The largest key that is read, bytes; a larger one is refused.
 const MOST_BYTES: u64 = 256 << 20;
 const KEY_HINT: &str = "give the key that was written with the texts";
 
@@ -15,6 +15,7 @@ const KEY_HINT: &str = "give the key that was written with the texts";
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct CorruptionKey {
+    /// Always [`KEY_FORMAT`].
     format: String,
     /// The seed that the changes were drawn with.
     pub(crate) seed: u64,

@@ -4,7 +4,8 @@
 //! # Where things are
 //! - [`corrupt_people`]: how people's texts are made wrong to measure the checks. Its word lists (`lists/`) are its own, so that it does not share the
 //!   errors of the reader.
-//! - [`corruptions`], [`corruption_findings`], [`claims`], [`doubts`], [`people`]: what the checks and the follower find of that.
+//! - [`corruptions`], [`corruption_findings`], [`claims`], [`doubts`], [`people`]: which wrong texts the checks and the follower find,
+//!   and which true ones they refuse.
 //! - [`texts`], [`tell_apart`]: figures of texts, and a classifier that separates generated ones from people's; `texts/listener/` finds a target by labels.
 //! - [`detector`], [`eye`]: what a detector or a flawed eye with given figures does to texts.
 //! - [`reader_figures`], [`critics`], [`sweep`], [`walker`]: followers, critics and agents.

@@ -18,7 +18,8 @@ use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// Bins of the calibration error, of equal width.
 const BINS: usize = 10;
-/// Bounds of ambiguity that are tried: another walk's share of the annotated one's.
+/// Bounds of ambiguity that are tried: a text is ambiguous if another walk has at least this part of the annotated walk's
+/// share.
 const AMBIGUITY_BOUNDS: [f64; 7] = [0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8];
 
 /// The flags of `reader-figures`.
@@ -57,6 +58,7 @@ struct FollowerJudgement {
 
 /// The walk that fits best.
 struct BestWalk {
+    /// Its share: the probability that the follower takes this walk.
     share: f64,
     /// The share of all walks that end near its end.
     nearby: f64,
@@ -73,7 +75,7 @@ struct BestWalk {
 pub fn measure_reader_figures(flags: &ReaderFiguresArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let (scenes, files) = read_texts(&flags.data, std::slice::from_ref(&flags.file))?;
     let mut all: Vec<WalkedText> = files.into_iter().flatten().collect();
-    let is_in = |text: &WalkedText, scans: &[String]| scans.iter().any(|one| one == scenes[text.scene].name.as_str());
+    let is_in = |text: &WalkedText, scans: &[String]| scans.iter().any(|name| name == scenes[text.scene].name.as_str());
     all.retain(|text| (flags.scans.is_empty() || is_in(text, &flags.scans)) && !is_in(text, &flags.except));
     let every = flags.limit.map_or(1, |limit| all.len().div_ceil(limit.max(1)));
     let mut by_scene: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
@@ -81,12 +83,13 @@ pub fn measure_reader_figures(flags: &ReaderFiguresArgs, output: &CommandOutput)
         by_scene.entry(text.scene).or_default().push(at);
     }
     let picked: Vec<usize> = (0..all.len()).step_by(every.max(1)).collect();
-    let said = picked.par_iter().map(|at| judge_text(&scenes, &all, &by_scene[&all[*at].scene], *at, flags.seed));
-    let said: Vec<FollowerJudgement> = said.collect();
-    output.print_result(&(), report_lines(&said).join("\n"));
+    let judgements = picked.par_iter().map(|at| judge_text(&scenes, &all, &by_scene[&all[*at].scene], *at, flags.seed));
+    let judgements: Vec<FollowerJudgement> = judgements.collect();
+    output.print_result(&(), report_lines(&judgements).join("\n"));
     Ok(())
 }
 
+/// Judges the text number `at`. `neighbours`: the numbers of all texts of its building.
 fn judge_text(
     scenes: &[FollowerScene],
     all: &[WalkedText],
@@ -134,34 +137,35 @@ fn log_ratio(other: f64, own: f64) -> f64 {
     (other.max(f64::MIN_POSITIVE) / own.max(f64::MIN_POSITIVE)).ln()
 }
 
-fn report_lines(said: &[FollowerJudgement]) -> Vec<String> {
-    let best: Vec<&BestWalk> = said.iter().filter_map(|said| said.best.as_ref()).collect();
+fn report_lines(judgements: &[FollowerJudgement]) -> Vec<String> {
+    let best: Vec<&BestWalk> = judgements.iter().filter_map(|judgement| judgement.best.as_ref()).collect();
     let right = best.iter().filter(|best| best.is_right).count();
     let error = |share: fn(&BestWalk) -> f64| {
         calibration_error(&best.iter().map(|best| (share(best), best.is_right)).collect::<Vec<_>>())
     };
-    let turns: Vec<[f64; 2]> = said.iter().filter_map(|said| said.turns).collect();
-    let paths: Vec<[f64; 2]> = said.iter().filter_map(|said| Some([said.elsewhere, said.other_path?])).collect();
-    let told = |name: &str, pairs: &[[f64; 2]]| match pairwise_auc(pairs) {
+    let turns: Vec<[f64; 2]> = judgements.iter().filter_map(|judgement| judgement.turns).collect();
+    let paths: Vec<[f64; 2]> =
+        judgements.iter().filter_map(|judgement| Some([judgement.elsewhere, judgement.other_path?])).collect();
+    let auc_line = |name: &str, pairs: &[[f64; 2]]| match pairwise_auc(pairs) {
         Some(auc) => format!("{name}: AUC {auc:.3} ({} texts)", pairs.len()),
         None => format!("{name}: no such text"),
     };
     let mut lines = vec![
-        format!("{} texts; the best walk ends at the goal for {right}", said.len()),
+        format!("{} texts; the best walk ends at the goal for {right}", judgements.len()),
         format!("calibration error, {BINS} bins: {:.3} of the share of that walk,", error(|best| best.share)),
         format!(
             "    {:.3} of the share of all walks that end within {SUCCESS_M} m of its end",
             error(|best| best.nearby)
         ),
-        told("one turn flipped", &turns),
-        told("another path's text", &paths),
+        auc_line("one turn flipped", &turns),
+        auc_line("another path's text", &paths),
     ];
-    lines.push(aligned_table(&ambiguity_rows(said)));
+    lines.push(aligned_table(&ambiguity_rows(judgements)));
     lines
 }
 
 /// How often texts are called ambiguous at several bounds.
-fn ambiguity_rows(said: &[FollowerJudgement]) -> Vec<Vec<String>> {
+fn ambiguity_rows(judgements: &[FollowerJudgement]) -> Vec<Vec<String>> {
     let head = [
         "another end fits",
         "as well as the annotated one: all",
@@ -169,16 +173,16 @@ fn ambiguity_rows(said: &[FollowerJudgement]) -> Vec<Vec<String>> {
         "reader right",
         "reader is right of these",
     ];
-    let percent = |count: usize, of: usize| format!("{:.1} %", 100.0 * count as f64 / of.max(1) as f64);
-    let best: Vec<&BestWalk> = said.iter().filter_map(|said| said.best.as_ref()).collect();
+    let percent = |count: usize, whole: usize| format!("{:.1} %", 100.0 * count as f64 / whole.max(1) as f64);
+    let best: Vec<&BestWalk> = judgements.iter().filter_map(|judgement| judgement.best.as_ref()).collect();
     let all_right = best.iter().filter(|best| best.is_right).count();
     let row = |bound: f64| {
-        let near_own = said.iter().filter(|said| said.elsewhere >= bound.ln()).count();
+        let near_own = judgements.iter().filter(|judgement| judgement.elsewhere >= bound.ln()).count();
         let near_best = best.iter().filter(|best| best.runner_up >= bound.ln());
         let (right, wrong): (Vec<&BestWalk>, Vec<&BestWalk>) = near_best.copied().partition(|best| best.is_right);
         vec![
             format!("{bound:.2}"),
-            percent(near_own, said.len()),
+            percent(near_own, judgements.len()),
             percent(wrong.len(), best.len() - all_right),
             percent(right.len(), all_right),
             percent(right.len(), right.len() + wrong.len()),

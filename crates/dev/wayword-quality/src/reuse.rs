@@ -12,9 +12,9 @@ struct ReuseFigures {
     frames: usize,
     /// Questions with their answers, in all dialogues.
     exchanges: usize,
-    /// Calls of the paper's method.
+    /// Calls that the paper's method would take for the same paths.
     papers: usize,
-    /// Calls here.
+    /// Calls that the provider answered here.
     here: u64,
 }
 
@@ -36,7 +36,7 @@ fn reuse_figures(stage: &MeasurementStage, paths: usize) -> Result<ReuseFigures,
         .flat_map(|seen| &seen.looks)
         .map(|look| look.caption.transcript.len())
         .sum();
-    // An opening, as many questions and answers as there are, and a summary for each frame; a text for each path.
+    // For each frame an opening, every question with its answer, and a summary; for each path a text.
     let per_frame = 2 * DEFAULT_MAX_QUESTIONS + 2;
     let papers = frames * per_frame + made.len();
     Ok(ReuseFigures { instructions: made.len(), frames, exchanges, papers, here: stage.provider.log().answered })
@@ -45,7 +45,7 @@ fn reuse_figures(stage: &MeasurementStage, paths: usize) -> Result<ReuseFigures,
 impl ReuseFigures {
     fn report_lines(&self) -> [String; 3] {
         let Self { instructions, frames, exchanges, papers, here } = self;
-        let per = |count: f64, of: usize| count / of.max(1) as f64;
+        let per = |count: f64, whole: usize| count / whole.max(1) as f64;
         [
             format!(
                 "{instructions} paths, {frames} frames, {:.1} exchanges per dialogue",

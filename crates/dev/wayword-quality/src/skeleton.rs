@@ -44,6 +44,7 @@ fn skeleton_lines(instructions: &[Instruction], show: usize) -> Vec<String> {
     lines
 }
 
+/// The skeletons of an instruction's sentences. Mentions are masked from the end, so that earlier byte ranges stay valid.
 fn skeletons_of(instruction: &Instruction) -> Vec<String> {
     let mut masked = instruction.text.clone();
     let mut mentions = instruction.mentions.clone();

@@ -49,8 +49,10 @@ pub struct MeasuredWorldArgs {
 pub(super) struct MeasurementStage {
     pub(super) world: BarcodePlatform<Box<dyn Platform>>,
     pub(super) provider: ScriptedProvider,
+    /// The folder of the ledger and the price list.
     folder: TempDir,
     seed: u64,
+    /// The flags that the stage was made from.
     asked: MeasuredWorldArgs,
 }
 
@@ -125,7 +127,7 @@ impl MeasurementStage {
         self.make_with(job, None)
     }
 
-    /// The same, with a detector that looks along the paths.
+    /// Makes every item of a job, with a detector that looks along the paths, and returns what was spent.
     pub(super) fn make_with(
         &self,
         job: &RunJob,
@@ -136,8 +138,8 @@ impl MeasurementStage {
         let team = RoleTeam::new(&job.settings, calls.as_ref(), &self.world)?.with_lookout(lookout);
         let threads = ThreadPoolBuilder::new().num_threads(AT_A_TIME).build();
         let world = RunPlatform { platform: &self.world, data: None, scenes: &KnownScenes::new() };
-        let one = |item| make_item(item, &job.settings, world, &team, &plan.styles, 1);
-        let work = || plan.items.par_iter().map(one).collect();
+        let make = |item| make_item(item, &job.settings, world, &team, &plan.styles, 1);
+        let work = || plan.items.par_iter().map(make).collect();
         let made = match threads {
             Ok(threads) => threads.install(work),
             Err(_) => work(),
@@ -146,6 +148,7 @@ impl MeasurementStage {
     }
 }
 
+/// The settings of a job of `paths` paths on a platform.
 fn asked_job(world: &MeasuredWorldArgs, paths: usize) -> AskedSettings {
     AskedSettings {
         platform: AskedPlatform {

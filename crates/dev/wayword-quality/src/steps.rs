@@ -23,12 +23,12 @@ pub struct StepsArgs {
 /// # Errors
 /// When the export or its run cannot be read, or a picture cannot be drawn again.
 pub fn replay_steps(flags: &StepsArgs, output: &CommandOutput) -> Result<(), CommandError> {
-    let told = replay_export(&flags.steps, &flags.run, flags.every)?;
+    let replay = replay_export(&flags.steps, &flags.run, flags.every)?;
     output.print_result(
-        &told,
+        &replay,
         format_args!(
             "{} walks, {} astray, the farthest ends {:.2} m from its walk's end; {} pictures, {} others than those of their poses",
-            told.walks, told.astray, told.farthest_off_m, told.pictures, told.others
+            replay.walks, replay.astray, replay.farthest_off_m, replay.pictures, replay.others
         ),
     );
     Ok(())

@@ -45,6 +45,7 @@ pub struct SweepArgs {
 /// One setting with the sums of its figures over the episodes.
 struct SweptSetting {
     parameters: PhraseWalkParameters,
+    /// The sums of [`SUMMED_METRICS`].
     sums: [f64; 3],
 }
 
@@ -115,7 +116,7 @@ fn settings_without_back(grounder: &str) -> Vec<PhraseWalkParameters> {
     all
 }
 
-/// All settings that are tried for going back.
+/// All settings that are tried with going back: `best` with and without it.
 fn settings_with_back(best: &PhraseWalkParameters) -> Vec<PhraseWalkParameters> {
     let mut all = vec![*best];
     for window in [3, 6, 8, 12] {
@@ -139,22 +140,22 @@ fn try_settings(
     settings: &[PhraseWalkParameters],
 ) -> Result<Vec<SweptSetting>, CommandError> {
     let demands = PlatformDemands::new(platform);
-    let nothing = || vec![[0.0; 3]; settings.len()];
+    let zeros = || vec![[0.0; 3]; settings.len()];
     let add = |mut a: Vec<[f64; 3]>, b: Vec<[f64; 3]>| {
         for (a, b) in a.iter_mut().zip(b) {
             a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
         }
         a
     };
-    let of_episode = |episode: &Episode| of_episode(platform, &demands, grounder, settings, episode);
-    let sums = episodes.par_iter().map(of_episode).try_reduce(nothing, |a, b| Ok(add(a, b)))?;
+    let sum_episode = |episode: &Episode| of_episode(platform, &demands, grounder, settings, episode);
+    let sums = episodes.par_iter().map(sum_episode).try_reduce(zeros, |a, b| Ok(add(a, b)))?;
     let mut tried: Vec<SweptSetting> =
         settings.iter().zip(sums).map(|(parameters, sums)| SweptSetting { parameters: *parameters, sums }).collect();
     tried.sort_by(|a, b| b.sums[2].total_cmp(&a.sums[2]));
     Ok(tried)
 }
 
-/// Figures of the first instruction of an item, for each setting.
+/// The figures of the walk by the first instruction of an item, for each setting.
 fn of_episode(
     platform: &dyn Platform,
     demands: &PlatformDemands<'_>,

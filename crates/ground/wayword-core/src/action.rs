@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// An action, with its number in VLN-CE and habitat-lab (`HabitatSimActions`).
+/// An action, with its number in VLN-CE and habitat-lab (`HabitatSimActions`). The length of a step and the angle of a
+/// turn are settings of the walk, not part of the action (in VLN-CE 0.25 m and 15 degrees).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "u8", try_from = "u8")]
 pub enum AgentAction {
@@ -12,7 +13,7 @@ pub enum AgentAction {
     Forward = 1,
     /// One turn to the left, on the spot.
     Left = 2,
-    /// One turn to the right.
+    /// One turn to the right, on the spot.
     Right = 3,
 }
 

@@ -5,14 +5,15 @@ use serde::{Deserialize, Serialize};
 /// How many ends and objects an instruction fits. It is no verdict: an ambiguous text can be true of its path.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TextAmbiguity {
-    /// Places, 3 m apart or more, at which walks end that fit the text about as well as the annotated one, which counts too.
-    /// `None` where no other walk is known.
+    /// The number of places where a walk by this text may end: the annotated end, and the ends of other walks that fit
+    /// the text about as well. They are 3 m apart or more. `None` where no other walk is known.
     pub ends: Option<usize>,
-    /// Objects at the end of the path that its task may mean; 0 where it names none that is known.
+    /// The number of objects at the end of the path that the text's task may mean; 0 where the task names no known
+    /// object.
     pub objects: usize,
     /// What only the annotated end has, where there are several ends.
     pub told_apart_by: Option<String>,
-    /// Why the ends are not known, where they are not.
+    /// Why [`Self::ends`] is not known, where it is `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unverified: Option<String>,
 }

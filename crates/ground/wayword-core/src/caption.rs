@@ -1,4 +1,6 @@
 //! Captions: a view in words, the sightings behind them with their sources, and the dialogue that led to them.
+//!
+//! The witness is the model, the labels or the detector that answered the questions about a view.
 
 use crate::{DetectedBox, ModelError, ReplySchema, Side, View};
 use serde::{Deserialize, Serialize};
@@ -6,12 +8,12 @@ use serde::{Deserialize, Serialize};
 /// A view in words, with the evidence behind them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Caption {
-    /// One or two sentences. They name no object that was denied.
+    /// One or two sentences. They name no object that the witness denied.
     pub text: String,
     /// The room, where one was named.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub room: Option<String>,
-    /// The rooms that it may be, where the witness was not sure of one.
+    /// The rooms that the view may show, where the witness was not sure of one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub perhaps_rooms: Vec<String>,
     /// Objects that a witness saw, denied or was not sure of.
@@ -29,12 +31,12 @@ pub struct Caption {
     /// each.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_structured: bool,
-    /// The outcome of asking for a form, where an answer did not have it.
+    /// The outcome of asking for answers in a form ([`AnswerForm`]), where an answer did not have it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form: Option<FormOutcome>,
 }
 
-/// The outcome of asking for a form, where the first answer did not have it.
+/// The outcome of asking for an [`AnswerForm`], where the first answer did not have it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FormOutcome {
@@ -99,7 +101,7 @@ pub struct DetectionSpot {
     pub found: DetectedBox,
     /// The direction of the box's middle from that of the view, radians, positive right.
     pub off_rad: f64,
-    /// How far over the floor it is from the eye, metres, where the platform knows the depth of the picture.
+    /// Horizontal distance from the eye to the object, metres, where the platform knows the depth of the picture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub distance_m: Option<f64>,
 }
@@ -111,8 +113,9 @@ impl DetectionSpot {
     pub fn new(found: DetectedBox, width_px: u32, horizontal_fov_rad: f64) -> Self {
         let half_px = f64::from(width_px) / 2.0;
         let [left, _, right, _] = found.box_px.map(f64::from);
-        let off = ((left + right) / 2.0 - half_px) / half_px.max(0.5);
-        Self { found, off_rad: libm::atan(off * libm::tan(horizontal_fov_rad / 2.0)), distance_m: None }
+        // From the picture's middle, in half widths: -1 is its left edge, 1 its right edge.
+        let off_middle = ((left + right) / 2.0 - half_px) / half_px.max(0.5);
+        Self { found, off_rad: libm::atan(off_middle * libm::tan(horizontal_fov_rad / 2.0)), distance_m: None }
     }
 }
 

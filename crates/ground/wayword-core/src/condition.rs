@@ -11,7 +11,7 @@ pub struct SceneCondition {
     pub scene: SceneId,
     /// Whether its pictures can be drawn.
     pub has_pictures: bool,
-    /// How large its viewpoint graph is, where that comes from a file.
+    /// How large its viewpoint graph is, where a file gives the graph.
     pub graph: Option<GraphSize>,
     /// The number of its storeys, where the graph has them.
     pub storeys: Option<u32>,
@@ -53,7 +53,7 @@ pub enum RoomNames {
 pub struct GraphFit {
     /// Viewpoints.
     pub viewpoints: usize,
-    /// Viewpoints with a floor below them, where the floor of an eye is.
+    /// Viewpoints that have a floor below them, about an eye's height down.
     pub over_floor: usize,
     /// Edges that were examined.
     pub edges: usize,

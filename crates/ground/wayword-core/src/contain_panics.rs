@@ -1,4 +1,5 @@
-//! Contains panics of third-party decoders: when one panics on a broken file, only its own work ends.
+//! Contains panics of third-party decoders: when one panics on a broken file, its caller gets a failure
+//! and the program goes on.
 
 use std::{
     cell::Cell,
@@ -6,6 +7,7 @@ use std::{
 };
 
 thread_local! {
+    /// How many calls of [`run_contained`], one within the other, this thread is in.
     static DEPTH: Cell<u32> = const { Cell::new(0) };
 }
 
@@ -14,9 +16,9 @@ thread_local! {
 /// After a panic, do not use values that `work` could change. Values that it only read can still be used.
 pub fn run_contained<T>(work: impl FnOnce() -> T) -> Option<T> {
     DEPTH.set(DEPTH.get() + 1);
-    let done = catch_unwind(AssertUnwindSafe(work));
+    let outcome = catch_unwind(AssertUnwindSafe(work));
     DEPTH.set(DEPTH.get() - 1);
-    done.ok()
+    outcome.ok()
 }
 
 /// Runs a third-party decoder. Its panics on broken input become an error.

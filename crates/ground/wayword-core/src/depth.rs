@@ -17,8 +17,9 @@ pub struct WrongDepthCount {
     actual: usize,
 }
 
-/// Which of a box's distances counts, as a share of its pixels, the nearest first. A thing hardly fills its box:
-/// between its legs and over its back one sees the background.
+/// The distance that counts for a box, as a share of its pixels, sorted with the nearest first: at 0.25 a quarter of
+/// them are nearer. It is not the middle one, because a thing hardly fills its box: between its legs and over its back
+/// one sees the background.
 const NEAREST_PIXEL_SHARE: f64 = 0.25;
 
 impl DepthImage {
@@ -35,7 +36,7 @@ impl DepthImage {
         }
     }
 
-    /// How far over the floor a thing is from the eye, metres, in a level view: the lower quartile over the middle of
+    /// The horizontal distance from the eye to a thing, metres, in a level view: the lower quartile over the middle of
     /// its box, half as wide and half as high. `edges` are the box's left, top, right and bottom edge as shares of the
     /// picture's width and height. `None` if no distance is known there.
     #[must_use]
@@ -45,19 +46,21 @@ impl DepthImage {
         let rows = middle_pixels([top, bottom], self.height_px)?;
         let half_px = f64::from(self.width_px) / 2.0;
         let half_width = libm::tan(horizontal_fov_rad / 2.0);
-        let level = |column: usize| {
+        // From the distance along the view's axis to the distance along the ray of a column.
+        let ray_factor = |column: usize| {
             let across = (column as f64 + 0.5 - half_px) / half_px * half_width;
             libm::sqrt(1.0 + across * across)
         };
-        let at = |row: usize, column: usize| f64::from(self.metres[row * self.width_px as usize + column]);
-        let pixels = rows.flat_map(|row| columns.clone().map(move |column| at(row, column) * level(column)));
+        let axis_m = |row: usize, column: usize| f64::from(self.metres[row * self.width_px as usize + column]);
+        let pixels = rows.flat_map(|row| columns.clone().map(move |column| axis_m(row, column) * ray_factor(column)));
         let mut known: Vec<f64> = pixels.filter(|metres| metres.is_finite() && *metres > 0.0).collect();
         let quartile = (known.len() as f64 * NEAREST_PIXEL_SHARE) as usize;
         (!known.is_empty()).then(|| *known.select_nth_unstable_by(quartile, f64::total_cmp).1)
     }
 }
 
-/// The pixels of the middle half of a span, at least one. `None` where it lies outside or is none.
+/// The pixels of the middle half of a span, at least one. The span's two bounds are shares of the picture's side and are
+/// cut to the picture. `None` where they are in the wrong order or no numbers, or the side has no pixel.
 fn middle_pixels([from, to]: [f64; 2], side_px: u32) -> Option<std::ops::Range<usize>> {
     let (from, to) = (from.clamp(0.0, 1.0), to.clamp(0.0, 1.0));
     let quarter = (to - from) / 4.0;

@@ -4,7 +4,7 @@
 use crate::{ModelError, ObjectId, ObjectLabel, PhraseGrounder, View};
 use serde::{Deserialize, Serialize};
 
-/// The most boxes that a detector gives for a phrase in a view.
+/// The most boxes that a detector gives for a phrase in a view; it leaves out those with lower scores.
 pub const MOST_BOXES: usize = 100;
 
 /// The least share of its union with an object's outline that a box must cover to be a box of that object.
@@ -34,14 +34,14 @@ impl DetectedBox {
 /// Leaves out every detection that overlaps a better one by more than `most_overlap` (0 to 1). The rest come in their
 /// order, which must be the best first.
 pub fn without_overlaps(
-    found: impl IntoIterator<Item = DetectedBox>,
+    detections: impl IntoIterator<Item = DetectedBox>,
     most_overlap: f64,
 ) -> impl Iterator<Item = DetectedBox> {
     let mut kept: Vec<DetectedBox> = Vec::new();
-    found.into_iter().filter(move |found| {
-        let is_apart = kept.iter().all(|better| better.overlap_share(found) <= most_overlap);
+    detections.into_iter().filter(move |detection| {
+        let is_apart = kept.iter().all(|better| better.overlap_share(detection) <= most_overlap);
         if is_apart {
-            kept.push(*found);
+            kept.push(*detection);
         }
         is_apart
     })
@@ -118,13 +118,13 @@ impl<D: ObjectDetector> PhraseGrounder for DetectorGrounder<D> {
     }
 
     fn score_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
-        let best = |found: &Vec<DetectedBox>| found.iter().map(|found| found.score).fold(0.0, f32::max);
-        let together = if self.detector.scoring().phrases_meet { 1 } else { phrases.len().max(1) };
+        let best_score = |boxes: &Vec<DetectedBox>| boxes.iter().map(|found| found.score).fold(0.0, f32::max);
+        let batch_size = if self.detector.scoring().phrases_meet { 1 } else { phrases.len().max(1) };
         let mut scores: Vec<Result<Vec<f32>, ModelError>> = views.iter().map(|_| Ok(Vec::new())).collect();
-        for asked in phrases.chunks(together) {
-            for (scores, found) in scores.iter_mut().zip(self.detector.detect_phrases(views, asked)) {
-                match (scores.as_mut(), found) {
-                    (Ok(scores), Ok(found)) => scores.extend(found.iter().map(best)),
+        for batch in phrases.chunks(batch_size) {
+            for (scores, detected) in scores.iter_mut().zip(self.detector.detect_phrases(views, batch)) {
+                match (scores.as_mut(), detected) {
+                    (Ok(scores), Ok(detected)) => scores.extend(detected.iter().map(best_score)),
                     (Ok(_), Err(error)) => *scores = Err(error),
                     (Err(_), _) => {}
                 }
@@ -137,25 +137,25 @@ impl<D: ObjectDetector> PhraseGrounder for DetectorGrounder<D> {
     /// objects.
     fn point_to_object(&self, views: &[&View], phrase: &str) -> Result<Option<ObjectId>, ModelError> {
         let mut best: Option<(DetectedBox, &View)> = None;
-        for (view, found) in views.iter().zip(self.detector.detect_phrases(views, &[phrase])) {
-            for found in found?.into_iter().flatten() {
-                if best.is_none_or(|(best, _)| found.score > best.score) {
-                    best = Some((found, view));
+        for (view, detected) in views.iter().zip(self.detector.detect_phrases(views, &[phrase])) {
+            for detection in detected?.into_iter().flatten() {
+                if best.is_none_or(|(best, _)| detection.score > best.score) {
+                    best = Some((detection, view));
                 }
             }
         }
-        Ok(best.and_then(|(found, view)| best_outlined_object(view, found)))
+        Ok(best.and_then(|(detection, view)| best_outlined_object(view, detection)))
     }
 }
 
-/// The object of a view that a box covers best, judged by the outlines.
-fn best_outlined_object(view: &View, found: DetectedBox) -> Option<ObjectId> {
-    let share = |label: &ObjectLabel| {
-        label
-            .box_px
-            .map_or(0.0, |[x, y, width, height]| box_overlap_share(found.box_edges(), [x, y, x + width, y + height]))
+/// The object of a view that a box covers best, judged by the outlines; `None` below [`LEAST_OVERLAP`].
+fn best_outlined_object(view: &View, detection: DetectedBox) -> Option<ObjectId> {
+    let overlap = |label: &ObjectLabel| {
+        label.box_px.map_or(0.0, |[x, y, width, height]| {
+            box_overlap_share(detection.box_edges(), [x, y, x + width, y + height])
+        })
     };
-    let best = view.outlined_labels().map(|label| (share(label), label)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let best = view.outlined_labels().map(|label| (overlap(label), label)).max_by(|a, b| a.0.total_cmp(&b.0))?;
     (best.0 >= LEAST_OVERLAP).then(|| best.1.object.clone())
 }
 

@@ -95,18 +95,18 @@ pub struct TextDoubt {
     pub alternatives: Vec<DoubtAlternative>,
 }
 
-/// Most alternatives of a doubt.
+/// Most alternatives of a doubt; the best are kept.
 pub const MOST_ALTERNATIVES: usize = 3;
-/// Most doubts of a text.
+/// Most doubts of a text; the strongest are kept.
 pub const MOST_DOUBTS: usize = 40;
-/// The longest words of an alternative, bytes.
+/// The longest words of an alternative, bytes. An alternative with longer words is dropped.
 const LONGEST_WORDS: usize = 200;
 
 impl TextDoubt {
     /// The gain of its best alternative, natural logs; 0 where that is not known.
     #[must_use]
     pub fn best_gain(&self) -> f64 {
-        self.alternatives.iter().filter_map(|one| one.gain).fold(0.0, f64::max)
+        self.alternatives.iter().filter_map(|alternative| alternative.gain).fold(0.0, f64::max)
     }
 
     /// Takes over the alternatives of a weaker doubt that lies within this one. They are extended to the words of this
@@ -158,18 +158,19 @@ pub fn split_at_doubts<'a, D>(
     span: impl Fn(&D) -> [usize; 2],
 ) -> Vec<(&'a str, Option<&'a D>)> {
     let mut parts = Vec::new();
-    let mut done = 0;
+    // The byte up to which the text is cut.
+    let mut cut_to = 0;
     for doubt in doubts {
         let [from, to] = span(doubt);
-        let (Some(before), Some(words)) = (text.get(done..from), text.get(from..to)) else { continue };
+        let (Some(before), Some(words)) = (text.get(cut_to..from), text.get(from..to)) else { continue };
         if words.is_empty() {
             continue;
         }
         parts.extend((!before.is_empty()).then_some((before, None)));
         parts.push((words, Some(doubt)));
-        done = to;
+        cut_to = to;
     }
-    let rest = &text[done..];
+    let rest = &text[cut_to..];
     parts.extend((!rest.is_empty()).then_some((rest, None)));
     parts
 }
@@ -193,13 +194,13 @@ fn trim_doubt(text: &str, doubt: TextDoubt) -> Option<TextDoubt> {
 /// Sorts the alternatives of a doubt: first those with an unknown gain, then by gain, the best first. Drops
 /// duplicates, alternatives that repeat the doubted words, and all beyond [`MOST_ALTERNATIVES`].
 fn tidy_alternatives(text: &str, doubt: &mut TextDoubt) {
-    let told = text[doubt.span[0]..doubt.span[1]].to_lowercase();
-    let mut seen: Vec<Option<String>> = vec![Some(told)];
-    let gain = |one: &DoubtAlternative| one.gain.unwrap_or(f64::INFINITY);
+    let doubted_words = text[doubt.span[0]..doubt.span[1]].to_lowercase();
+    let mut seen: Vec<Option<String>> = vec![Some(doubted_words)];
+    let gain = |alternative: &DoubtAlternative| alternative.gain.unwrap_or(f64::INFINITY);
     doubt.alternatives.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
-    doubt.alternatives.retain(|one| {
-        let key = one.words.as_ref().map(|words| words.to_lowercase());
-        let is_fit = one.words.as_ref().is_none_or(|words| !words.trim().is_empty() && words.len() <= LONGEST_WORDS);
+    doubt.alternatives.retain(|DoubtAlternative { words, .. }| {
+        let key = words.as_ref().map(|words| words.to_lowercase());
+        let is_fit = words.as_ref().is_none_or(|words| !words.trim().is_empty() && words.len() <= LONGEST_WORDS);
         let is_new = is_fit && !seen.contains(&key);
         seen.push(key);
         is_new

@@ -19,8 +19,11 @@ pub struct ViewpointGraph {
 #[derive(Debug, Clone)]
 struct ViewpointNode {
     id: ViewpointId,
+    /// The eye, metres, world frame.
     position: DVec3,
+    /// The storey, the lowest being 1.
     level: Option<u32>,
+    /// Height of the floor, metres, world frame.
     floor_m: Option<f64>,
 }
 
@@ -106,7 +109,7 @@ impl ViewpointGraph {
         self.graph.node_count() == 0
     }
 
-    /// Number of separate parts.
+    /// Number of connected parts. No edges lead from one part to another.
     #[must_use]
     pub fn count_components(&self) -> usize {
         connected_components(&self.graph)
@@ -169,15 +172,15 @@ impl ViewpointGraph {
     pub fn shortest_path(&self, start: &ViewpointId, goal: &ViewpointId) -> Result<Option<ViewpointRoute>, GraphError> {
         let (start, goal) = (self.find_node(start)?, self.find_node(goal)?);
         let goal_position = self.graph[goal].position;
-        let left_m = |node: NodeIndex| self.graph[node].position.distance(goal_position);
-        let found = astar(&self.graph, start, |node| node == goal, |edge| *edge.weight(), left_m);
-        Ok(found.map(|(length_m, nodes)| ViewpointRoute {
+        let remaining_m = |node: NodeIndex| self.graph[node].position.distance(goal_position);
+        let shortest = astar(&self.graph, start, |node| node == goal, |edge| *edge.weight(), remaining_m);
+        Ok(shortest.map(|(length_m, nodes)| ViewpointRoute {
             viewpoints: nodes.into_iter().map(|node| self.graph[node].id.clone()).collect(),
             length_m,
         }))
     }
 
-    /// The frames of a path over the given nodes.
+    /// The frames of a path over the given nodes. The first frame looks along `start`, or else along the first hop.
     ///
     /// # Errors
     /// When a node is unknown or two consecutive nodes have no edge (the same node twice is a stay).

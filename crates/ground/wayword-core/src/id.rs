@@ -18,6 +18,7 @@ pub struct InvalidId {
     reason: &'static str,
 }
 
+/// Returns the text if it can be an id. The error quotes no more than its first 40 characters.
 fn validate_id(kind: &'static str, text: String) -> Result<String, InvalidId> {
     let reason = if text.is_empty() {
         "is empty"

@@ -1,4 +1,4 @@
-//! Pixels. Decoding and encoding are not done here.
+//! Images in memory, as pixels. Other crates decode and encode image files.
 
 /// An 8-bit sRGB image.
 #[derive(Clone, PartialEq, Eq)]

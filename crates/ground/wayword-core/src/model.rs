@@ -45,13 +45,14 @@ pub struct ModelRequest {
     pub messages: Vec<ChatMessage>,
     /// How the reply is sampled.
     pub sampling: SamplingOptions,
-    /// Number of this request among equal ones that each need a new answer; 0 for the first.
+    /// Number of this request among equal ones that each need a new answer; 0 for the first. Without it, the ledger would
+    /// answer the second from the first.
     pub replicate: u32,
-    /// The form of the reply, where it is to be JSON. Services that can hold a model to it do.
+    /// The form of the reply, where it is to be JSON. A service that can force replies into a schema does
+    /// so.
     pub schema: Option<ReplySchema>,
     /// The tools that the model may call; empty for none. The prompt has to explain in words how to call them, because
-    /// not
-    /// every service has tool calls.
+    /// not every service has tool calls.
     pub tools: &'static [ModelTool],
 }
 

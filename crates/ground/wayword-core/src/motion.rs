@@ -124,12 +124,12 @@ impl PathMove {
 /// Rises of less than this are unevenness of the floor, metres.
 const FLAT_M: f64 = 0.05;
 
-/// The flight of stairs that begins with a move: its last move, and whether it goes up or down. Rises in one direction
-/// add up.
+/// The flight of stairs that begins with the move `first`: its last move, and whether it goes up or down. The rises of
+/// consecutive moves in one direction add up; `None` where they come to less than [`CLIMB_M`].
 #[must_use]
 pub fn flight_from(moves: &[PathMove], first: usize) -> Option<(usize, ClimbDirection)> {
-    let way = moves.get(first)?.rise_m.signum();
-    let last = (first..moves.len()).take_while(|at| moves[*at].rise_m * way > FLAT_M).last()?;
+    let direction = moves.get(first)?.rise_m.signum();
+    let last = (first..moves.len()).take_while(|at| moves[*at].rise_m * direction > FLAT_M).last()?;
     let total_m: f64 = moves[first..=last].iter().map(|step| step.rise_m).sum();
     match ClimbDirection::from_rise(total_m) {
         ClimbDirection::Level => None,

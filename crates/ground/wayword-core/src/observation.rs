@@ -31,6 +31,8 @@ impl CaptionedView {
     pub fn side_of(&self, sighting: &ObjectSighting, heading: Heading) -> Option<Side> {
         let place = sighting.place?;
         let off_rad = heading.turn_to(self.gaze.heading);
+        // The view looks ahead (within 0.1 rad). A thing in its left third is called left, although it is less than 45
+        // degrees off.
         if off_rad.abs() < 0.1 {
             return Some(place.to_side());
         }

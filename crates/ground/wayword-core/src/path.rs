@@ -47,9 +47,8 @@ pub struct PathTarget {
     /// Whether something of the same name is visible at the last frame too.
     #[serde(default)]
     pub has_namesake: bool,
-    /// Ways to describe it to a person who knows the whole building, best first: the shortest that leave no other
-    /// object,
-    /// or else those that leave fewest. Empty where the platform knows no rooms or objects of the building.
+    /// Ways to describe it to a person who knows the whole building, best first: the shortest that fit no other object,
+    /// or else those that fit the fewest. Empty where the platform knows no rooms or objects of the building.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub descriptions: Vec<ObjectDescription>,
     /// Whether it certainly hangs on a wall.
@@ -70,7 +69,7 @@ fn is_zero(count: &usize) -> bool {
 pub struct ObjectDescription {
     /// The facts; all are true of the object.
     pub by: Vec<ObjectDistinction>,
-    /// How many objects of the building fit all of that, the object itself counted.
+    /// How many objects of the building fit all these facts, the object itself counted.
     pub leaves: usize,
 }
 
@@ -124,7 +123,7 @@ pub enum ObjectDistinction {
     InRow {
         /// Counted from 1.
         place: usize,
-        /// How many there are.
+        /// How many things the row has.
         of: usize,
         /// From the left, or from the right.
         from: Side,
@@ -258,14 +257,14 @@ impl Path {
     pub fn frames_along(stops: Vec<PathStop>, start_heading: Option<Heading>) -> Vec<Frame> {
         let first_hop = stops.windows(2).find_map(|pair| Heading::towards(pair[0].position, pair[1].position));
         let mut heading = start_heading.or(first_hop).unwrap_or(Heading::NORTH);
-        let mut before: Option<DVec3> = None;
+        let mut last_position: Option<DVec3> = None;
         stops
             .into_iter()
             .map(|stop| {
-                if let Some(hop) = before.and_then(|from| Heading::towards(from, stop.position)) {
+                if let Some(hop) = last_position.and_then(|from| Heading::towards(from, stop.position)) {
                     heading = hop;
                 }
-                before = Some(stop.position);
+                last_position = Some(stop.position);
                 Frame {
                     pose: Pose::looking_level(stop.position, heading),
                     viewpoint: stop.viewpoint,

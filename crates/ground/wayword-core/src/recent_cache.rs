@@ -1,4 +1,4 @@
-//! A small cache that drops the value which was not used for the longest time.
+//! A small cache. When it is full, it drops the value that was used least recently.
 
 use hashlink::LruCache;
 use std::{
@@ -8,7 +8,8 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
-/// A cache of a few values by key. The value that was not asked for longest is dropped first.
+/// A cache of a few values by key, for several threads. When it is full, the value that was asked for least recently is
+/// dropped.
 pub struct RecentCache<K, V> {
     shelf: Mutex<RecentEntries<K, V>>,
     /// The lock of the thread that makes a value, where one is made at a time.
@@ -22,7 +23,7 @@ struct RecentEntries<K, V> {
 }
 
 impl<K: Clone + Eq + Hash, V> RecentCache<K, V> {
-    /// An empty cache. Values of different keys are made at the same time.
+    /// An empty cache for at most `capacity` values. Values of different keys may be made at the same time.
     #[must_use]
     pub fn new(capacity: usize) -> Self {
         let shelf = RecentEntries { kept: LruCache::new(capacity), making: HashMap::new() };
@@ -52,7 +53,7 @@ impl<K: Clone + Eq + Hash, V> RecentCache<K, V> {
     /// # Errors
     /// When it cannot be made. Then the cache stays as it is, and the next caller tries again.
     pub fn get_or_make<E>(&self, key: K, make: impl FnOnce() -> Result<V, E>) -> Result<Arc<V>, E> {
-        let turn = {
+        let maker_lock = {
             let mut shelf = self.lock_entries();
             if let Some(value) = shelf.kept.get(&key) {
                 return Ok(Arc::clone(value));
@@ -62,7 +63,7 @@ impl<K: Clone + Eq + Hash, V> RecentCache<K, V> {
                 None => Arc::clone(shelf.making.entry(key.clone()).or_default()),
             }
         };
-        let _turn = turn.lock().unwrap_or_else(PoisonError::into_inner);
+        let _making = maker_lock.lock().unwrap_or_else(PoisonError::into_inner);
         // Another thread may have made it in the meantime.
         if let Some(value) = self.get(&key) {
             return Ok(value);
@@ -70,8 +71,8 @@ impl<K: Clone + Eq + Hash, V> RecentCache<K, V> {
         let made = make();
         let mut shelf = self.lock_entries();
         // Where it failed and threads wait for this lock, one of them tries next. The entry stays, so that later
-        // callers queue behind them.
-        if made.is_ok() || Arc::strong_count(&turn) <= 2 {
+        // callers queue behind them. Without waiting threads there are two pointers to the lock: ours and the entry's.
+        if made.is_ok() || Arc::strong_count(&maker_lock) <= 2 {
             shelf.making.remove(&key);
         }
         Ok(shelf.put_entry(key, made?))

@@ -12,12 +12,14 @@ pub fn seeded_rng(seed: u64, purpose: &[&str]) -> ChaCha8Rng {
 /// The seed for one purpose: FNV-1a over the run's seed and the purpose's words.
 #[must_use]
 pub fn derive_seed(seed: u64, purpose: &[&str]) -> u64 {
+    const FNV_OFFSET_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
     const FNV_PRIME: u64 = 0x0000_0100_0000_01b3;
+    // A byte that no UTF-8 has ends each word, so that ["ab", "c"] and ["a", "bc"] differ.
     let words = purpose.iter().flat_map(|word| word.bytes().chain([0xff]));
     seed.to_le_bytes()
         .into_iter()
         .chain(words)
-        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(FNV_PRIME))
+        .fold(FNV_OFFSET_BASIS, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(FNV_PRIME))
 }
 
 #[cfg(test)]

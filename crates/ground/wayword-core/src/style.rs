@@ -34,6 +34,7 @@ pub struct WordingPolicy {
 }
 
 impl WordingPolicy {
+    /// Whether it leaves every choice to the program.
     fn is_open(&self) -> bool {
         *self == Self::default()
     }
@@ -47,7 +48,7 @@ pub struct StyleConstraints {
     pub min_sentences: Option<usize>,
     /// Greatest number of sentences.
     pub max_sentences: Option<usize>,
-    /// Fewer words than this.
+    /// A bound on the number of words: the text has fewer.
     pub fewer_words_than: Option<usize>,
     /// The text ends in a task on an object of the final viewpoint.
     pub ends_in_task: bool,

@@ -1,16 +1,19 @@
-//! A reader that bounds the texts and numbers of JSON while it is read. Without it, `serde_json` would take up to
-//! three times the memory of a long text before returning it.
+//! A reader between a JSON file and its parser. It stops the parser at a text or number that is too long. Without it,
+//! `serde_json` would take up to three times the memory of a long text before returning it.
 
 use crate::limits;
 use std::io::{self, Read};
 
-/// Reads JSON, and fails where a text or number in it is longer than any dataset's.
+/// Passes JSON on, and fails where a text or number in it is longer than [`limits::TOKEN_BYTES`].
 pub(crate) struct BoundedTokenReader<R> {
     inner: R,
     /// Bytes of the text or number that is being read.
     length: usize,
+    /// Whether the next byte is within quotes.
     in_text: bool,
+    /// Whether the byte before was a backslash, so that a quote does not end the text.
     is_escaped: bool,
+    /// Whether a text or number was too long: the next read fails.
     is_over: bool,
 }
 
@@ -39,7 +42,7 @@ impl<R: Read> Read for BoundedTokenReader<R> {
             return Err(io::Error::other("a text or number in it is longer than 1 MiB"));
         }
         let count = self.inner.read(buffer)?;
-        for (at, byte) in buffer[..count].iter().enumerate() {
+        for (at, byte) in buffer.iter().take(count).enumerate() {
             if !self.accept_byte(*byte) {
                 self.is_over = true;
                 // The bytes before are passed on, so that the error can name the item.

@@ -80,7 +80,7 @@ impl Episode {
     /// unknown, it has neither viewpoints (the frames' names are those of pictures) nor a heading.
     #[must_use]
     pub fn from_path(path: &Path, instructions: Vec<String>) -> Self {
-        let frames = if path.motion.is_known() { &path.frames[..] } else { &[] };
+        let frames = if path.motion.is_known() { path.frames.as_slice() } else { &[] };
         let viewpoints = frames.iter().map(|frame| frame.viewpoint.clone()).collect::<Option<Vec<_>>>();
         Self {
             viewpoints: viewpoints.unwrap_or_default(),
@@ -110,7 +110,7 @@ impl Episode {
     /// Length over the floor positions, metres; `None` where they are not known.
     #[must_use]
     pub fn floor_length_m(&self) -> Option<f64> {
-        let hops = self.floor_positions.windows(2).map(|pair| pair[0].distance(pair[1]));
+        let hops = self.floor_positions.array_windows().map(|[from, to]| from.distance(*to));
         (!self.floor_positions.is_empty()).then(|| hops.sum())
     }
 

@@ -74,6 +74,7 @@ fn io_advice(error: &std::io::Error) -> &'static str {
     if error.kind() == std::io::ErrorKind::NotFound { "; check the spelling of the path" } else { "" }
 }
 
+/// The item's id in brackets, for a message; nothing where it is not known.
 struct IdSuffix<'a>(Option<&'a str>);
 
 impl fmt::Display for IdSuffix<'_> {

@@ -89,10 +89,10 @@ pub fn read_any_format(file: &Path) -> Result<Vec<Episode>, FormatError> {
 /// When it cannot be read, or its beginning is none of these.
 pub fn detect_format(file: &Path) -> Result<DatasetFormat, FormatError> {
     let mut parser = input::json_parser(file)?;
-    let told = RefCell::new(None);
+    let detected = RefCell::new(None);
     // Stopping early is an error as well, so only the format that was found before it counts.
-    let read = (&mut parser).deserialize_any(BeginningVisitor(&told));
-    let format = told.take();
+    let read = (&mut parser).deserialize_any(BeginningVisitor(&detected));
+    let format = detected.take();
     format.ok_or_else(|| {
         let why = match read {
             Ok(()) => "it is neither a list of objects nor an object with a field of a known format".to_owned(),
@@ -108,7 +108,8 @@ pub fn detect_format(file: &Path) -> Result<DatasetFormat, FormatError> {
     })
 }
 
-/// Looks at the first item of a list, or at an object's keys up to the first that decides.
+/// Looks at the first item of a list, or at an object's keys up to the first that decides, and puts the format into its
+/// field.
 struct BeginningVisitor<'a>(&'a RefCell<Option<DatasetFormat>>);
 
 impl<'de> Visitor<'de> for BeginningVisitor<'_> {
@@ -143,6 +144,7 @@ impl<'de> Visitor<'de> for BeginningVisitor<'_> {
     }
 }
 
+/// Whether an item of a list is REVERIE's and not R2R's.
 fn is_reverie(item: &Map<String, Value>) -> bool {
     let name = |field: &str| item.get(field).and_then(crate::item::name_of);
     let begins = |id: String, path: String| id == path || id.starts_with(&format!("{path}_"));

@@ -34,10 +34,11 @@ pub fn heading_from_habitat(rotation: [f64; 4]) -> Option<Heading> {
     if !(0.99..1.01).contains(&length) {
         return None;
     }
+    // The axis -z after the rotation.
     let forward = DVec3::new(-2.0 * (x * z + w * y), 2.0 * (w * x - y * z), 2.0 * (x * x + y * y) - length * length);
     let ahead = wayword_from_habitat(forward);
-    let level = (ahead.x * ahead.x + ahead.y * ahead.y).sqrt() > 1e-6;
-    if level { Heading::new(libm::atan2(ahead.x, ahead.y)).ok() } else { None }
+    let is_horizontal = (ahead.x * ahead.x + ahead.y * ahead.y).sqrt() > 1e-6;
+    if is_horizontal { Heading::new(libm::atan2(ahead.x, ahead.y)).ok() } else { None }
 }
 
 #[cfg(test)]

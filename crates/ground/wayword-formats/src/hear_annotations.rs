@@ -1,4 +1,5 @@
-//! Reads HEAR's annotations: texts about paths, with spans that people called right or wrong.
+//! Reads the annotations of HEAR (Hallucination Detection and Remedy): texts about paths, with spans that people called
+//! right or wrong.
 //!
 //! The file is one JSON object of items by name. Fields: those of R2R's path (`scan`, `path`, `heading`),
 //! `original_instr` (the text), `numbered_instruction` (its tokens, each followed by its number from 0: `turn (0) left
@@ -42,9 +43,8 @@ pub struct LabelledSpan {
 ///
 /// # Errors
 /// When the file cannot be read, is not a JSON object of items, contains no text, or an item is refused: a field is
-/// missing or
-/// wrong, the tokens are not those of the text, a key names no tokens, or a label is none of 1, 0 and -1. The error names
-/// the text and the key.
+/// missing or wrong, the tokens are not those of the text, a key names no tokens, or a label is none of 1, 0 and -1. The
+/// error names the text and the key.
 pub fn read_hear_file(file: &Path) -> Result<Vec<LabelledText>, FormatError> {
     let texts = read_object(file)?;
     if texts.is_empty() {
@@ -72,6 +72,7 @@ fn read_object(file: &Path) -> Result<Map<String, Value>, FormatError> {
     }
 }
 
+/// The text of an item, with its path and its labelled spans.
 fn labelled_text(mut item: DatasetItem<'_>, name: String) -> Result<LabelledText, FormatError> {
     item.set_id(&name.chars().take(80).collect::<String>());
     let name = item.checked_name("its name", &Value::String(name))?;
@@ -91,7 +92,7 @@ fn labelled_text(mut item: DatasetItem<'_>, name: String) -> Result<LabelledText
     };
     let corrections = take_corrections(&mut item)?;
     let spans = labels.into_iter().map(|(key, label)| {
-        let corrections = corrections.get(&key).map(|told| told_instead(&item, &key, told)).transpose()?;
+        let corrections = corrections.get(&key).map(|words| told_instead(&item, &key, words)).transpose()?;
         labelled_span(&item, &tokens, (key, &label), corrections.unwrap_or_default())
     });
     let spans = spans.collect::<Result<Vec<_>, _>>()?;
@@ -106,7 +107,7 @@ fn token_spans(item: &mut DatasetItem<'_>, text: &str) -> Result<Vec<[usize; 2]>
     let numbered = item.checked_instruction(FIELD, &numbered)?;
     let mut parts = numbered.split_whitespace();
     let mut tokens: Vec<[usize; 2]> = Vec::new();
-    let mut at = 0;
+    let mut rest = text;
     while let Some(word) = parts.next() {
         let number = tokens.len();
         if parts.next() != Some(format!("({number})").as_str()) {
@@ -116,40 +117,42 @@ fn token_spans(item: &mut DatasetItem<'_>, text: &str) -> Result<Vec<[usize; 2]>
                 HINT,
             ));
         }
-        let from = at + (text[at..].len() - text[at..].trim_start().len());
-        if !text[from..].starts_with(word) {
+        let Some(after) = rest.trim_start().strip_prefix(word) else {
             let problem = format!("token {number} ({word:?}) is not the next word of original_instr");
             return Err(item.wrong_field(FIELD, problem, HINT));
-        }
-        at = from + word.len();
-        tokens.push([from, at]);
+        };
+        let end = text.len() - after.len();
+        tokens.push([end - word.len(), end]);
+        rest = after;
     }
-    if !text[at..].trim().is_empty() {
+    if !rest.trim().is_empty() {
+        let at = text.len() - rest.len();
         return Err(item.wrong_field(FIELD, format!("it ends before byte {at} of original_instr"), HINT));
     }
     Ok(tokens)
 }
 
-/// The corrections by keys.
+/// The words that people would use instead, by the keys of `id2label`.
 fn take_corrections(item: &mut DatasetItem<'_>) -> Result<Map<String, Value>, FormatError> {
     const FIELD: &str = "id2gold_alternative";
     match item.take_optional(FIELD) {
         None => Ok(Map::new()),
-        Some(Value::Object(told)) => Ok(told),
+        Some(Value::Object(corrections)) => Ok(corrections),
         Some(other) => Err(item.expected_kind(FIELD, "an object", &other, "give words for each range of tokens")),
     }
 }
 
-/// The alternatives of one correction, which are separated by slashes.
-fn told_instead(item: &DatasetItem<'_>, key: &str, told: &Value) -> Result<Vec<Option<String>>, FormatError> {
-    let Value::String(told) = told else {
+/// The alternatives of one correction, which are separated by slashes; `None` for `REMOVE`.
+fn told_instead(item: &DatasetItem<'_>, key: &str, correction: &Value) -> Result<Vec<Option<String>>, FormatError> {
+    let Value::String(alternatives) = correction else {
         let field = format!("id2gold_alternative.{key:.40}");
-        return Err(item.expected_kind(&field, "a string", told, "give words, or REMOVE"));
+        return Err(item.expected_kind(&field, "a string", correction, "give words, or REMOVE"));
     };
-    let words = told.split('/').map(str::trim).filter(|words| !words.is_empty());
+    let words = alternatives.split('/').map(str::trim).filter(|words| !words.is_empty());
     Ok(words.map(|words| (words != "REMOVE").then(|| words.to_owned())).collect())
 }
 
+/// The span that a key of `id2label` names, with its label.
 fn labelled_span(
     item: &DatasetItem<'_>,
     tokens: &[[usize; 2]],
@@ -167,18 +170,18 @@ fn labelled_span(
         let problem = "the key is neither the number of a token nor numbers that ascend, joined by hyphens";
         return Err(item.wrong_field(&field, problem, "write 5 for one token, 5-8 for several"));
     };
-    let (Some(from), Some(to)) = (tokens.get(first), tokens.get(last)) else {
+    let (Some([from, _]), Some([_, to])) = (tokens.get(first), tokens.get(last)) else {
         let problem = format!("it names token {last}, but the text has {}", tokens.len());
         return Err(item.wrong_field(&field, problem, "count the tokens of numbered_instruction from 0"));
     };
-    Ok(LabelledSpan { key, span: [from[0], to[1]], is_right, corrections })
+    Ok(LabelledSpan { key, span: [*from, *to], is_right, corrections })
 }
 
-/// The first and the last token that a key names.
+/// The first and the last token that a key names: 5 and 8 for "5-8". `None` where it is not such a key.
 fn key_ends(key: &str) -> Option<(usize, usize)> {
     let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
     let number = |part: &str| part.parse::<usize>().ok().filter(|_| is_number(part));
     let numbers = key.split('-').map(number).collect::<Option<Vec<_>>>()?;
-    let ascend = numbers.windows(2).all(|pair| pair[0] < pair[1]);
+    let ascend = numbers.is_sorted_by(|before, after| before < after);
     Some((*numbers.first()?, *numbers.last()?)).filter(|_| ascend)
 }

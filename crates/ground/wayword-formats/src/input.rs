@@ -22,7 +22,7 @@ const SPLIT_HINT: &str = "split it into parts";
 
 /// Most bytes of a file that are read at a time.
 const BUFFER_BYTES: usize = 1 << 16;
-/// Most other fields in an object that has the list of items in a field.
+/// Most fields of a file's outer object beside the one with the list of items; a file with more is refused.
 const FIELDS_AROUND: usize = 20;
 
 /// Opens a file. It recognises gzip by the first bytes, not by the name, and skips the byte order mark that Windows
@@ -32,8 +32,8 @@ pub(crate) fn open_input(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
     // Opening a pipe waits until something writes into it, so this is checked first.
     let meta = fs::metadata(file).map_err(failed)?;
     if !meta.is_file() {
-        let what = if meta.is_dir() { "a folder" } else { "a pipe or a device" };
-        return Err(FormatError::for_document(file, format!("it is not a file but {what}"), "give a dataset file"));
+        let kind = if meta.is_dir() { "a folder" } else { "a pipe or a device" };
+        return Err(FormatError::for_document(file, format!("it is not a file but {kind}"), "give a dataset file"));
     }
     let opened = File::open(file).map_err(failed)?;
     if meta.len() > limits::FILE_BYTES {
@@ -48,7 +48,7 @@ pub(crate) fn open_input(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
     without_mark(file, input)
 }
 
-/// The text without its byte order mark.
+/// The input without the byte order mark of UTF-8, its first three bytes where it has one. UTF-16 is refused.
 fn without_mark(file: &Path, mut input: impl BufRead + 'static) -> Result<Box<dyn BufRead>, FormatError> {
     let mut start = Vec::new();
     input.by_ref().take(3).read_to_end(&mut start).map_err(|source| FormatError::from_io(file, "read", source))?;
@@ -69,9 +69,10 @@ pub(crate) fn json_parser(file: &Path) -> Result<BoundedJsonParser, FormatError>
     Ok(serde_json::Deserializer::from_reader(BufReader::with_capacity(BUFFER_BYTES, tokens)))
 }
 
-/// A reader that fails, rather than ends, after `left` bytes.
+/// A reader that fails, rather than ends, at a limit of bytes.
 struct BoundedReader<R> {
     inner: R,
+    /// Bytes that may still be read.
     left: u64,
 }
 
@@ -164,6 +165,7 @@ pub(crate) fn each_line(
     Ok(())
 }
 
+/// The item of a line of JSON Lines.
 fn line_item<'a>(file: &'a Path, number: usize, line: &[u8]) -> Result<DatasetItem<'a>, FormatError> {
     let field = RefCell::default();
     let mut parser = serde_json::Deserializer::from_slice(line);
@@ -178,9 +180,10 @@ fn line_item<'a>(file: &'a Path, number: usize, line: &[u8]) -> Result<DatasetIt
 /// `serde_json`'s message without the line and column at its end.
 pub(crate) fn bare_message(error: &serde_json::Error) -> String {
     let text = error.to_string();
-    text.rfind(" at line ").map_or(text.clone(), |end| text[..end].to_owned())
+    text.rsplit_once(" at line ").map_or(text.as_str(), |(message, _)| message).to_owned()
 }
 
+/// The error for wrong JSON in an item; `field` is empty where the mistake is not within a field.
 fn broken_json(file: &Path, place: ItemPlace, field: String, problem: String) -> FormatError {
     if field.is_empty() {
         return FormatError::for_document(file, format!("{place}: {problem}"), NOT_JSON);
@@ -199,9 +202,13 @@ pub(crate) struct ItemList<'a> {
 }
 
 struct ListProgress<'a> {
+    /// Receives each item.
     take: ItemCallback<'a>,
+    /// Number of the items so far.
     index: usize,
+    /// Whether an item is being read, so that an error of the parser is about that item.
     inside: bool,
+    /// Why the last item was refused. The parser carries only its own errors.
     refused: Option<FormatError>,
 }
 
@@ -227,6 +234,7 @@ impl<'a> ItemList<'a> {
         }
     }
 
+    /// Passes an item on, unless the file has too many.
     fn hand_on(&self, value: Value) -> Result<(), FormatError> {
         let progress = &mut *self.progress.borrow_mut();
         if progress.index >= limits::MAX_ITEMS {

@@ -43,15 +43,17 @@ impl<'a> DatasetItem<'a> {
         value.ok_or_else(|| self.wrong_field(field, "it is missing", "add it, because the format requires it"))
     }
 
-    /// A field, without taking it.
+    /// Looks at a field without taking it.
     pub(crate) fn peek_field(&self, field: &str) -> Option<&Value> {
         self.fields.get(field)
     }
 
+    /// Takes a field that may be missing.
     pub(crate) fn take_optional(&mut self, field: &str) -> Option<Value> {
         self.fields.shift_remove(field)
     }
 
+    /// The error for a field, with the item's file, place and id.
     pub(crate) fn wrong_field(&self, field: &str, problem: impl Into<String>, hint: &'static str) -> FormatError {
         Box::new(WrongItem {
             file: self.file.to_owned(),
@@ -64,6 +66,7 @@ impl<'a> DatasetItem<'a> {
         .into()
     }
 
+    /// The error for a field with a value of a wrong kind: "expected `what`, found ...".
     pub(crate) fn expected_kind(&self, field: &str, what: &str, found: &Value, hint: &'static str) -> FormatError {
         self.wrong_field(field, format!("expected {what}, found {}", describe_value(found)), hint)
     }
@@ -124,15 +127,16 @@ impl<'a> DatasetItem<'a> {
             .map_err(|error| self.wrong_field(field, error.to_string(), "docs/FORMATS.md says what it should be"))
     }
 
+    /// A list of at most `max_entries`.
     pub(crate) fn checked_list<'v>(
         &self,
         field: &str,
         value: &'v Value,
-        most: usize,
+        max_entries: usize,
     ) -> Result<&'v [Value], FormatError> {
         let list = value.as_array().ok_or_else(|| self.expected_kind(field, "a list", value, "put it in brackets"))?;
-        if list.len() > most {
-            let problem = format!("it has {} entries, more than {most}", list.len());
+        if list.len() > max_entries {
+            let problem = format!("it has {} entries, more than {max_entries}", list.len());
             return Err(self.wrong_field(field, problem, "split it: no known dataset has that many"));
         }
         Ok(list)
@@ -179,7 +183,7 @@ pub(crate) fn name_of(value: &Value) -> Option<String> {
     }
 }
 
-/// A name as datasets write it: as a number where it is one.
+/// A name as datasets write it: `7` for "7", and a text for any other name ("007", "house2").
 pub(crate) fn value_of(name: &str) -> Value {
     match name.parse::<u64>() {
         Ok(number) if number.to_string() == name => number.into(),
@@ -187,7 +191,7 @@ pub(crate) fn value_of(name: &str) -> Value {
     }
 }
 
-/// A value in short, for an error.
+/// A value in short, for an error: texts are cut at 40 characters.
 fn describe_value(value: &Value) -> String {
     match value {
         Value::Array(list) => format!("a list of {}", list.len()),

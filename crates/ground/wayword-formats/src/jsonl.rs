@@ -88,17 +88,18 @@ pub fn read_records(file: &FilePath) -> Result<Vec<InstructionRecord>, FormatErr
 /// The same as for [`read_records`], for all files together.
 pub fn merge_records<F: AsRef<FilePath>>(files: &[F]) -> Result<Vec<InstructionRecord>, FormatError> {
     let mut records: Vec<InstructionRecord> = Vec::new();
-    let mut seen = DatasetMembers::default();
+    let mut members = DatasetMembers::default();
     let mut tally = ReadTally::default();
     for file in files {
         input::each_line(file.as_ref(), |mut item| {
             let record = take_record(&mut item)?;
-            seen.check_record(&records, &record)
+            members
+                .check_record(&records, &record)
                 .map_err(|clash| item.wrong_field(clash.field, clash.problem, clash.hint))?;
-            seen.note_record(&record, records.len());
+            members.note_record(&record, records.len());
             let instruction = &record.instruction;
-            let kept = record.path.frames.len() + instruction.mentions.len() + instruction.findings.len();
-            records.push(InstructionRecord { extra: tally.take_rest(item, kept)?, ..record });
+            let values = record.path.frames.len() + instruction.mentions.len() + instruction.findings.len();
+            records.push(InstructionRecord { extra: tally.take_rest(item, values)?, ..record });
             Ok(())
         })?;
     }
@@ -111,11 +112,12 @@ pub fn merge_records<F: AsRef<FilePath>>(files: &[F]) -> Result<Vec<InstructionR
 /// When an instruction is given twice, two paths of a platform have the same id, a scene is in both splits, or the file
 /// cannot be written.
 pub fn write_records(file: &FilePath, records: &[InstructionRecord]) -> Result<(), FormatError> {
-    let mut seen = DatasetMembers::default();
+    let mut members = DatasetMembers::default();
     for (index, record) in records.iter().enumerate() {
-        seen.check_record(records, record)
+        members
+            .check_record(records, record)
             .map_err(|clash| FormatError::for_document(file, clash.problem, clash.hint))?;
-        seen.note_record(record, index);
+        members.note_record(record, index);
     }
     output::write_file(file, |out| output::write_lines(out, records))
 }
@@ -132,7 +134,9 @@ pub fn episodes_from_records(records: &[InstructionRecord]) -> Vec<Episode> {
             episodes.push(Episode { split, path_id, ..Episode::from_path(&record.path, Vec::new()) });
             episodes.len() - 1
         });
-        episodes[place].instructions.push(record.instruction.text.clone());
+        if let Some(episode) = episodes.get_mut(place) {
+            episode.instructions.push(record.instruction.text.clone());
+        }
     }
     episodes
 }
@@ -140,9 +144,10 @@ pub fn episodes_from_records(records: &[InstructionRecord]) -> Vec<Episode> {
 fn take_record(item: &mut DatasetItem<'_>) -> Result<InstructionRecord, FormatError> {
     let format = item.take_field("format")?;
     if item.checked_text("format", &format)? != RECORD_FORMAT {
-        let by = item.peek_field("provenance").and_then(|provenance| provenance.get("wayword")).and_then(Value::as_str);
-        let by = by.map_or_else(String::new, |by| format!(" by version {by:.20?} of Wayword"));
-        let problem = format!("expected {RECORD_FORMAT:?}, found {format}{by}");
+        let provenance = item.peek_field("provenance");
+        let version = provenance.and_then(|provenance| provenance.get("wayword")).and_then(Value::as_str);
+        let writer = version.map_or_else(String::new, |version| format!(" by version {version:.20?} of Wayword"));
+        let problem = format!("expected {RECORD_FORMAT:?}, found {format}{writer}");
         return Err(item.wrong_field("format", problem, "read it with the version of Wayword that wrote it"));
     }
     let path = take_path(item)?;
@@ -184,7 +189,7 @@ fn take_instruction(item: &mut DatasetItem<'_>, frames: usize) -> Result<Instruc
         ambiguity: item.take_optional("ambiguity").map(|value| item.parse_value("ambiguity", value)).transpose()?,
         provenance: take_parsed(item, "provenance")?,
     };
-    let fits = |span: [usize; 2]| instruction.text.get(span[0]..span[1]).is_some();
+    let fits = |[from, to]: [usize; 2]| instruction.text.get(from..to).is_some();
     let (mentions, findings) = (&instruction.mentions, &instruction.findings);
     if let Some(index) = mentions.iter().position(|mention| !fits(mention.span) || mention.frame >= frames) {
         let field = format!("mentions[{index}]");
@@ -206,11 +211,15 @@ fn take_parsed<T: DeserializeOwned>(item: &mut DatasetItem<'_>, field: &str) -> 
 /// The dataset's records so far, to find those that cannot be in it together.
 #[derive(Default)]
 struct DatasetMembers {
+    /// By platform and path, the number of the first record of the path.
     paths: BTreeMap<(String, String), usize>,
+    /// Platform, path, style and words of every instruction.
     texts: BTreeSet<(String, String, String, String)>,
+    /// By platform and scene, the split that its records have.
     splits: BTreeMap<(String, SceneId), DatasetSplit>,
 }
 
+/// Why a record cannot be in a dataset with the earlier ones.
 struct RecordClash {
     field: &'static str,
     problem: String,
@@ -218,6 +227,7 @@ struct RecordClash {
 }
 
 impl DatasetMembers {
+    /// Compares a record with the earlier ones.
     fn check_record(&self, earlier: &[InstructionRecord], record: &InstructionRecord) -> Result<(), RecordClash> {
         let same_name = self.paths.get(&path_key(record)).and_then(|index| earlier.get(*index));
         if same_name.is_some_and(|other| other.path != record.path) {
@@ -240,6 +250,7 @@ impl DatasetMembers {
         Ok(())
     }
 
+    /// Adds a record, the `index`-th of the dataset.
     fn note_record(&mut self, record: &InstructionRecord, index: usize) {
         self.paths.entry(path_key(record)).or_insert(index);
         self.texts.insert(text_key(record));

@@ -16,6 +16,16 @@
 //! - `table`, with the feature `parquet`: the columns of tables, in `schema.txt` and in `columns.rs` in the same order.
 //! - [`habitat`]: where poses change between Wayword's frame and Habitat's.
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 mod bounded_tokens;
 mod episode;
 mod error;

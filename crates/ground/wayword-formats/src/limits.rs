@@ -1,4 +1,5 @@
-//! Limits on untrusted files, in one place. They are far above those of the field's datasets.
+//! Limits on untrusted files, in one place. They are far above the sizes of the field's datasets. A file beyond a limit
+//! is refused, with an error that names the limit.
 
 /// Largest file, in bytes, both on the disk and after gunzip.
 pub(crate) const FILE_BYTES: u64 = 1 << 30;
@@ -24,7 +25,7 @@ pub(crate) const NAME_BYTES: usize = 128;
 pub(crate) const TRAJECTORY_POSES: usize = 10_000;
 /// Most entries of a submission's trajectories together.
 pub(crate) const POSES_KEPT: usize = 4_000_000;
-/// Most problems of a submission that are listed one by one.
+/// Most problems of a submission that are listed one by one. The others are only counted.
 pub(crate) const MAX_LISTED_PROBLEMS: usize = 1_000;
 
 /// A limit as errors write it, with commas between groups of three digits.

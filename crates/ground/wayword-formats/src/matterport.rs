@@ -61,6 +61,7 @@ pub(crate) const PATH_NAME: &str = "path_name";
 /// name (`house2-3-17`) gets a number that no other path of the file has, and keeps its name in `path_name`.
 pub(crate) struct PathNumbers {
     numbers: FreeNumbers,
+    /// The numbers of paths with other names, by the name.
     given: BTreeMap<String, u64>,
 }
 
@@ -75,7 +76,7 @@ impl PathNumbers {
         self.numbers.next_free()
     }
 
-    /// Writes `path_id`.
+    /// Writes `path_id`, and `path_name` where the path had to be numbered.
     pub(crate) fn put_path_id(&mut self, fields: &mut Map<String, Value>, episode: &Episode) {
         let name = &episode.path_id;
         let as_read = episode.as_read.get("path_id").and_then(item::name_of);
@@ -100,10 +101,12 @@ pub(crate) struct FreeNumbers {
 }
 
 impl FreeNumbers {
+    /// The numbers that are not among these names.
     pub(crate) fn not_in<'n>(names: impl Iterator<Item = &'n str>) -> Self {
         Self { taken: names.filter_map(number_of).collect(), next: 0 }
     }
 
+    /// The smallest free number, which is taken from now on.
     pub(crate) fn next_free(&mut self) -> u64 {
         while !self.taken.insert(self.next) {
             self.next += 1;

@@ -13,16 +13,17 @@ use std::{
 /// Writes a temporary file next to the final one and then renames it, so that a reader never sees half of it. The file
 /// is gzip where its name ends in `.gz`.
 pub(crate) fn write_file(file: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FormatError> {
-    let beside = temporary_name(file)?;
-    let written = write_to(&beside, file.extension().is_some_and(|ending| ending == "gz"), fill)
-        .and_then(|()| fs::rename(&beside, file));
+    let temporary = temporary_name(file)?;
+    let written = write_to(&temporary, file.extension().is_some_and(|ending| ending == "gz"), fill)
+        .and_then(|()| fs::rename(&temporary, file));
     written.map_err(|source| {
         // The first failure is the one to report. If the file cannot be removed either, it is left.
-        let _ = fs::remove_file(&beside);
+        let _ = fs::remove_file(&temporary);
         FormatError::from_io(file, "write", source)
     })
 }
 
+/// A hidden name in the same folder, with the number of this process: `.NAME.1234.part`.
 fn temporary_name(file: &Path) -> Result<PathBuf, FormatError> {
     let Some(name) = file.file_name() else {
         return Err(FormatError::for_document(file, "it is not the name of a file", "give a file to write"));
@@ -47,13 +48,13 @@ fn write_to(file: &Path, gzip: bool, fill: impl FnOnce(&mut dyn Write) -> io::Re
 
 /// Writes a JSON list with one item per line, so that two versions can be compared line by line.
 pub(crate) fn write_list<T: Serialize>(out: &mut dyn Write, items: impl IntoIterator<Item = T>) -> io::Result<()> {
-    let mut before = "[\n";
+    let mut separator = "[\n";
     for item in items {
-        out.write_all(before.as_bytes())?;
+        out.write_all(separator.as_bytes())?;
         serde_json::to_writer(&mut *out, &item)?;
-        before = ",\n";
+        separator = ",\n";
     }
-    out.write_all(if before == "[\n" { b"[]" } else { b"\n]" })
+    out.write_all(if separator == "[\n" { b"[]" } else { b"\n]" })
 }
 
 /// Writes one JSON object per line.

@@ -36,25 +36,30 @@ pub fn read_r2r_file(file: &Path) -> Result<Vec<Episode>, FormatError> {
 /// When a path names no viewpoints, or the file cannot be written.
 pub fn write_r2r_file(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
     let mut numbers = PathNumbers::new(episodes);
-    let mut items = Vec::with_capacity(episodes.len());
-    let mut walks: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    let mut items: Vec<Map<String, Value>> = Vec::with_capacity(episodes.len());
+    // For each `path_id`, the numbers of its items.
+    let mut items_by_path: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for episode in episodes {
         let mut item = item_fields(file, episode, &mut numbers)?;
-        let known = walks.entry(item["path_id"].to_string()).or_default();
-        if let Some(index) = known.iter().find(|index| same_walk(&items[**index], &item)) {
-            append_instructions(&mut items[*index], &mut item);
+        let path_id = item.get("path_id").map(Value::to_string).unwrap_or_default();
+        let same_path = items_by_path.entry(path_id).or_default();
+        let is_same = |index: &&usize| items.get(**index).is_some_and(|other| same_walk(other, &item));
+        let same_index = same_path.iter().find(is_same).copied();
+        if let Some(other) = same_index.and_then(|index| items.get_mut(index)) {
+            append_instructions(other, &mut item);
             continue;
         }
-        if !known.is_empty() {
+        if !same_path.is_empty() {
             item.insert("path_id".to_owned(), numbers.next_number().into());
             item.insert(matterport::PATH_NAME.to_owned(), episode.path_id.as_str().into());
         }
-        known.push(items.len());
+        same_path.push(items.len());
         items.push(item);
     }
     output::write_file(file, |out| output::write_list(out, &items))
 }
 
+/// The fields of an item, in R2R's order.
 fn item_fields(file: &Path, episode: &Episode, numbers: &mut PathNumbers) -> Result<Map<String, Value>, FormatError> {
     let mut fields = Map::new();
     if let Some(length_m) = episode.floor_length_m().filter(|_| !episode.extra.contains_key("distance")) {
@@ -71,6 +76,7 @@ fn item_fields(file: &Path, episode: &Episode, numbers: &mut PathNumbers) -> Res
     Ok(fields)
 }
 
+/// Whether two items have the same path and the same heading at its start.
 fn same_walk(a: &Map<String, Value>, b: &Map<String, Value>) -> bool {
     ["scan", "path", "heading"].iter().all(|key| a.get(*key) == b.get(*key))
 }

@@ -1,5 +1,5 @@
-//! Watches over a file while it is read: names that may be given only once, and the number of values that are kept in
-//! memory.
+//! Keeps two rules while a file is read: no two items have the same name, and the values that stay in memory are no more
+//! than [`limits::VALUES_KEPT`].
 
 use crate::{DatasetItem, Episode, FormatError, limits};
 use serde_json::{Map, Value};
@@ -27,7 +27,7 @@ impl ReadTally {
         Err(item.wrong_field(field, problem, "give each item its own name"))
     }
 
-    /// An episode with the fields that were not taken.
+    /// Completes an episode with the fields of its item that its reader did not take.
     pub(crate) fn finish_episode(
         &mut self,
         mut episode: Episode,
@@ -38,8 +38,8 @@ impl ReadTally {
         Ok(episode)
     }
 
-    /// The fields that were not taken; `kept` is the number of values that were taken and are kept in memory. A short
-    /// value takes up to thirty times its length in the file.
+    /// The fields that were not taken; `kept` is the number of values that were taken and are kept in memory. Values are
+    /// bounded and not bytes, because a short value takes up to thirty times its length in the file.
     pub(crate) fn take_rest(&mut self, item: DatasetItem<'_>, kept: usize) -> Result<Map<String, Value>, FormatError> {
         let file = item.file();
         let rest = item.into_rest();

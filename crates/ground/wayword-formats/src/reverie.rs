@@ -58,8 +58,10 @@ pub fn write_reverie_file(file: &Path, episodes: &[Episode]) -> Result<(), Forma
     output::write_file(file, |out| output::write_list(out, &items))
 }
 
+/// The fields of an item, in REVERIE's order.
 fn item_fields(file: &Path, episode: &Episode, numbers: &mut PathNumbers) -> Result<Map<String, Value>, FormatError> {
     let mut fields = Map::new();
+    // Keeps the first place. The value needs `path_id`, so it follows below.
     fields.insert("id".to_owned(), Value::Null);
     fields.insert("scan".to_owned(), episode.scene.as_str().into());
     numbers.put_path_id(&mut fields, episode);
@@ -76,6 +78,7 @@ fn item_fields(file: &Path, episode: &Episode, numbers: &mut PathNumbers) -> Res
     Ok(fields)
 }
 
+/// The `id`: the one that was read where object and name are unchanged, else path and object.
 fn composed_id(episode: &Episode, path_id: Option<&Value>) -> Value {
     let path = path_id.and_then(item::name_of).unwrap_or_default();
     let unchanged = |value: &Value| {

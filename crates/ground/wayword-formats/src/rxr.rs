@@ -55,13 +55,14 @@ fn take_text_fields(item: &mut DatasetItem<'_>, episode: &mut Episode) -> Result
     Ok(())
 }
 
+/// Checks that every entry of `timed_instruction` has a word.
 fn timed_words(item: &DatasetItem<'_>, field: &str, value: &Value) -> Result<(), FormatError> {
     for (index, timed) in item.checked_list(field, value, limits::INSTRUCTION_BYTES)?.iter().enumerate() {
-        let at = format!("{field}[{index}].word");
+        let word_field = format!("{field}[{index}].word");
         let Some(word) = timed.get("word") else {
-            return Err(item.wrong_field(&at, "it is missing", "each entry is an object with a word"));
+            return Err(item.wrong_field(&word_field, "it is missing", "each entry is an object with a word"));
         };
-        item.checked_text(&at, word)?;
+        item.checked_text(&word_field, word)?;
     }
     Ok(())
 }
@@ -81,9 +82,9 @@ pub fn write_rxr_file(file: &Path, episodes: &[Episode]) -> Result<(), FormatErr
     let mut used = BTreeSet::new();
     let mut lines = Vec::with_capacity(episodes.len());
     for episode in episodes {
-        let alone = episode.instructions.len() == 1;
+        let is_only_one = episode.instructions.len() == 1;
         for (number, text) in episode.instructions.iter().enumerate() {
-            let keeps_id = alone && keeps_its_id(episode) && used.insert(&episode.id);
+            let keeps_id = is_only_one && keeps_its_id(episode) && used.insert(&episode.id);
             let id =
                 if keeps_id { episode.name_field("instruction_id", &episode.id) } else { fresh.next_free().into() };
             let mut line = line_fields(file, episode, text, id, &mut paths)?;
@@ -100,6 +101,7 @@ fn keeps_its_id(episode: &Episode) -> bool {
     number_of(&episode.id).is_some() || episode.as_read.contains_key("instruction_id")
 }
 
+/// The fields of a line, in RxR's order.
 fn line_fields(
     file: &Path,
     episode: &Episode,
@@ -108,22 +110,23 @@ fn line_fields(
     paths: &mut PathNumbers,
 ) -> Result<Map<String, Value>, FormatError> {
     let same_text = episode.as_read.get("instruction").and_then(Value::as_str) == Some(text);
-    let of_text = |field: &str, anew: Value| episode.field_value(field, |_| same_text, || anew);
+    // The value that was read describes the text only while the text is the same.
+    let text_field = |field: &str, anew: Value| episode.field_value(field, |_| same_text, || anew);
     let words = || text.split_whitespace().map(|word| json!({ "word": word })).collect();
     let timed = episode.as_read.get("timed_instruction").and_then(Value::as_str).filter(|_| same_text);
     let timed = timed.and_then(|timed| serde_json::from_str(timed).ok()).unwrap_or_else(words);
     let mut fields = Map::new();
     fields.insert("split".to_owned(), episode.split.as_deref().unwrap_or("train").into());
     fields.insert("instruction_id".to_owned(), id);
-    fields.insert("annotator_id".to_owned(), of_text("annotator_id", 0.into()));
-    fields.insert("language".to_owned(), of_text("language", "en-US".into()));
+    fields.insert("annotator_id".to_owned(), text_field("annotator_id", 0.into()));
+    fields.insert("language".to_owned(), text_field("language", "en-US".into()));
     paths.put_path_id(&mut fields, episode);
     fields.insert("scan".to_owned(), episode.scene.as_str().into());
     fields.insert("path".to_owned(), matterport::path_field(file, episode)?);
     fields.insert("heading".to_owned(), episode.heading_field());
     fields.insert("instruction".to_owned(), text.into());
     fields.insert("timed_instruction".to_owned(), timed);
-    fields.insert("edit_distance".to_owned(), of_text("edit_distance", 0.0.into()));
+    fields.insert("edit_distance".to_owned(), text_field("edit_distance", 0.0.into()));
     matterport::add_extra(&mut fields, episode);
     Ok(fields)
 }

@@ -25,30 +25,34 @@ pub fn split_by_scene(records: &mut [InstructionRecord], val_share: f64, seed: u
     }
 }
 
+/// The scenes for `val`, by platform.
 fn val_scenes(records: &[InstructionRecord], val_share: f64, seed: u64) -> BTreeMap<String, BTreeSet<SceneId>> {
-    let mut drawn: BTreeMap<String, BTreeSet<(bool, u64, SceneId)>> = BTreeMap::new();
+    // For each platform its scenes in the order in which `val` takes them: those that are held out, then by their lot.
+    let mut ordered: BTreeMap<String, BTreeSet<(bool, u64, SceneId)>> = BTreeMap::new();
     for record in records {
         let (platform, scene) = (&record.platform, &record.path.scene);
         // A generator draws the number, because the derived seeds themselves are too similar where the names are.
         let lot = wayword_core::seeded_rng(seed, &["split", platform, scene.as_str()]).next_u64();
-        drawn.entry(platform.clone()).or_default().insert((!is_held_out(scene), lot, scene.clone()));
+        ordered.entry(platform.clone()).or_default().insert((!is_held_out(scene), lot, scene.clone()));
     }
-    let first = |(platform, scenes): (String, BTreeSet<(bool, u64, SceneId)>)| {
+    let take_first = |(platform, scenes): (String, BTreeSet<(bool, u64, SceneId)>)| {
         let held_out = scenes.iter().filter(|(is_free, ..)| !is_free).count();
         let count = val_count(scenes.len(), val_share).max(held_out);
         (platform, scenes.into_iter().take(count).map(|(.., scene)| scene).collect())
     };
-    drawn.into_iter().map(first).collect()
+    ordered.into_iter().map(take_first).collect()
 }
 
 fn is_held_out(scene: &SceneId) -> bool {
     OfficialSplit::for_scene(scene).is_some_and(OfficialSplit::is_held_out)
 }
 
+/// How many of a platform's scenes are for `val`.
 fn val_count(scenes: usize, share: f64) -> usize {
-    let rounded = (scenes as f64 * share.clamp(0.0, 1.0)).round() as usize;
-    let divided = share > 0.0 && share < 1.0 && scenes > 1;
-    if divided { rounded.clamp(1, scenes - 1) } else { rounded }
+    let wanted = scenes as f64 * share.clamp(0.0, 1.0);
+    let rounded = (1..=scenes).take_while(|count| *count as f64 - 0.5 <= wanted).count();
+    let needs_both = share > 0.0 && share < 1.0 && scenes > 1;
+    if needs_both { rounded.clamp(1, scenes - 1) } else { rounded }
 }
 
 #[cfg(test)]

@@ -10,8 +10,8 @@ use std::{
     fmt::{self, Write as _},
 };
 
-/// Reads one value. If that fails, the text becomes the field at which it failed, for example `path[3]`; it stays
-/// empty at the root.
+/// Reads one value. If that fails, the text in its cell becomes the field at which it failed, for example `path[3]`; the
+/// text stays empty where the value itself is wrong.
 #[derive(Clone, Copy)]
 pub(crate) struct StrictJson<'f>(pub(crate) &'f RefCell<String>);
 
@@ -19,14 +19,15 @@ impl<'de> DeserializeSeed<'de> for StrictJson<'_> {
     type Value = Value;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
-        let (mut track, left) = (Track::new(), Cell::new(limits::VALUES_PER_ITEM));
-        let bytes = Cell::new(limits::LINE_BYTES);
-        let part = StrictPart { left: &left, bytes: &bytes, is_twice: false };
+        let (mut track, values_left) = (Track::new(), Cell::new(limits::VALUES_PER_ITEM));
+        let bytes_left = Cell::new(limits::LINE_BYTES);
+        let part = StrictPart { left: &values_left, bytes: &bytes_left, is_twice: false };
         let read = part.deserialize(serde_path_to_error::Deserializer::new(deserializer, &mut track));
         read.inspect_err(|_| *self.0.borrow_mut() = field_path(&track.path()))
     }
 }
 
+/// The place of a value in its item, as errors name it: `path[3]`, `info.geodesic_distance`.
 fn field_path(path: &Path) -> String {
     let mut field = String::new();
     for segment in path {
@@ -42,17 +43,19 @@ fn field_path(path: &Path) -> String {
     field
 }
 
-/// Reads a part of a value.
+/// Reads a part of a value: the value itself, an entry of a list, or the value of a key.
 #[derive(Clone, Copy)]
 struct StrictPart<'l> {
     /// How many more JSON values the whole value may have.
     left: &'l Cell<usize>,
     /// How many more bytes of text it may have.
     bytes: &'l Cell<usize>,
+    /// Whether the part is the value of a key that its object had before.
     is_twice: bool,
 }
 
 impl StrictPart<'_> {
+    /// Counts the bytes of a text towards the limit.
     fn count_bytes<E: Error>(self, text: &str) -> Result<(), E> {
         let left = self.bytes.get().checked_sub(text.len());
         self.bytes.set(left.ok_or_else(|| E::custom("it has more than 16 MiB of text"))?);

@@ -67,6 +67,7 @@ pub fn read_vlnce_file(file: &Path) -> Result<VlnceDataset, FormatError> {
     Ok(VlnceDataset { episodes, vocabulary })
 }
 
+/// The vocabulary's list of words.
 fn word_list(file: &Path, vocabulary: Option<Value>) -> Result<Vec<String>, FormatError> {
     let words = vocabulary.and_then(|vocabulary| vocabulary.get("word_list").cloned());
     let words = words.and_then(|words| serde_json::from_value::<Vec<String>>(words).ok());
@@ -109,6 +110,7 @@ fn scene_of(item: &DatasetItem<'_>, value: &Value) -> Result<SceneId, FormatErro
     SceneId::new(bare_scene(text)).map_err(|error| item.wrong_field("scene_id", error.to_string(), HINT))
 }
 
+/// A file's name without folders and endings: "SCAN" of "mp3d/SCAN/SCAN.glb".
 fn bare_scene(mesh: &str) -> &str {
     let name = mesh.rsplit('/').next().unwrap_or(mesh);
     let bare = name.rsplit_once('.').map_or(name, |(bare, _)| bare);
@@ -116,6 +118,7 @@ fn bare_scene(mesh: &str) -> &str {
     [".basis", ".stage_config"].iter().find_map(|ending| bare.strip_suffix(ending)).unwrap_or(bare)
 }
 
+/// Takes the path with its start and goals. Where there is no path, start and first goal are the path.
 fn take_positions(item: &mut DatasetItem<'_>, episode: &mut Episode) -> Result<(), FormatError> {
     let start = item.take_field("start_position")?;
     let start_floor = item.checked_position("start_position", &start)?;
@@ -163,6 +166,7 @@ fn goal_positions(item: &DatasetItem<'_>, value: &Value) -> Result<Vec<DVec3>, F
     item.checked_list("goals", value, limits::PATH_NODES)?.iter().enumerate().map(goal).collect()
 }
 
+/// Takes the text. Its tokens go into `tokens` by the text, so that an unchanged text keeps them.
 fn take_instruction(
     item: &mut DatasetItem<'_>,
     episode: &mut Episode,
@@ -228,6 +232,7 @@ pub fn write_vlnce_file(file: &Path, dataset: &VlnceDataset) -> Result<(), Forma
     })
 }
 
+/// Adds the scene, the path with its start and goal, and `info`.
 fn add_place(file: &Path, fields: &mut Map<String, Value>, episode: &Episode) -> Result<(), FormatError> {
     let (Some(start), Some(goal)) = (episode.floor_positions.first(), episode.floor_positions.last()) else {
         let problem = format!("item {:?} has no floor positions, and this format requires them", episode.id);
@@ -265,12 +270,13 @@ fn info_field(episode: &Episode) -> Value {
         None => (episode.floor_length_m(), "graph"),
     };
     let mut info = json!({ "geodesic_distance": length_m, "geodesic_distance_over": over });
-    if let Some(needs) = &episode.in_habitat.scene_needs {
-        info["scene_needs"] = needs.as_str().into();
+    if let (Some(needs), Some(fields)) = (&episode.in_habitat.scene_needs, info.as_object_mut()) {
+        fields.insert("scene_needs".to_owned(), needs.as_str().into());
     }
     info
 }
 
+/// A position as the file has it: three numbers in Habitat's frame.
 fn habitat_value(floor: DVec3) -> Value {
     json!(habitat_from_wayword(floor).to_array())
 }

@@ -10,10 +10,10 @@ use serde_json::{Value, json};
 use std::{collections::BTreeMap, path::Path};
 use wayword_core::{AgentAction, DVec3};
 
-/// Most actions of one episode.
+/// Most actions of one episode; a file with more in one is refused.
 const MAX_ACTIONS: usize = 25_000;
 
-/// Most actions of all episodes together that are kept in memory.
+/// Most actions of all episodes together that are kept in memory; a file with more is refused.
 const ACTIONS_KEPT: usize = 20_000_000;
 
 /// The actions of an agent in an episode, and the places that they lead to.
@@ -42,18 +42,18 @@ impl EpisodeActions {
 /// # Errors
 /// When the file cannot be written.
 pub fn write_actions(file: &Path, acted: &BTreeMap<String, EpisodeActions>) -> Result<(), FormatError> {
-    let of = |acted: &EpisodeActions| {
+    let entry_json = |acted: &EpisodeActions| {
         let locations: Vec<_> = acted.locations.iter().map(|place| habitat_from_wayword(*place).to_array()).collect();
         let forward_steps = acted.actions.iter().filter(|action| **action == AgentAction::Forward).count();
         json!({ "locations": locations, "forward_steps": forward_steps, "actions": acted.actions })
     };
     output::write_file(file, |out| {
-        let mut before = "{\n";
+        let mut separator = "{\n";
         for (episode, acted) in acted {
-            write!(out, "{before}{}: {}", Value::from(episode.as_str()), of(acted))?;
-            before = ",\n";
+            write!(out, "{separator}{}: {}", Value::from(episode.as_str()), entry_json(acted))?;
+            separator = ",\n";
         }
-        out.write_all(if before == "{\n" { b"{}" } else { b"\n}" })
+        out.write_all(if separator == "{\n" { b"{}" } else { b"\n}" })
     })
 }
 
@@ -77,6 +77,7 @@ pub fn read_actions(file: &Path) -> Result<BTreeMap<String, EpisodeActions>, For
     Ok(all)
 }
 
+/// Takes an episode's actions, and checks that `forward_steps` and `locations` agree with them.
 fn take_actions(item: &mut DatasetItem<'_>) -> Result<EpisodeActions, FormatError> {
     let (actions, locations) = (item.take_field("actions")?, item.take_field("locations")?);
     let action =

@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 
-/// The number of tokens that VLN-CE's agents read. Shorter texts are filled up with `<pad>`.
+/// The number of tokens of a text that VLN-CE's agents read. Shorter texts are filled up with `<pad>`, longer ones cut.
 const TOKENS_PER_TEXT: usize = 200;
+/// The token that fills up a short text.
 const PAD: &str = "<pad>";
+/// The token of a word that the vocabulary lacks.
 const UNKNOWN: &str = "<unk>";
 
 /// VLN-CE's `instruction_vocab`: a word's token is its place in the list.
@@ -12,6 +14,7 @@ const UNKNOWN: &str = "<unk>";
 pub struct TokenVocabulary {
     words: Vec<String>,
     index: BTreeMap<String, u64>,
+    /// For each text of the file that was read, its tokens there.
     tokens_as_read: BTreeMap<String, Vec<u64>>,
 }
 

@@ -22,7 +22,7 @@ pub(crate) fn row_columns<const N: usize>(row: &'static str) -> [&'static str; N
     std::array::from_fn(|_| columns.next().unwrap_or_default())
 }
 
-/// The names in a column.
+/// The names in a column, which commas separate.
 pub(crate) fn split_names(column: &'static str) -> impl Iterator<Item = &'static str> {
     column.split(',').map(str::trim).filter(|name| !name.is_empty())
 }
@@ -52,10 +52,10 @@ macro_rules! lists {
     ($file:literal; words: $($words:ident),*; phrases: $($phrases:ident),*;) => {
         const LISTS: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/", $file));
 
-        $(#[doc = concat!("The list `", stringify!($words), "` of `", $file, "`, which says what it is.")]
+        $(#[doc = concat!("The list `", stringify!($words), "` of `", $file, "`, which explains it.")]
         pub static $words: $crate::data::WordList =
             std::sync::LazyLock::new(|| $crate::data::list_words(LISTS, stringify!($words)));)*
-        $(#[doc = concat!("The list `", stringify!($phrases), "` of `", $file, "`, which says what it is.")]
+        $(#[doc = concat!("The list `", stringify!($phrases), "` of `", $file, "`, which explains it.")]
         pub static $phrases: $crate::data::PhraseList =
             std::sync::LazyLock::new(|| $crate::data::list_phrases(LISTS, stringify!($phrases)));)*
 

@@ -1,9 +1,8 @@
 //! Recognises the language of a text.
 //!
 //! The reader knows English only, so a text in another language cannot be checked. A foreign script decides by itself.
-//! In Latin letters, a sentence is foreign if the reader knows few of its words, and the small words of a language
-//! ("der", "est") name it.
-//! reader knows few of its words, and the small words of a language show which one.
+//! In Latin letters, a sentence is foreign if the reader knows few of its words. The small words of a language ("der",
+//! "est") show which language it is.
 
 use crate::{
     data,
@@ -42,7 +41,8 @@ static SMALL_WORDS: LazyLock<BTreeMap<&'static str, Vec<&'static str>>> = LazyLo
     languages
 });
 
-/// Languages by the code that tags begin with, and by their lists in `words/languages.txt`.
+/// For each language the code that tags begin with, its list in `words/languages.txt` (empty where its script is enough),
+/// and its name.
 const LANGUAGE_NAMES: [(&str, &str, &str); 20] = [
     ("hi", "hindi", "Hindi"),
     ("te", "telugu", "Telugu"),
@@ -141,20 +141,21 @@ impl fmt::Display for Language {
 /// Decides the language of a text from its letters, and then from its words as the reader took them.
 #[must_use]
 pub(crate) fn language_of(text: &str, words: &[ReadWord]) -> Language {
-    let by_script = by_script(text);
-    if by_script != Language::English {
-        return by_script;
+    let script_language = by_script(text);
+    if script_language != Language::English {
+        return script_language;
     }
     let tokens = split_tokens(text);
     let mut whole = LanguageVotes::default();
+    // The language of the first foreign sentence, and whether a sentence is English.
     let (mut foreign, mut english) = (None, false);
     for sentence in tokens.split(TextToken::ends_sentence) {
-        let seen = LanguageVotes::from_sentence(sentence, words);
-        match seen.foreign_language() {
+        let votes = LanguageVotes::from_sentence(sentence, words);
+        match votes.foreign_language() {
             Some(name) => foreign = foreign.or(Some(name)),
-            None => english |= seen.known > seen.words / 2 && seen.known > 1,
+            None => english |= votes.known > votes.words / 2 && votes.known > 1,
         }
-        whole.add_votes(seen);
+        whole.add_votes(votes);
     }
     match (whole.foreign_language(), foreign) {
         (Some(name), _) if !english => Language::Other(name),
@@ -189,6 +190,7 @@ fn by_script(text: &str) -> Language {
 /// Counts over a sentence or a text in Latin letters, which decide its language.
 #[derive(Debug, Default)]
 struct LanguageVotes {
+    /// All words.
     words: usize,
     /// Words that the reader of English knows.
     known: usize,
@@ -198,19 +200,19 @@ struct LanguageVotes {
 
 impl LanguageVotes {
     fn from_sentence(sentence: &[TextToken], words: &[ReadWord]) -> Self {
-        let mut seen = Self::default();
+        let mut votes = Self::default();
         for token in sentence.iter().filter(|token| token.word.starts_with(char::is_alphabetic)) {
             let at = words.partition_point(|word| word.span[0] < token.span[0]);
-            seen.words += 1;
+            votes.words += 1;
             if words.get(at).is_some_and(ReadWord::is_understood) {
-                seen.known += 1;
+                votes.known += 1;
                 continue;
             }
             for language in small_words(&token.word) {
-                *seen.small.entry(language).or_default() += 1;
+                *votes.small.entry(language).or_default() += 1;
             }
         }
-        seen
+        votes
     }
 
     fn add_votes(&mut self, other: Self) {
@@ -225,10 +227,11 @@ impl LanguageVotes {
     fn foreign_language(&self) -> Option<&'static str> {
         let best = self.small.iter().max_by_key(|(_, count)| **count);
         let votes = best.map_or(0, |(_, count)| *count);
-        let share = |of: usize| self.words >= 3 && self.known * of <= self.words;
-        let is_foreign = (votes >= 2 && votes >= self.known && share(2))
-            || (votes >= 1 && share(3))
-            || (self.words >= 4 && share(5));
+        // Whether the reader knows at most one word in `parts`. The fewer it knows, the fewer small words are needed.
+        let knows_one_in = |parts: usize| self.words >= 3 && self.known * parts <= self.words;
+        let is_foreign = (votes >= 2 && votes >= self.known && knows_one_in(2))
+            || (votes >= 1 && knows_one_in(3))
+            || (self.words >= 4 && knows_one_in(5));
         let name = |list: &str| {
             LANGUAGE_NAMES.iter().find(|(_, known, _)| *known == list).map_or(UNNAMED_LANGUAGE, |(.., name)| name)
         };
@@ -236,7 +239,7 @@ impl LanguageVotes {
     }
 }
 
-/// The languages that have a word among their small words.
+/// The languages that have a word among their small words. Of "l'escalier" the small word is "l'".
 fn small_words(word: &str) -> impl Iterator<Item = &'static str> {
     let elided = word.find(['\'', '’']).map(|end| format!("{}'", &word[..end]));
     let languages = SMALL_WORDS.get(word).or_else(|| SMALL_WORDS.get(elided?.as_str()));

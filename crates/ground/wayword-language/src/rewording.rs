@@ -9,7 +9,8 @@ crate::data::lists! {
     phrases:;
 }
 
-/// Most words between the verb of a turn and its side, as "a sharp" in "take a sharp right".
+/// Most words between the verb of a turn and its side, as "a sharp" in "take a sharp right". A verb farther away does not
+/// belong to the turn.
 const TURN_REACH: usize = 6;
 /// The words for the way past a place are looked for among this many tokens before it.
 const WAY_REACH: usize = 5;
@@ -50,8 +51,8 @@ impl<'a> TokenisedText<'a> {
         self.tokens.get(first..end.max(first)).unwrap_or_default()
     }
 
-    /// The words of a turn, from its verb on: "turn slightly left". `side` is the byte range of the word "left" or
-    /// "right".
+    /// The byte range of the words of a turn in a step, from its verb on: "turn slightly left". `side` is the byte range of
+    /// the word "left" or "right".
     #[must_use]
     pub fn turn_words(&self, step: [usize; 2], side: [usize; 2]) -> [usize; 2] {
         let before = self.tokens_within([step[0], side[0]]);
@@ -80,6 +81,7 @@ impl<'a> TokenisedText<'a> {
     /// The last word of a step for up or down, and its opposite. In "walk down the hall and up the stairs" it is "up".
     #[must_use]
     pub fn climb_word(&self, step: [usize; 2], is_up: bool) -> Option<([usize; 2], String)> {
+        // The list has pairs: the word for up, and then its opposite.
         let is_climb = |token: &&TextToken| CLIMBS.chunks_exact(2).any(|pair| pair[usize::from(!is_up)] == token.word);
         let span = self.tokens_within(step).iter().rev().find(is_climb)?.span;
         Some((span, self.exchange_opposites(span, &CLIMBS)?))
@@ -129,27 +131,28 @@ impl<'a> TokenisedText<'a> {
 
     /// The words of a byte range with their opposites; `None` where they have none.
     fn exchange_opposites(&self, [from, to]: [usize; 2], pairs: &[&str]) -> Option<String> {
-        let (mut exchanged, mut done) = (String::new(), from);
+        let (mut exchanged, mut copied_to) = (String::new(), from);
         for token in self.tokens_within([from, to]) {
             let Some(other) = opposite_word(&token.word, pairs) else { continue };
-            exchanged.push_str(self.words_of([done, token.span[0]]));
+            exchanged.push_str(self.words_of([copied_to, token.span[0]]));
             exchanged.push_str(&in_capitals_of(self.words_of(token.span), other));
-            done = token.span[1];
+            copied_to = token.span[1];
         }
-        exchanged.push_str(self.words_of([done, to]));
-        (done > from).then_some(exchanged)
+        exchanged.push_str(self.words_of([copied_to, to]));
+        (copied_to > from).then_some(exchanged)
     }
 }
 
-/// Where the words that belong to a side begin.
+/// Where the words that belong to a side begin: at "on" for "on your left".
 fn side_beginning(before: &[TextToken], side: usize) -> usize {
     let belong = before.iter().rev().take_while(|token| BELONGING.contains(&&*token.word));
     belong.last().map_or(side, |first| first.span[0])
 }
 
-/// The other word of a pair.
+/// The other word of a pair, in a list with the two words of each pair one after the other.
 fn opposite_word<'a>(word: &str, pairs: &[&'a str]) -> Option<&'a str> {
-    let at = pairs.iter().position(|one| *one == word)?;
+    let at = pairs.iter().position(|listed| *listed == word)?;
+    // An even place and the odd one behind it are a pair.
     pairs.get(at ^ 1).copied()
 }
 

@@ -39,6 +39,7 @@ pub fn split_tokens(text: &str) -> Vec<TextToken> {
     let mut chars = text.char_indices().peekable();
     while let Some((at, c)) = chars.next() {
         let next = chars.peek().map(|(_, next)| *next);
+        // Whether the letter belongs to the word or number before it.
         let joins = match c {
             '\'' | '’' => next.is_some_and(char::is_alphanumeric),
             '.' => next.is_some_and(|next| next.is_ascii_digit()) && ends_in_digit(&text[..at]),
@@ -63,6 +64,7 @@ pub fn split_tokens(text: &str) -> Vec<TextToken> {
     tokens
 }
 
+/// Whether the last letter of a text is a digit.
 fn ends_in_digit(text: &str) -> bool {
     text.ends_with(|c: char| c.is_ascii_digit())
 }
@@ -108,9 +110,9 @@ pub fn capitalise_first(text: &str) -> String {
 
 /// The byte ranges of the pieces between the blanks of a text.
 pub fn split_blanks(text: &str) -> impl Iterator<Item = [usize; 2]> + '_ {
-    let places = text.split_inclusive(char::is_whitespace).scan(0, |done, piece| {
-        let from = *done;
-        *done += piece.len();
+    let places = text.split_inclusive(char::is_whitespace).scan(0, |offset, piece| {
+        let from = *offset;
+        *offset += piece.len();
         Some([from, from + piece.trim_end().len()])
     });
     places.filter(|place| place[0] < place[1])

@@ -4,10 +4,13 @@
 use crate::test_house::{SCAN, viewpoint_id};
 use serde_json::{Value, json};
 
+/// A path in the building, with its texts in both styles.
 struct TestHouseEpisode {
+    /// The viewpoints, by their indices in [`crate::test_house::VIEWPOINTS`].
     path: &'static [usize],
-    /// Radians.
+    /// The heading at the start, radians.
     heading: f64,
+    /// The target of the REVERIE texts, by its index in [`crate::test_house::OBJECTS`].
     object: usize,
     /// Short instructions that end in a task, as REVERIE has them.
     reverie: [&'static str; 2],
@@ -15,6 +18,7 @@ struct TestHouseEpisode {
     r2r: [&'static str; 2],
 }
 
+/// All episodes. Their numbers in the files are 100, 101 and so on.
 const EPISODES: [TestHouseEpisode; 10] = [
     TestHouseEpisode {
         path: &[0, 1, 6, 7, 8, 9, 10],
@@ -148,11 +152,12 @@ const EPISODES: [TestHouseEpisode; 10] = [
     },
 ];
 
+/// The names of the viewpoints of an episode's path.
 fn path_ids(episode: &TestHouseEpisode) -> Vec<String> {
     episode.path.iter().map(|index| viewpoint_id(*index)).collect()
 }
 
-/// `REVERIE_*.json` as released in 2022.
+/// The contents of `REVERIE_*.json` in the form of the release of 2022.
 pub(crate) fn reverie_file() -> Value {
     let item = |(number, episode): (usize, &TestHouseEpisode)| {
         let path_id = 100 + number;
@@ -169,7 +174,7 @@ pub(crate) fn reverie_file() -> Value {
     EPISODES.iter().enumerate().map(item).collect()
 }
 
-/// `R2R_*.json`.
+/// The contents of `R2R_*.json`.
 pub(crate) fn r2r_file() -> Value {
     let item = |(number, episode): (usize, &TestHouseEpisode)| {
         json!({

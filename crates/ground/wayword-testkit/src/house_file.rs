@@ -3,10 +3,12 @@
 
 use crate::test_house::{self, OBJECTS, ROOMS, SCAN, VIEWPOINTS, viewpoint_id};
 
-/// Height of a room.
+/// Height of a room, metres.
 const ROOM_M: f64 = 2.5;
+/// Five fields that our reader does not use.
 const ZEROS: &str = "0 0 0 0 0";
 
+/// The contents of the building's `.house` file.
 pub(crate) fn house_file_text() -> String {
     let mut lines = vec!["ASCII 1.1".to_owned()];
     let (panoramas, objects, regions) = (VIEWPOINTS.len(), OBJECTS.len(), ROOMS.len());

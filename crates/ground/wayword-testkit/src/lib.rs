@@ -72,6 +72,7 @@ pub fn write_distinct_skyboxes(data: &Path) -> io::Result<()> {
     write_skyboxes_marked(data, |index| u8::try_from(4 * (index + 1)).unwrap_or(u8::MAX))
 }
 
+/// Writes the skyboxes. `mark` gives the shade of each viewpoint, by the viewpoint's index.
 fn write_skyboxes_marked(data: &Path, mark: impl Fn(usize) -> u8) -> io::Result<()> {
     let folder = data.join(format!("matterport/v1/scans/{SCAN}/matterport_skybox_images"));
     for (index, _) in test_house::VIEWPOINTS.iter().enumerate() {
@@ -87,6 +88,7 @@ fn write_file(folder: &Path, name: &str, contents: impl AsRef<[u8]>) -> io::Resu
     fs::write(folder.join(name), contents)
 }
 
+/// The contents of Matterport3D's `SCAN_connectivity.json`.
 fn connectivity_file() -> Value {
     let count = test_house::VIEWPOINTS.len() + 1;
     let mut items: Vec<Value> = test_house::VIEWPOINTS
@@ -101,6 +103,7 @@ fn connectivity_file() -> Value {
     Value::Array(items)
 }
 
+/// One viewpoint of the connectivity file, which has `count` viewpoints in all.
 fn connectivity_item(index: usize, [x, y, z]: [f64; 3], included: bool, count: usize) -> Value {
     let open: Vec<bool> = (0..count).map(|other| test_house::are_joined(index, other)).collect();
     json!({
@@ -114,6 +117,7 @@ fn connectivity_item(index: usize, [x, y, z]: [f64; 3], included: bool, count: u
     })
 }
 
+/// The contents of Matterport3D's `panorama_to_region.txt`: the room of each viewpoint.
 fn panorama_to_region() -> String {
     let line = |(index, viewpoint): (usize, &test_house::TestHouseViewpoint)| {
         format!("{index} {} {} {}\n", viewpoint_id(index), viewpoint.room, test_house::ROOMS[viewpoint.room].letter)
@@ -121,6 +125,7 @@ fn panorama_to_region() -> String {
     test_house::VIEWPOINTS.iter().enumerate().map(line).collect()
 }
 
+/// The contents of REVERIE's `objpos.json`: the centre of each object.
 fn object_positions() -> Value {
     let centres = test_house::OBJECTS
         .iter()

@@ -20,23 +20,26 @@ pub struct PlayedDetector {
     pub seed: u64,
 }
 
-/// The score of every box that it reports.
+/// The score of every box that it reports, 0 to 1. It is above the threshold from which a box counts as a find.
 const FIND_SCORE: f32 = 0.8;
 
 /// Half the width of a reported box as a share of the picture's width. Half its height is twice this share of the height.
 const BOX_HALF_WIDTH_SHARE: f64 = 0.05;
 
 impl PlayedDetector {
+    /// A draw that is true with probability `share`. Equal purposes draw the same.
     fn draw_chance(&self, share: f64, purpose: &[&str]) -> bool {
         seeded_rng(self.seed, purpose).random_bool(share.clamp(0.0, 1.0))
     }
 
+    /// Whether it finds a labelled thing in a view when it looks for `phrase`.
     fn finds_label(&self, view: &View, label: &ObjectLabel, phrase: &str) -> bool {
-        let place = position_key(view);
-        let from = if self.repeats { "anywhere" } else { &place };
-        self.draw_chance(self.recall, &["found", label.object.as_str(), phrase, from])
+        let position = position_key(view);
+        let place = if self.repeats { "anywhere" } else { &position };
+        self.draw_chance(self.recall, &["found", label.object.as_str(), phrase, place])
     }
 
+    /// The boxes for one phrase in a view.
     fn detect_phrase(&self, view: &View, phrase: &str) -> Vec<DetectedBox> {
         let labels = view.ground_truth().map_or(&[][..], |truth| &truth.labels);
         let shown: Vec<&ObjectLabel> = labels.iter().filter(|label| (self.same)(&label.name, phrase)).collect();
@@ -54,6 +57,7 @@ fn position_key(view: &View) -> String {
     view.pose.position.to_array().map(|metres| format!("{metres:.2}")).join(" ")
 }
 
+/// A box around the point that lies `off_rad` to the right of the middle of a view and `elevation_rad` above the horizon.
 fn box_around(view: &View, off_rad: f64, elevation_rad: f64) -> DetectedBox {
     let (width, height) = view.image.as_ref().map_or((1, 1), |image| (image.width_px(), image.height_px()));
     let (width, height) = (f64::from(width), f64::from(height));

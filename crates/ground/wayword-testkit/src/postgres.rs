@@ -21,9 +21,11 @@ const SERVER_USER: &str = "postgres";
 /// value is dropped.
 #[derive(Debug)]
 pub struct PostgresServer {
+    /// The folder of PostgreSQL's programs.
     programs: PathBuf,
     /// The user that the server runs as if this program runs as root. PostgreSQL refuses to run as root.
     as_user: Option<String>,
+    /// The folder of the server's data, socket and log.
     folder: TempDir,
 }
 
@@ -42,8 +44,8 @@ impl PostgresServer {
             run_or_panic(Command::new("chown").arg(user).arg(server.folder.path()));
         }
         let data = server.data_folder();
-        let encoding = ["--encoding=UTF8", "--locale=C", "--auth=trust", "--no-sync", "-U", SERVER_USER, "-D"];
-        run_or_panic(server.program_command("initdb").args(encoding).arg(&data));
+        let options = ["--encoding=UTF8", "--locale=C", "--auth=trust", "--no-sync", "-U", SERVER_USER, "-D"];
+        run_or_panic(server.program_command("initdb").args(options).arg(&data));
         server.go_on();
         Some(server)
     }
@@ -168,18 +170,19 @@ fn folder_version(folder: &Path) -> u32 {
 
 /// The user that the server has to run as; `None` unless this program runs as root.
 fn other_user() -> Option<String> {
-    let id = |of: &[&str]| Command::new("id").args(of).output().ok().filter(|output| output.status.success());
+    let id = |args: &[&str]| Command::new("id").args(args).output().ok().filter(|output| output.status.success());
     let is_root = id(&["-u"]).is_some_and(|output| output.stdout.trim_ascii() == b"0");
     let other = if id(&["-u", SERVER_USER]).is_some() { SERVER_USER } else { "nobody" };
     is_root.then(|| other.to_owned())
 }
 
+/// Runs a command to its end, and panics if it fails.
 fn run_or_panic(command: &mut Command) -> Output {
     // The server inherits the pipes and keeps them open. `pg_ctl start` therefore runs with a log file and without stdout;
     // otherwise `output` would wait until the server ends.
     let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{command:?}: {said}");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}: {errors}");
     output
 }
 

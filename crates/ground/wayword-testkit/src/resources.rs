@@ -14,6 +14,7 @@ pub fn processor_time() -> Duration {
         .split_whitespace()
         .map(|field| field.parse().unwrap_or(0))
         .collect();
+    // The processor time of the program itself (`utime`) and of the system for it (`stime`), in clock ticks.
     let ticks = fields.get(11).copied().unwrap_or(0) + fields.get(12).copied().unwrap_or(0);
     // A hundred ticks a second on every Linux in use.
     Duration::from_millis(ticks * 10)
@@ -31,6 +32,7 @@ pub fn peak_mib() -> f64 {
     memory_mib("VmHWM:")
 }
 
+/// A line of `/proc/self/status`, which is in KiB, as MiB.
 fn memory_mib(name: &str) -> f64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix(name)).unwrap_or_default();

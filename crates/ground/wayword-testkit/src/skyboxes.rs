@@ -3,10 +3,11 @@
 use image::{ImageEncoder as _, ImageError, Rgb, RgbImage, codecs::jpeg::JpegEncoder};
 use std::io;
 
+/// Side of a face, pixels.
 const SIDE_PX: u32 = 64;
 
-/// Faces in Matterport3D's order. With the poses of this building, face 0 is up, 1 south, 2 west, 3 north, 4 east, 5
-/// down.
+/// The sRGB colours of the faces in Matterport3D's order. With the poses of this building, face 0 is up, 1 south, 2 west, 3 north,
+/// 4 east, 5 down.
 const FACE_COLOURS: [[u8; 3]; 6] =
     [[230, 230, 225], [60, 70, 190], [190, 170, 50], [180, 60, 50], [60, 150, 70], [110, 85, 60]];
 

@@ -8,29 +8,36 @@ pub const SCAN: &str = "madeUpHouse";
 
 /// Height of the camera above the floor, metres.
 pub(crate) const CAMERA_HEIGHT_M: f64 = 1.5;
+/// Height of the upper storey's floor above the lower one's, metres.
 const UPPER_M: f64 = 2.9;
 
+/// A room: a box on one storey.
 pub(crate) struct TestHouseRoom {
     /// Matterport3D's letter for the kind of room, as `k` for a kitchen.
     pub(crate) letter: char,
     /// The storey: 0 is the lower one, 1 the upper.
     pub(crate) level: usize,
-    /// West, south, east, north.
+    /// The coordinates of its west, south, east and north walls.
     pub(crate) sides_m: [f64; 4],
 }
 
+/// A viewpoint.
 pub(crate) struct TestHouseViewpoint {
+    /// The index of its room in [`ROOMS`].
     pub(crate) room: usize,
     x_m: f64,
     y_m: f64,
+    /// The height of the ground under it; on the stairs, of the step.
     floor_m: f64,
 }
 
+/// An object: a box along the axes.
 pub(crate) struct TestHouseObject {
     /// Its name as an annotator writes it: `#` is a space.
     pub(crate) name: &'static str,
+    /// The index of its room in [`ROOMS`].
     pub(crate) room: usize,
-    /// Its centre, above its storey's floor.
+    /// Its centre; z is counted from the floor of its storey.
     at_m: [f64; 3],
     /// Half of its size along the axes.
     pub(crate) half_m: [f64; 3],
@@ -48,6 +55,7 @@ const fn make_object(room: usize, name: &'static str, at_m: [f64; 3], half_m: [f
     TestHouseObject { name, room, at_m, half_m }
 }
 
+/// All rooms. Their indices are their numbers in the files.
 pub(crate) const ROOMS: &[TestHouseRoom] = &[
     make_room('e', 0, [0.0, 0.0, 4.0, 3.0]),
     make_room('h', 0, [4.0, 0.0, 8.0, 3.0]),
@@ -60,6 +68,7 @@ pub(crate) const ROOMS: &[TestHouseRoom] = &[
     make_room('o', 1, [0.0, 0.0, 4.0, 3.0]),
 ];
 
+/// All viewpoints, by index. Numbers 6 and 7 are on the stairs.
 pub(crate) const VIEWPOINTS: &[TestHouseViewpoint] = &[
     make_viewpoint(0, 2.0, 1.5, 0.0),
     make_viewpoint(1, 6.0, 1.5, 0.0),
@@ -95,6 +104,7 @@ const EDGES: &[(usize, usize)] = &[
     (9, 13),
 ];
 
+/// All objects. Their indices are their numbers in the files.
 pub(crate) const OBJECTS: &[TestHouseObject] = &[
     make_object(0, "coat#rack", [0.6, 0.8, 0.9], [0.2, 0.2, 0.9]),
     make_object(0, "bench", [3.2, 0.4, 0.25], [0.5, 0.2, 0.25]),

@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use wayword_core::seeded_rng;
 
-/// Most resamples that are drawn; more would not change the digits that reports show.
+/// Resamples at most. If more are asked for, this many are drawn, because more would not change the digits that reports show.
 const MOST_RESAMPLES: usize = 100_000;
 
 /// How intervals and random pairs are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ResamplingOptions {
-    /// Resamples of the intervals.
+    /// How many times the clusters are drawn anew for an interval.
     pub resamples: usize,
     /// The share that the intervals cover, as 0.95.
     pub level: f64,
@@ -82,9 +82,10 @@ pub fn clustered_interval_of<C: Ord>(
     })
 }
 
-/// Intervals of figures that are no means, as corpus BLEU. `figures` gets the indices of the drawn clusters, some of them
-/// repeatedly, and computes all figures of that draw. A value that is not finite is left out of its figure's interval; the
-/// interval is NaN if no draw gives a finite value.
+/// The interval of each figure of a set, also for figures that are no means, as corpus BLEU.
+///
+/// `figures` gets the indices of the drawn clusters, some of them repeatedly, and computes all figures of that draw. A value that is
+/// not finite is left out of its figure's interval; the interval is NaN if no draw gives a finite value.
 pub(crate) fn interval_of<const N: usize>(
     clusters: usize,
     drawing: &ResamplingOptions,
@@ -92,15 +93,15 @@ pub(crate) fn interval_of<const N: usize>(
 ) -> [(f64, f64); N] {
     let mut rng = seeded_rng(drawing.seed, &["bootstrap"]);
     let resamples = drawing.resamples.clamp(1, MOST_RESAMPLES);
-    let mut found = [(); N].map(|()| Vec::with_capacity(resamples));
+    let mut drawn_values = [(); N].map(|()| Vec::with_capacity(resamples));
     let mut drawn = vec![0; clusters];
     for _ in 0..resamples {
         drawn.fill_with(|| rng.random_range(0..clusters));
-        for (values, value) in found.iter_mut().zip(figures(&drawn)) {
+        for (values, value) in drawn_values.iter_mut().zip(figures(&drawn)) {
             values.extend(Some(value).filter(|value| value.is_finite()));
         }
     }
-    found.map(|values| {
+    drawn_values.map(|values| {
         percentile_interval(values, drawing.level).map_or((f64::NAN, f64::NAN), |[low, high]| (low, high))
     })
 }
@@ -117,6 +118,7 @@ pub fn percentile_interval(mut values: Vec<f64>, level: f64) -> Option<[f64; 2]>
     Some([tail, 1.0 - tail].map(|share| interpolated_quantile(&values, share)))
 }
 
+/// The sum and the number of the values in one or several clusters.
 #[derive(Debug, Clone, Copy, Default)]
 struct ClusterSum {
     total: f64,
@@ -137,7 +139,7 @@ impl ClusterSum {
     }
 }
 
-/// A quantile of sorted values, interpolated linearly between the two neighbours.
+/// The value below which the given share of sorted values lies, interpolated linearly between the two neighbours.
 fn interpolated_quantile(sorted: &[f64], share: f64) -> f64 {
     let at = share * (sorted.len() - 1) as f64;
     let below = sorted[at.floor() as usize];

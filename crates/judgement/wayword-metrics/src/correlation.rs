@@ -15,7 +15,7 @@ pub fn pearson_correlation(a: &[f64], b: &[f64]) -> Option<f64> {
     let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
     let scale = (dot(&a, &a) * dot(&b, &b)).sqrt();
     // If all values of a list are equal, its variance may be a rounding error instead of zero.
-    let varies = |of: &[f64]| of.iter().any(|value| *value != of[0]);
+    let varies = |values: &[f64]| values.iter().any(|value| *value != values[0]);
     (varies(&a) && varies(&b) && scale > 0.0).then(|| (dot(&a, &b) / scale).clamp(-1.0, 1.0))
 }
 
@@ -34,18 +34,18 @@ pub fn kendall_tau_b(a: &[f64], b: &[f64]) -> Option<f64> {
     }
     let mut pairs: Vec<(f64, f64)> =
         a.iter().zip(b).map(|(a, b)| (without_minus_zero(*a), without_minus_zero(*b))).collect();
-    let second = |x: &(f64, f64), y: &(f64, f64)| x.1.total_cmp(&y.1);
-    pairs.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then_with(|| second(x, y)));
+    let by_b = |x: &(f64, f64), y: &(f64, f64)| x.1.total_cmp(&y.1);
+    pairs.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then_with(|| by_b(x, y)));
     let tied_in_both = count_tied_pairs(&pairs, |x, y| x == y);
     let tied_in_a = count_tied_pairs(&pairs, |x, y| x.0 == y.0);
     // In the order of A, with ties of A in the order of B, every pair that B has the other way round is discordant.
-    let mut of_b: Vec<f64> = pairs.iter().map(|(_, b)| *b).collect();
-    let discordant = count_exchanges(&mut of_b);
-    let tied_in_b = count_tied_pairs(&of_b, |x, y| x == y);
+    let mut b_values: Vec<f64> = pairs.iter().map(|(_, b)| *b).collect();
+    let discordant = count_exchanges(&mut b_values);
+    let tied_in_b = count_tied_pairs(&b_values, |x, y| x == y);
     let all = choose_two(pairs.len());
-    let [apart_in_a, apart_in_b] = [tied_in_a, tied_in_b].map(|tied| (all - tied) as f64);
+    let [ordered_in_a, ordered_in_b] = [tied_in_a, tied_in_b].map(|tied| (all - tied) as f64);
     let concordant = all + tied_in_both - tied_in_a - tied_in_b - discordant;
-    let scale = apart_in_a.sqrt() * apart_in_b.sqrt();
+    let scale = ordered_in_a.sqrt() * ordered_in_b.sqrt();
     (scale > 0.0).then(|| ((concordant as f64 - discordant as f64) / scale).clamp(-1.0, 1.0))
 }
 
@@ -54,6 +54,7 @@ fn without_minus_zero(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value }
 }
 
+/// The values less their mean; `None` where a correlation is not defined.
 fn centre_values(values: &[f64]) -> Option<Vec<f64>> {
     if values.len() < 2 || values.iter().any(|value| !value.is_finite()) {
         return None;
@@ -62,6 +63,7 @@ fn centre_values(values: &[f64]) -> Option<Vec<f64>> {
     Some(values.iter().map(|value| value - mean).collect())
 }
 
+/// The rank of each value, from 1. Equal values share the mean of their ranks.
 fn mean_ranks(values: &[f64]) -> Option<Vec<f64>> {
     if values.iter().any(|value| !value.is_finite()) {
         return None;
@@ -78,6 +80,7 @@ fn mean_ranks(values: &[f64]) -> Option<Vec<f64>> {
     Some(ranks)
 }
 
+/// The number of pairs among `count` things.
 fn choose_two(count: usize) -> u64 {
     let count = count as u64;
     count * count.saturating_sub(1) / 2

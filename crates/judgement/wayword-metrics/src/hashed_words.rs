@@ -2,7 +2,7 @@
 
 use wayword_core::{ModelError, TextEncoder, seed};
 
-/// How many slots words are hashed to.
+/// How many slots words are hashed to. Different words in one slot count as the same word.
 const HASH_SLOT_COUNT: u64 = 1024;
 
 /// Encodes a text as counts of hashed words. Paraphrases in other words come out far apart, so its figures are comparable with each
@@ -20,6 +20,7 @@ impl TextEncoder for HashedWordEncoder {
     }
 }
 
+/// How many words of a text fall into each slot, scaled to a vector of length 1.
 fn hashed_counts(text: &str) -> Vec<f32> {
     // Texts without words have a slot of their own, because every vector has length 1.
     let mut counts = vec![0.0f32; HASH_SLOT_COUNT as usize + 1];

@@ -78,19 +78,19 @@ pub struct AnchoredPictureFigures {
 /// The figures of items' texts, and of the anchors.
 #[must_use]
 pub fn anchored_picture_figures(items: &[PicturedItem<'_>], drawing: &ResamplingOptions) -> AnchoredPictureFigures {
-    let of = |which: fn(&PicturedItem<'_>) -> Option<PictureScores>| -> Option<PictureFigures> {
-        let agreed: Vec<(&str, PictureScores)> =
-            items.iter().filter_map(|item| which(item).map(|agreed| (item.cluster, agreed))).collect();
+    let figures = |select: fn(&PicturedItem<'_>) -> Option<PictureScores>| -> Option<PictureFigures> {
+        let scored: Vec<(&str, PictureScores)> =
+            items.iter().filter_map(|item| select(item).map(|scores| (item.cluster, scores))).collect();
         let estimate = |value: fn(&PictureScores) -> f64| {
-            let values: Vec<(&str, f64)> = agreed.iter().map(|(cluster, agreed)| (*cluster, value(agreed))).collect();
+            let values: Vec<(&str, f64)> = scored.iter().map(|(cluster, scores)| (*cluster, value(scores))).collect();
             clustered_interval(&values, drawing.resamples, drawing.level, drawing.seed)
         };
-        Some(PictureFigures { parts: estimate(|agreed| agreed.parts)?, whole: estimate(|agreed| agreed.whole)? })
+        Some(PictureFigures { parts: estimate(|scores| scores.parts)?, whole: estimate(|scores| scores.whole)? })
     };
     AnchoredPictureFigures {
-        text: of(|item| Some(item.text)),
-        person: of(|item| item.person),
-        other_path: of(|item| item.other_path),
+        text: figures(|item| Some(item.text)),
+        person: figures(|item| item.person),
+        other_path: figures(|item| item.other_path),
     }
 }
 

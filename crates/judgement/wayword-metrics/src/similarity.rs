@@ -50,24 +50,24 @@ pub fn compare_sets(
     drawing: &ResamplingOptions,
 ) -> SetSimilarity {
     let ids = |set: &BTreeMap<String, ItemVectors<'_>>| -> BTreeSet<String> {
-        set.iter().filter(|(_, said)| !said.vectors.is_empty()).map(|(id, _)| id.clone()).collect()
+        set.iter().filter(|(_, item)| !item.vectors.is_empty()).map(|(id, _)| id.clone()).collect()
     };
     let (in_a, in_b) = (ids(a), ids(b));
     let common: Vec<(&str, &ItemVectors<'_>, &ItemVectors<'_>)> =
         in_a.intersection(&in_b).map(|id| (id.as_str(), &a[id], &b[id])).collect();
-    let of_b: Vec<(&str, &ItemVectors<'_>)> = common.iter().map(|(id, _, b)| (*id, *b)).collect();
+    let b_items: Vec<(&str, &ItemVectors<'_>)> = common.iter().map(|(id, _, b)| (*id, *b)).collect();
     let estimate = |values: &[(&str, f64)]| clustered_interval(values, drawing.resamples, drawing.level, drawing.seed);
     let figures: Vec<(&str, f64)> =
         common.iter().filter_map(|(_, a, b)| Some((b.cluster.as_str(), mean_cosine_between(a, b)?))).collect();
     let same: Vec<(&str, f64)> =
-        of_b.iter().filter_map(|(_, said)| Some((said.cluster.as_str(), mean_cosine_within(said)?))).collect();
+        b_items.iter().filter_map(|(_, item)| Some((item.cluster.as_str(), mean_cosine_within(item)?))).collect();
     SetSimilarity {
         figure: estimate(&figures),
         same_item: estimate(&same),
-        random_pairs: estimate(&at_random(&of_b, drawing.seed)),
+        random_pairs: estimate(&at_random(&b_items, drawing.seed)),
         only_in_a: in_a.difference(&in_b).count(),
         only_in_b: in_b.difference(&in_a).count(),
-        single_in_b: of_b.len() - same.len(),
+        single_in_b: b_items.len() - same.len(),
     }
 }
 
@@ -77,36 +77,36 @@ fn mean_cosine_between(a: &ItemVectors<'_>, b: &ItemVectors<'_>) -> Option<f64> 
 }
 
 /// The mean cosine over all unordered pairs of one item's texts; `None` for fewer than two.
-fn mean_cosine_within(said: &ItemVectors<'_>) -> Option<f64> {
-    let texts = said.vectors.iter().enumerate();
-    mean(texts.flat_map(|(at, a)| said.vectors[at + 1..].iter().map(move |b| cosine(a, b))))
+fn mean_cosine_within(item: &ItemVectors<'_>) -> Option<f64> {
+    let texts = item.vectors.iter().enumerate();
+    mean(texts.flat_map(|(at, a)| item.vectors[at + 1..].iter().map(move |b| cosine(a, b))))
 }
 
 /// The mean cosine of each item with items of other paths, drawn with replacement; with the path of the item.
 fn at_random<'a>(items: &[(&str, &'a ItemVectors<'_>)], seed: u64) -> Vec<(&'a str, f64)> {
     let mut paths: BTreeMap<&str, Vec<&ItemVectors<'_>>> = BTreeMap::new();
-    for (_, said) in items {
-        paths.entry(&said.cluster).or_default().push(said);
+    for (_, item) in items {
+        paths.entry(&item.cluster).or_default().push(item);
     }
     // Items are in the order of their paths, so an item of another path is before the first or after the last of its
     // own path.
     let mut first = BTreeMap::new();
     let mut ordered: Vec<&ItemVectors<'_>> = Vec::with_capacity(items.len());
-    for (path, of_path) in &paths {
+    for (path, path_items) in &paths {
         first.insert(*path, ordered.len());
-        ordered.extend(of_path);
+        ordered.extend(path_items);
     }
-    let of_item = |(id, said): &(&str, &'a ItemVectors<'_>)| {
-        let (first, count) = (first[&*said.cluster], paths[&*said.cluster].len());
+    let random_similarity = |(id, item): &(&str, &'a ItemVectors<'_>)| {
+        let (first, count) = (first[&*item.cluster], paths[&*item.cluster].len());
         let others = ordered.len() - count;
         let mut rng = seeded_rng(seed, &["random pairs", id]);
         let drawn = (0..if others == 0 { 0 } else { RANDOM_PAIRS_PER_ITEM }).filter_map(|_| {
             let at = rng.random_range(0..others);
-            mean_cosine_between(said, ordered[if at < first { at } else { at + count }])
+            mean_cosine_between(item, ordered[if at < first { at } else { at + count }])
         });
-        Some((said.cluster.as_str(), mean(drawn)?))
+        Some((item.cluster.as_str(), mean(drawn)?))
     };
-    items.iter().filter_map(of_item).collect()
+    items.iter().filter_map(random_similarity).collect()
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {

@@ -22,7 +22,7 @@ pub enum WalkError {
     /// A grounder gave scores that cannot be compared.
     #[error("{grounder} did not give one finite score per view and phrase")]
     Unusable {
-        /// Its name.
+        /// The grounder's name.
         grounder: String,
     },
 }

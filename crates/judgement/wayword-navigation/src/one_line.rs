@@ -9,7 +9,7 @@ pub(crate) fn one_line(text: &str) -> String {
         .join(" ")
 }
 
-/// As [`one_line`], cut after a number of characters.
+/// As [`one_line`], but cut after `most_chars` characters. A text that was cut ends in " ...".
 pub(crate) fn shorten_line(text: &str, most_chars: usize) -> String {
     let line = one_line(text);
     match line.char_indices().nth(most_chars) {

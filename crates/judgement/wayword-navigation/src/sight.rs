@@ -24,16 +24,20 @@ pub struct AgentView<'a> {
     grounder: &'a dyn PhraseGrounder,
     scene: SceneId,
     graph: Arc<ViewpointGraph>,
+    /// Whether the views need pictures; without them the platform draws none.
     needs_pictures: bool,
+    /// Cache of the views around each node.
     around: Mutex<BTreeMap<ViewpointId, Arc<NodeViews>>>,
+    /// Cache of the grounder's scores, by node and phrases.
     scores: Mutex<BTreeMap<(ViewpointId, Vec<String>), ViewScores>>,
 }
 
-/// How well phrases fit each of the four views of a node.
+/// How well phrases fit each of the four views of a node: for each view, one score per phrase.
 type ViewScores = Arc<[Vec<f32>; 4]>;
 
 /// The four views around a node.
 struct NodeViews {
+    /// North, east, south, west.
     views: [View; 4],
     /// Neighbours in each view, nearest first.
     onward: [Vec<ViewpointId>; 4],
@@ -150,10 +154,11 @@ impl<'a> AgentView<'a> {
             return Ok(Arc::clone(scores));
         }
         let phrases: Vec<&str> = phrases.iter().map(String::as_str).collect();
-        let told = self.grounder.score_phrases(&around.views.each_ref(), &phrases);
-        let told = told.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let whole = told.iter().all(|scores| scores.len() == phrases.len() && scores.iter().all(|one| one.is_finite()));
-        let scores = <[Vec<f32>; 4]>::try_from(told).ok().filter(|_| whole);
+        let results = self.grounder.score_phrases(&around.views.each_ref(), &phrases);
+        let by_view = results.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let is_usable =
+            by_view.iter().all(|scores| scores.len() == phrases.len() && scores.iter().all(|score| score.is_finite()));
+        let scores = <[Vec<f32>; 4]>::try_from(by_view).ok().filter(|_| is_usable);
         let scores = Arc::new(scores.ok_or_else(|| WalkError::Unusable { grounder: self.grounder.name().to_owned() })?);
         self.scores.lock().unwrap_or_else(PoisonError::into_inner).insert(key, Arc::clone(&scores));
         Ok(scores)

@@ -23,9 +23,9 @@ pub struct AgentWalkRecord {
     /// The instruction as it was split for the agent; `None` for an agent that does not read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub directions: Option<SplitInstruction>,
-    /// Every node at which it stood, in order; at least the start.
+    /// Every node where the agent was, in order; at least the start.
     pub steps: Vec<AgentStep>,
-    /// Why it ended.
+    /// Why the walk ended.
     pub end: WalkEnd,
     /// The object that it takes for the target, where its grounder can name one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -161,15 +161,15 @@ pub enum StepChoice {
 pub enum WalkEnd {
     /// The agent took the place for the goal.
     Stopped,
-    /// It had made the most steps that it may.
+    /// The agent had made as many steps as its limit allows.
     Cap,
     /// There was nowhere to go.
     DeadEnd,
-    /// It had made the most calls of its model that it may.
+    /// The agent had made as many calls of its model as its limit allows.
     Calls,
     /// The cost of its model had reached the limit of a walk.
     Money,
-    /// It repeated one hop too often.
+    /// The agent repeated one hop too often.
     Circles,
     /// Several replies of its model in a row were useless.
     NoUse,

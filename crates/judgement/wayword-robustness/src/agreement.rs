@@ -15,7 +15,7 @@ pub struct TextAgreement {
     pub landmarks: Option<f64>,
     /// 1 minus the edit distance of the turns divided by the length of the longer list.
     pub turns: Option<f64>,
-    /// The same for the rooms.
+    /// 1 minus the edit distance of the rooms divided by the length of the longer list.
     pub rooms: Option<f64>,
     /// 1 if both state the same about floors, else 0.
     pub floors: Option<f64>,
@@ -43,14 +43,16 @@ impl TextAgreement {
 /// F1 of the landmarks, over the largest possible matching between both lists.
 fn landmark_f1(a: &TextFacts, b: &TextFacts) -> Option<f64> {
     let all = a.landmarks.len() + b.landmarks.len();
-    let is_same = |(name, frame): &(String, usize), (other, at): &(String, usize)| {
-        frame.abs_diff(*at) <= FRAMES_APART && names_agree(name, other)
+    let is_same = |(name, frame): &(String, usize), (other_name, other_frame): &(String, usize)| {
+        frame.abs_diff(*other_frame) <= FRAMES_APART && names_agree(name, other_name)
     };
+    // For each landmark of `a`, the matching ones of `b`.
     let partners: Vec<Vec<usize>> = a
         .landmarks
         .iter()
         .map(|one| (0..b.landmarks.len()).filter(|at| is_same(one, &b.landmarks[*at])).collect())
         .collect();
+    // For each landmark of `b`, the one of `a` that it is matched with.
     let mut taken: Vec<Option<usize>> = vec![None; b.landmarks.len()];
     let matched = (0..partners.len())
         .filter(|one| find_partner(*one, &partners, &mut taken, &mut vec![false; b.landmarks.len()]));
@@ -58,15 +60,15 @@ fn landmark_f1(a: &TextFacts, b: &TextFacts) -> Option<f64> {
     (all > 0).then(|| 2.0 * matched as f64 / all as f64)
 }
 
-/// Finds a partner for landmark `one`. If all candidates are taken, it tries to move another landmark to a different partner, which
-/// makes the matching as large as possible (Kuhn 1955).
-fn find_partner(one: usize, partners: &[Vec<usize>], taken: &mut [Option<usize>], tried: &mut [bool]) -> bool {
-    for &partner in &partners[one] {
+/// Finds a partner for a landmark. `tried` marks the candidates of this search. If all candidates are taken, it tries to move another
+/// landmark to a different partner, which makes the matching as large as possible (Kuhn 1955).
+fn find_partner(landmark: usize, partners: &[Vec<usize>], taken: &mut [Option<usize>], tried: &mut [bool]) -> bool {
+    for &partner in &partners[landmark] {
         if std::mem::replace(&mut tried[partner], true) {
             continue;
         }
         if taken[partner].is_none_or(|other| find_partner(other, partners, taken, tried)) {
-            taken[partner] = Some(one);
+            taken[partner] = Some(landmark);
             return true;
         }
     }
@@ -76,6 +78,7 @@ fn find_partner(one: usize, partners: &[Vec<usize>], taken: &mut [Option<usize>]
 /// 1 minus the edit distance (Levenshtein 1966) divided by the length of the longer list.
 fn sequence_similarity<T: PartialEq>(a: &[T], b: &[T]) -> Option<f64> {
     let longer = a.len().max(b.len());
+    // One row of the table of edit distances: `row[j]` belongs to the first `j` elements of `b`.
     let mut row: Vec<usize> = (0..=b.len()).collect();
     for (at, one) in a.iter().enumerate() {
         let mut before = row[0];

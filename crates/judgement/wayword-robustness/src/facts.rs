@@ -42,8 +42,8 @@ impl TextFacts {
         let of_kind = |kind: MentionKind| mentions.iter().filter(move |mention| mention.kind == kind);
         let landmarks =
             of_kind(MentionKind::Landmark).filter_map(|mention| Some((words(mention)?, place(mention.frame))));
-        let usual = |name: String| room_name(&name).map_or_else(|| name.clone(), str::to_owned);
-        let mut rooms: Vec<String> = of_kind(MentionKind::Room).filter_map(words).map(usual).collect();
+        let usual_name = |name: String| room_name(&name).map_or_else(|| name.clone(), str::to_owned);
+        let mut rooms: Vec<String> = of_kind(MentionKind::Room).filter_map(words).map(usual_name).collect();
         rooms.dedup();
         let (mut turns, mut floors) = (Vec::new(), Vec::new());
         for event in read_instruction(text, &BTreeSet::new()).into_claims().events {
@@ -67,7 +67,7 @@ pub(crate) fn turn_told(what: &EventContent) -> Option<Side> {
     }
 }
 
-/// Openings without a door.
+/// Names of openings that have no door.
 const DOORLESS_OPENINGS: [&str; 4] = ["doorway", "opening", "entrance", "exit"];
 
 /// Whether one walks through or into a thing of this name.
@@ -78,6 +78,7 @@ fn goes_through(name: &str) -> bool {
 }
 
 impl FloorFact {
+    /// The statement of a climb; a level way states nothing.
     fn from_climb(climb: ClimbDirection) -> Option<Self> {
         match climb {
             ClimbDirection::Up => Some(Self::Up),

@@ -7,7 +7,7 @@ use wayword_core::{Frame, Heading, Path, Pose, path::PathStop};
 /// A new frame at most this far along the path from an existing one, metres, is that frame.
 const SAME_M: f64 = 1e-6;
 
-/// Smallest allowed distance between two frames, metres.
+/// Smallest distance between two frames, metres. A request for less is raised to it.
 const LEAST_SPACING_M: f64 = 0.05;
 
 /// A changed path.
@@ -125,12 +125,14 @@ fn rejoin_stops(path: &Path, stops: Vec<PathStop>, base_frame_of: Vec<usize>) ->
     if let (Some(before), Some(now), Some(target)) = (path.frames.last(), after.frames.last(), &mut after.target)
         && before.pose.heading.turn_to(now.pose.heading).abs() > SAME_M
     {
-        // A walker who arrives from another direction sees the target on another side.
+        // The tolerance, in metres, serves for the turn too, in radians. A walker who arrives from another direction sees the target on
+        // another side.
         target.told_by.retain(|distinction| !distinction.needs_pose());
     }
     ChangedPath { path: after, base_frame_of }
 }
 
+/// A frame without its heading.
 fn stop_from_frame(frame: &Frame) -> PathStop {
     let Frame { pose: Pose { position, .. }, viewpoint, level } = frame.clone();
     PathStop { position, viewpoint, level }
@@ -148,13 +150,13 @@ fn along_m(path: &Path) -> Vec<f64> {
     path.frames.iter().map(place).collect()
 }
 
-/// The frame nearest to a position along the path; of two, the earlier one.
+/// The frame nearest to a position along the path; of two, the earlier one. `at_m` has the position of each frame.
 fn nearest_frame(at_m: &[f64], place_m: f64) -> usize {
     let off = |frame: &usize| (at_m[*frame] - place_m).abs();
     (0..at_m.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0)
 }
 
-/// The stop at a position along the path. `base` is the nearest frame.
+/// The stop at a position along the path. `at_m` has the position of each frame, and `base` is the nearest frame.
 fn stop_at(path: &Path, at_m: &[f64], place_m: f64, base: usize) -> PathStop {
     let here = stop_from_frame(&path.frames[base]);
     if (at_m[base] - place_m).abs() <= SAME_M {

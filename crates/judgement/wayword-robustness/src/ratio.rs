@@ -14,7 +14,7 @@ pub const LEAST_PATHS: usize = 30;
 /// Smallest difference between the two anchors for which R is computed. With nearly equal anchors the ratio would be noise.
 pub const LEAST_GAP: f64 = 0.1;
 
-/// The kinds of statements, and the mean of all.
+/// The kinds of statements in the order of [`TextAgreement::by_kind`], and the mean of all.
 pub const STATEMENT_KINDS: [&str; 5] = ["landmarks", "turns", "rooms", "floors", "mean"];
 
 /// The agreements of the original text of one path with three other texts.
@@ -22,11 +22,11 @@ pub const STATEMENT_KINDS: [&str; 5] = ["landmarks", "turns", "rooms", "floors",
 pub struct PathAgreements {
     /// Its scene. Texts of one scene are not independent.
     pub scene: String,
-    /// With the text in the changed world.
+    /// The agreement with the text in the changed world.
     pub changed: TextAgreement,
-    /// With a second text in the unchanged world.
+    /// The agreement with a second text in the unchanged world.
     pub again: TextAgreement,
-    /// With the text of another path.
+    /// The agreement with the text of another path.
     pub other: TextAgreement,
 }
 
@@ -71,6 +71,7 @@ pub fn robustness_ratios(paths: &[PathAgreements], drawing: BootstrapOptions) ->
     STATEMENT_KINDS.iter().enumerate().map(|(kind, name)| of_kind(paths, kind, name, drawing)).collect()
 }
 
+/// R for one kind of statement, an index of [`STATEMENT_KINDS`].
 fn of_kind(paths: &[PathAgreements], kind: usize, name: &str, drawing: BootstrapOptions) -> RobustnessRatio {
     let mut scenes: BTreeMap<&str, AgreementSum> = BTreeMap::new();
     for path in paths {
@@ -93,14 +94,14 @@ fn of_kind(paths: &[PathAgreements], kind: usize, name: &str, drawing: Bootstrap
         )),
         _ => None,
     };
-    let known = |of: usize| (all.paths > 0).then(|| all.mean(of));
+    let known_mean = |at: usize| (all.paths > 0).then(|| all.mean(at));
     RobustnessRatio {
         kind: name.to_owned(),
         r: reason.is_none().then(|| ratio_interval(&scenes, &all, name, drawing)),
         reason,
-        changed: known(0),
-        again: known(1),
-        other: known(2),
+        changed: known_mean(0),
+        again: known_mean(1),
+        other: known_mean(2),
         paths: all.paths,
     }
 }
@@ -108,18 +109,19 @@ fn of_kind(paths: &[PathAgreements], kind: usize, name: &str, drawing: Bootstrap
 /// The three agreements of a path for a kind, or for the mean of the kinds that all three have.
 fn three_agreements(path: &PathAgreements, kind: usize) -> Option<[f64; 3]> {
     let kinds = [path.changed.by_kind(), path.again.by_kind(), path.other.by_kind()];
-    let of = |kind: usize| Some([kinds[0][kind]?, kinds[1][kind]?, kinds[2][kind]?]);
+    let agreements = |kind: usize| Some([kinds[0][kind]?, kinds[1][kind]?, kinds[2][kind]?]);
     if kind < kinds[0].len() {
-        return of(kind);
+        return agreements(kind);
     }
-    let all: Vec<[f64; 3]> = (0..kinds[0].len()).filter_map(of).collect();
+    let all: Vec<[f64; 3]> = (0..kinds[0].len()).filter_map(agreements).collect();
     let mean = |at: usize| all.iter().map(|three| three[at]).sum::<f64>() / all.len() as f64;
     (!all.is_empty()).then(|| [mean(0), mean(1), mean(2)])
 }
 
-/// Sums over paths.
+/// Sums of agreements over paths, and the number of paths.
 #[derive(Debug, Clone, Copy, Default)]
 struct AgreementSum {
+    /// The sums of the agreements with the changed, the repeated and the other path's text.
     of: [f64; 3],
     paths: usize,
 }
@@ -142,6 +144,7 @@ impl AgreementSum {
     }
 }
 
+/// R over all paths, with its interval by resampling scenes.
 fn ratio_interval(scenes: &[AgreementSum], all: &AgreementSum, name: &str, drawing: BootstrapOptions) -> MeanEstimate {
     let draw = |resample: usize, at: usize| {
         let words = ["robustness", name, &resample.to_string(), &at.to_string()];
@@ -149,8 +152,8 @@ fn ratio_interval(scenes: &[AgreementSum], all: &AgreementSum, name: &str, drawi
     };
     let resampled =
         |resample: usize| (0..scenes.len()).fold(AgreementSum::default(), |sum, at| sum.plus(draw(resample, at)));
-    let apart = |sum: &AgreementSum| sum.mean(1) - sum.mean(2) > f64::EPSILON;
-    let ratios = (0..drawing.resamples.max(1)).map(resampled).filter(apart).map(|sum| sum.ratio()).collect();
+    let has_gap = |sum: &AgreementSum| sum.mean(1) - sum.mean(2) > f64::EPSILON;
+    let ratios = (0..drawing.resamples.max(1)).map(resampled).filter(has_gap).map(|sum| sum.ratio()).collect();
     let mean = all.ratio();
     let [low, high] = percentile_interval(ratios, drawing.level).unwrap_or([mean; 2]);
     MeanEstimate { mean, low, high, values: all.paths, clusters: scenes.len() }
@@ -173,7 +176,8 @@ pub fn dose_slope(points: &[(f64, f64)]) -> Option<f64> {
 /// search goes upwards from the lowest dose. R is interpolated linearly between doses, and is taken as 1 at the unchanged dose.
 #[must_use]
 pub fn falls_at(points: &[(f64, f64)], unchanged: Option<f64>, least: f64) -> Vec<f64> {
-    let one_way = |sign: f64| {
+    let fall_in_direction = |sign: f64| {
+        // `sign` is 1 for rising doses and -1 for falling ones.
         let is_ahead = |dose: f64| unchanged.is_none_or(|unchanged| (dose - unchanged) * sign > 0.0);
         let mut ahead: Vec<(f64, f64)> = points.iter().copied().filter(|(dose, _)| is_ahead(*dose)).collect();
         ahead.sort_by(|a, b| (a.0 * sign).total_cmp(&(b.0 * sign)));
@@ -188,7 +192,7 @@ pub fn falls_at(points: &[(f64, f64)], unchanged: Option<f64>, least: f64) -> Ve
         None
     };
     let ways: &[f64] = if unchanged.is_some() { &[-1.0, 1.0] } else { &[1.0] };
-    ways.iter().filter_map(|sign| one_way(*sign)).collect()
+    ways.iter().filter_map(|sign| fall_in_direction(*sign)).collect()
 }
 
 #[cfg(test)]

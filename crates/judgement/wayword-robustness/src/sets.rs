@@ -19,7 +19,7 @@ pub struct FollowResult {
     pub scene: String,
     /// Its path.
     pub path: String,
-    /// The item.
+    /// The item of its text.
     pub item: String,
     /// Which of the item's texts in that set, from 0.
     pub text_index: usize,
@@ -60,9 +60,9 @@ pub struct VarianceShares {
 /// Whether two sets rank agents alike.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RankingAgreement {
-    /// One set.
+    /// The first set.
     pub one: String,
-    /// The other.
+    /// The second set.
     pub other: String,
     /// Kendall's tau-b of the agents' success rates; `None` for fewer than two agents, or if all agents tie in one set.
     pub tau_b: Option<f64>,
@@ -81,7 +81,7 @@ type SuccessTable = Vec<Vec<Vec<f64>>>;
 pub fn agent_success_rates(followed: &[FollowResult], drawing: BootstrapOptions) -> Vec<AgentSuccess> {
     let sets: Vec<&str> = followed.iter().map(|one| one.set.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
     let agents: BTreeSet<&str> = followed.iter().map(|one| one.agent.as_str()).collect();
-    let of_agent = |agent: &str| {
+    let rates_of_agent = |agent: &str| {
         let table = success_table(followed, agent, &sets);
         let rows: Vec<&Vec<f64>> = table.iter().flatten().collect();
         let mean = |at: usize| rows.iter().map(|row| row[at]).sum::<f64>() / rows.len().max(1) as f64;
@@ -97,9 +97,10 @@ pub fn agent_success_rates(followed: &[FollowResult], drawing: BootstrapOptions)
             shares: variance_shares(&table, drawing),
         }
     };
-    agents.into_iter().map(of_agent).filter(|found| found.paths > 0).collect()
+    agents.into_iter().map(rates_of_agent).filter(|found| found.paths > 0).collect()
 }
 
+/// The success of one agent by scene, path and set. Paths that lack a set are left out.
 fn success_table(followed: &[FollowResult], agent: &str, sets: &[&str]) -> SuccessTable {
     let mut sums = SuccessSums::new();
     for one in followed.iter().filter(|one| one.agent == agent) {
@@ -152,29 +153,31 @@ fn variance_components(scenes: &[&Vec<Vec<f64>>]) -> Option<[f64; 4]> {
         let (sum, count) = values.fold((0.0, 0usize), |(sum, count), value| (sum + value, count + 1));
         sum / count.max(1) as f64
     };
-    let of_row = |row: &[f64]| mean(&mut row.iter().copied());
-    let all = mean(&mut rows.iter().map(|row| of_row(row)));
+    let row_mean = |row: &[f64]| mean(&mut row.iter().copied());
+    let grand_mean = mean(&mut rows.iter().map(|row| row_mean(row)));
     let square = |value: f64| value * value;
-    let (mut of_scenes, mut of_paths) = (0.0, 0.0);
+    let (mut scene_squares, mut path_squares) = (0.0, 0.0);
     for scene in scenes {
-        let here = mean(&mut scene.iter().map(|row| of_row(row)));
-        of_scenes += scene.len() as f64 * square(here - all);
-        of_paths += scene.iter().map(|row| square(of_row(row) - here)).sum::<f64>();
+        let here = mean(&mut scene.iter().map(|row| row_mean(row)));
+        scene_squares += scene.len() as f64 * square(here - grand_mean);
+        path_squares += scene.iter().map(|row| square(row_mean(row) - here)).sum::<f64>();
     }
     let set_means: Vec<f64> = (0..sets).map(|at| mean(&mut rows.iter().map(|row| row[at]))).collect();
-    let of_sets: f64 = set_means.iter().map(|one| square(one - all)).sum();
+    let set_squares: f64 = set_means.iter().map(|one| square(one - grand_mean)).sum();
     let rest: f64 = rows
         .iter()
         .map(|row| {
-            let here = of_row(row);
-            row.iter().zip(&set_means).map(|(value, set)| square(value - here - set + all)).sum::<f64>()
+            let here = row_mean(row);
+            row.iter().zip(&set_means).map(|(value, set)| square(value - here - set + grand_mean)).sum::<f64>()
         })
         .sum();
+    // The numbers of sets, paths and scenes.
     let [s, p, c] = [sets, paths, scenes.len()].map(|count| count as f64);
+    // Mean squares: sums of squares divided by their degrees of freedom.
     let ms_rest = rest / ((s - 1.0) * (p - 1.0));
-    let ms_path = s * of_paths / (p - c);
-    let ms_scene = s * of_scenes / (c - 1.0);
-    let ms_set = p * of_sets / (s - 1.0);
+    let ms_path = s * path_squares / (p - c);
+    let ms_scene = s * scene_squares / (c - 1.0);
+    let ms_set = p * set_squares / (s - 1.0);
     // The effective number of paths per scene, where scenes have different numbers.
     let per_scene = (p - scenes.iter().map(|scene| square(scene.len() as f64)).sum::<f64>() / p) / (c - 1.0);
     let parts = [(ms_scene - ms_path) / (s * per_scene), (ms_path - ms_rest) / s, (ms_set - ms_rest) / p, ms_rest];
@@ -190,6 +193,7 @@ pub fn compare_rankings(followed: &[FollowResult], drawing: BootstrapOptions) ->
     let agents: BTreeSet<&str> = followed.iter().map(|one| one.agent.as_str()).collect();
     let tables: Vec<SuccessTable> = agents.iter().map(|agent| success_table(followed, agent, &sets)).collect();
     let scenes = tables.iter().map(Vec::len).min().unwrap_or(0);
+    // Without the same scenes for all agents, the draws below would not fit every table.
     let is_whole = tables.iter().all(|table| table.len() == scenes);
     let tau = |one: usize, other: usize, drawn: &[usize]| {
         let rate = |table: &SuccessTable, set: usize| {
@@ -200,7 +204,7 @@ pub fn compare_rankings(followed: &[FollowResult], drawing: BootstrapOptions) ->
         kendall_tau_b(&rates(one), &rates(other))
     };
     let pairs = (0..sets.len()).flat_map(|one| (one + 1..sets.len()).map(move |other| (one, other)));
-    let of_pair = |(one, other): (usize, usize)| {
+    let agreement_of_pair = |(one, other): (usize, usize)| {
         let whole: Vec<usize> = (0..scenes).collect();
         let mut dice = seeded_rng(drawing.seed, &["rankings", sets[one], sets[other]]);
         let draw = |_| (0..scenes).map(|_| dice.random_range(0..scenes)).collect::<Vec<usize>>();
@@ -214,7 +218,7 @@ pub fn compare_rankings(followed: &[FollowResult], drawing: BootstrapOptions) ->
             tau_b,
         }
     };
-    pairs.map(of_pair).collect()
+    pairs.map(agreement_of_pair).collect()
 }
 
 #[cfg(test)]

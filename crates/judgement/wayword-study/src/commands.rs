@@ -1,5 +1,5 @@
-//! The commands of the researcher: making a study, progress, links, closing, forgetting, exports. They work on the study's folder, also while the
-//! site is being served.
+//! The commands of the researcher: making a study, progress, links, closing, forgetting, exports. They work on the study's folder, also
+//! while the site is being served.
 
 use crate::{
     store::{ErasureReport, InviteTokens, Reconciliation, StudyProgress, StudyStore, StudyTransaction, now_ms},
@@ -7,7 +7,7 @@ use crate::{
 };
 use std::path::{Path, PathBuf};
 
-/// Largest number of personal links that one command makes.
+/// Most personal links that one command makes. A request for more is refused.
 const MOST_LINKS: u32 = 100_000;
 
 impl Study {
@@ -35,7 +35,8 @@ impl Study {
     /// # Errors
     /// When the database cannot be read.
     pub fn read_progress(&self) -> Result<StudyProgress, StudyError> {
-        StudyStore::open(&self.database_file())?.read_transaction(self, now_ms(), |book| book.read_progress())
+        StudyStore::open(&self.database_file())?
+            .read_transaction(self, now_ms(), |transaction| transaction.read_progress())
     }
 
     /// Makes personal links. Each is for one participant.
@@ -53,7 +54,7 @@ impl Study {
                 format!("give at most {MOST_LINKS}"),
             ));
         }
-        self.run_transaction(|book| book.invite_participants(count))
+        self.run_transaction(|transaction| transaction.invite_participants(count))
     }
 
     /// Closes the study: it accepts no more answers, and the participants' ids at the recruiter are deleted.
@@ -61,7 +62,7 @@ impl Study {
     /// # Errors
     /// When people are still answering and `even_if_live` is not set, or the database cannot be written.
     pub fn close(&self, even_if_live: bool) -> Result<(), StudyError> {
-        let live = self.run_transaction(|book| book.close_study(even_if_live))?;
+        let live = self.run_transaction(|transaction| transaction.close_study(even_if_live))?;
         if live > 0 && !even_if_live {
             let problem = format!("{live} participants are in the middle of it, and could not go on");
             return Err(StudyError::refused_request(problem, "wait until they are done, or give --even-if-live"));
@@ -75,9 +76,9 @@ impl Study {
     /// # Errors
     /// When the participant does not exist, or the database cannot be written.
     pub fn forget_participant(&self, participant: &str, is_dry: bool) -> Result<ErasureReport, StudyError> {
-        let forgotten = self.run_transaction(|book| book.forget_participant(participant, is_dry))?;
+        let report = self.run_transaction(|transaction| transaction.forget_participant(participant, is_dry))?;
         StudyStore::open(&self.database_file())?.empty_log();
-        Ok(forgotten)
+        Ok(report)
     }
 
     /// Compares a recruiter's list of participants (CSV) with ours.
@@ -85,16 +86,17 @@ impl Study {
     /// # Errors
     /// When the file cannot be read, or no participant has a recruiter's id.
     pub fn reconcile_recruiter_list(&self, file: &Path) -> Result<Reconciliation, StudyError> {
-        self.run_transaction(|book| book.reconcile_recruiter_list(file))
+        self.run_transaction(|transaction| transaction.reconcile_recruiter_list(file))
     }
 
-    /// Remembers a folder to which results are written. It contains answers, which have to go too when somebody wants to be forgotten.
+    /// Remembers a folder to which results are written. The results contain answers, so the researcher has to delete them too when a
+    /// participant wants to be forgotten.
     ///
     /// # Errors
     /// When the database cannot be written.
     pub fn note_export(&self, folder: &Path) -> Result<(), StudyError> {
         let folder = std::path::absolute(folder).map_err(StudyError::io_error(folder, "find"))?;
-        self.run_transaction(|book| book.note_export(&folder))
+        self.run_transaction(|transaction| transaction.note_export(&folder))
     }
 
     /// The folders to which results were written and which are still there.
@@ -102,11 +104,12 @@ impl Study {
     /// # Errors
     /// When the database cannot be read.
     pub fn list_exports(&self) -> Result<Vec<PathBuf>, StudyError> {
-        let mut folders = self.run_transaction(|book| book.list_exports())?;
+        let mut folders = self.run_transaction(|transaction| transaction.list_exports())?;
         folders.retain(|folder| folder.exists());
         Ok(folders)
     }
 
+    /// Opens the database and runs `work` as one transaction, with the present time.
     fn run_transaction<T>(
         &self,
         work: impl FnOnce(&StudyTransaction<'_>) -> Result<T, StudyError>,

@@ -18,6 +18,7 @@ pub(crate) fn random_token() -> Result<String, getrandom::Error> {
 
 /// Whether a text has the form of a token.
 pub(crate) fn is_token(text: &str) -> bool {
+    // Base64 without padding writes the 16 bytes as 22 characters.
     text.len() == 22 && text.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'_'))
 }
 

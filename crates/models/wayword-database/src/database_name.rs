@@ -1,4 +1,4 @@
-//! Parses the name of a database, adds the settings that it leaves out, and connects.
+//! Parses the name of a database, adds the settings that the name leaves out, and connects.
 
 use crate::{DatabaseError, error::is_lost, password, tls};
 use postgres::{
@@ -10,14 +10,19 @@ use std::{env, fmt, path::Path, str::FromStr, time::Duration};
 /// A database, as a user names it.
 #[derive(Clone)]
 pub struct PostgresDatabase {
+    /// All settings of the connection except the password, which `connect` adds.
     config: Box<Config>,
+    /// User, host, port and database, for messages.
     shown: String,
+    /// The environment variable with the password, if the user names one.
     password_env: Option<String>,
 }
 
-/// Folders of the socket of a server on this machine.
+/// Folders in which a server on this machine may have its socket.
 const SOCKET_FOLDERS: [&str; 2] = ["/var/run/postgresql", "/tmp"];
+/// PostgreSQL's own port.
 const DEFAULT_PORT: u16 = 5432;
+/// How long one attempt to connect may take. A slower one fails.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Options of every connection: a statement or a transaction that hangs is ended, so that it does not block other workers.
@@ -41,7 +46,8 @@ impl PostgresDatabase {
             return wrong("it is empty", NAME_HINT);
         }
         let mut config = if text.contains("://") || text.contains('=') {
-            // This program checks certificates and the server's name always, so "require" means the same.
+            // The parser of the library does not know these two modes. This program always checks the certificate and the
+            // server's name, so "require" means the same here.
             let text = ["verify-full", "verify-ca"]
                 .iter()
                 .fold(text.to_owned(), |text, mode| text.replace(&format!("sslmode={mode}"), "sslmode=require"));
@@ -86,9 +92,9 @@ impl PostgresDatabase {
             _ => config.connect(tls::tls_connector()?),
         };
         connected.map_err(|error| {
-            let told = DatabaseError::from_server(&self.shown, "connect", &error);
+            let connect_error = DatabaseError::from_server(&self.shown, "connect", &error);
             // No statement was sent yet, so an error without a code comes from the connection.
-            match told {
+            match connect_error {
                 DatabaseError::Server { database, doing, reason, hint, .. } => DatabaseError::Server {
                     database,
                     doing,
@@ -114,16 +120,16 @@ impl fmt::Debug for PostgresDatabase {
     }
 }
 
-/// Adds the settings that the text leaves out.
+/// Adds the settings that `text`, the name of the database, leaves out: from PostgreSQL's environment variables, else defaults.
 fn complete_config(config: &mut Config, text: &str) -> Result<(), DatabaseError> {
-    let set = |name: &str| env::var(name).ok().filter(|value| !value.is_empty());
+    let env_value = |name: &str| env::var(name).ok().filter(|value| !value.is_empty());
     if config.get_hosts().is_empty() && config.get_hostaddrs().is_empty() {
         let socket =
             SOCKET_FOLDERS.iter().find(|folder| Path::new(folder).join(format!(".s.PGSQL.{DEFAULT_PORT}")).exists());
-        config.host(set("PGHOST").as_deref().or(socket.copied()).unwrap_or("localhost"));
+        config.host(env_value("PGHOST").as_deref().or(socket.copied()).unwrap_or("localhost"));
     }
     if config.get_ports().is_empty()
-        && let Some(port) = set("PGPORT")
+        && let Some(port) = env_value("PGPORT")
     {
         let port = port.parse().map_err(|_| DatabaseError::Name {
             problem: format!("PGPORT is {port}"),
@@ -132,13 +138,13 @@ fn complete_config(config: &mut Config, text: &str) -> Result<(), DatabaseError>
         config.port(port);
     }
     if config.get_user().is_none()
-        && let Some(user) = set("PGUSER")
+        && let Some(user) = env_value("PGUSER")
     {
         config.user(&user);
     }
     if !text.contains("sslmode=") {
-        let asked = set("PGSSLMODE");
-        config.ssl_mode(match asked.as_deref() {
+        let asked_mode = env_value("PGSSLMODE");
+        config.ssl_mode(match asked_mode.as_deref() {
             Some("disable" | "allow") => SslMode::Disable,
             Some(_) => SslMode::Require,
             None if is_here(config) => SslMode::Disable,
@@ -152,7 +158,7 @@ fn complete_config(config: &mut Config, text: &str) -> Result<(), DatabaseError>
     Ok(())
 }
 
-/// Whether the server is on this machine.
+/// Whether all hosts of the connection are this machine, so that TLS is not needed.
 fn is_here(config: &Config) -> bool {
     config.get_hosts().iter().all(|host| match host {
         Host::Tcp(name) => ["localhost", "127.0.0.1", "::1"].contains(&name.as_str()),
@@ -161,6 +167,7 @@ fn is_here(config: &Config) -> bool {
     })
 }
 
+/// The connection in one line, as `me@far:5432/wayword_db`.
 fn describe_config(config: &Config) -> String {
     let user = config.get_user().map_or(String::new(), |user| format!("{user}@"));
     let host = match config.get_hosts().first() {

@@ -39,7 +39,7 @@ pub enum DatabaseError {
     Encoding {
         /// The database.
         database: String,
-        /// Its encoding.
+        /// The encoding of the database, by PostgreSQL's name.
         encoding: String,
     },
     /// A newer version of the program made the tables.
@@ -51,7 +51,7 @@ pub enum DatabaseError {
         database: String,
         /// The schema of the tables.
         schema: &'static str,
-        /// Their version.
+        /// The version of the tables.
         version: i32,
     },
     /// The tables have to be made, and this role may not.
@@ -71,7 +71,7 @@ pub enum DatabaseError {
     Server {
         /// The database.
         database: String,
-        /// The operation.
+        /// The operation that failed, as a verb after "cannot".
         doing: &'static str,
         /// The message of the server or the system.
         reason: String,
@@ -89,10 +89,12 @@ impl DatabaseError {
         matches!(self, Self::Server { is_lost: true, .. })
     }
 
+    /// The error that a server or its connection gave during the operation `doing`.
     pub(crate) fn from_server(database: &str, doing: &'static str, error: &postgres::Error) -> Self {
         let is_lost = is_lost(error);
-        let told = error.as_db_error().map(|told| format!("{} ({})", told.message(), told.code().code()));
-        let reason = told.unwrap_or_else(|| with_causes(error));
+        let server_message =
+            error.as_db_error().map(|db_error| format!("{} ({})", db_error.message(), db_error.code().code()));
+        let reason = server_message.unwrap_or_else(|| with_causes(error));
         Self::Server { database: database.to_owned(), doing, reason, hint: error_hint(error, is_lost), is_lost }
     }
 }
@@ -104,7 +106,7 @@ pub(crate) fn is_lost(error: &postgres::Error) -> bool {
         // An error without a code comes from the connection, unless a value could not be converted.
         return error.is_closed() || std::error::Error::source(error).is_some_and(|cause| cause.is::<std::io::Error>());
     };
-    let again = [
+    let temporary_codes = [
         SqlState::ADMIN_SHUTDOWN,
         SqlState::CRASH_SHUTDOWN,
         SqlState::CANNOT_CONNECT_NOW,
@@ -115,23 +117,26 @@ pub(crate) fn is_lost(error: &postgres::Error) -> bool {
         SqlState::QUERY_CANCELED,
         SqlState::IDLE_IN_TRANSACTION_SESSION_TIMEOUT,
     ];
-    again.contains(code) || code.code().starts_with("08")
+    // Codes that begin with 08 report a failed connection.
+    temporary_codes.contains(code) || code.code().starts_with("08")
 }
 
+/// The message of an error, and the messages of its causes as far as they add something.
 fn with_causes(error: &postgres::Error) -> String {
-    let mut told = error.to_string();
+    let mut message = error.to_string();
     let mut cause = std::error::Error::source(error);
     while let Some(next) = cause {
         let text = next.to_string();
-        if !told.contains(&text) {
-            told.push_str(": ");
-            told.push_str(&text);
+        if !message.contains(&text) {
+            message.push_str(": ");
+            message.push_str(&text);
         }
         cause = next.source();
     }
-    told
+    message
 }
 
+/// How the user can fix an error of the server.
 fn error_hint(error: &postgres::Error, is_lost: bool) -> &'static str {
     match error.code() {
         Some(code) if *code == SqlState::INVALID_PASSWORD || *code == SqlState::INVALID_AUTHORIZATION_SPECIFICATION => {

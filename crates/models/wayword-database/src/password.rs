@@ -10,10 +10,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Largest password file, bytes.
+/// Largest password file, bytes. A larger file is refused.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// The password of a connection; `None` if no source has one for it.
+/// The password of a connection; `None` if no source has one for it. `variable` is the environment variable that the user names.
 pub(crate) fn find_password(config: &Config, variable: Option<&str>) -> Result<Option<String>, DatabaseError> {
     if let Some(name) = variable {
         let value = env::var(name).ok().filter(|value| !value.is_empty());
@@ -30,14 +30,15 @@ pub(crate) fn find_password(config: &Config, variable: Option<&str>) -> Result<O
     }
 }
 
+/// The password that a file has for a connection. A file that other users may read is refused.
 fn in_file(config: &Config, path: &Path) -> Result<Option<String>, DatabaseError> {
     let failed = |problem: String, hint| DatabaseError::File { path: path.to_owned(), problem, hint };
-    let about = fs::metadata(path).map_err(|error| failed(error.to_string(), "check PGPASSFILE"))?;
-    if !about.is_file() || about.len() > MOST_BYTES {
+    let metadata = fs::metadata(path).map_err(|error| failed(error.to_string(), "check PGPASSFILE"))?;
+    if !metadata.is_file() || metadata.len() > MOST_BYTES {
         return Err(failed("this is no password file".to_owned(), "check PGPASSFILE"));
     }
     #[cfg(unix)]
-    if is_open(MetadataExt::mode(&about), MetadataExt::uid(&about)) {
+    if is_open(MetadataExt::mode(&metadata), MetadataExt::uid(&metadata)) {
         return Err(failed("others may read this password file".to_owned(), "chmod 600 the file"));
     }
     let text = fs::read_to_string(path).map_err(|error| failed(error.to_string(), "check PGPASSFILE"))?;
@@ -48,6 +49,7 @@ fn in_file(config: &Config, path: &Path) -> Result<Option<String>, DatabaseError
 /// Kubernetes mounts secrets this way: root owns the file, and the worker is the only member of the group.
 #[cfg(unix)]
 fn is_open(mode: u32, owner: u32) -> bool {
+    // Bits of the mode: 0o077 is any access by group or others; 0o037 lets the group read.
     let not_allowed = if owner == 0 { 0o037 } else { 0o077 };
     mode & not_allowed != 0
 }
@@ -63,7 +65,7 @@ fn wanted_fields(config: &Config) -> [String; 4] {
     [host, port.to_string(), config.get_dbname().unwrap_or_default().to_owned(), user.unwrap_or_default()]
 }
 
-/// The password of a line, if the line is for that connection.
+/// The password of a line, if the line is for the connection with the `wanted` fields. `*` in a line fits every value.
 fn password_of(line: &str, wanted: &[String; 4]) -> Option<String> {
     if line.starts_with('#') {
         return None;
@@ -82,6 +84,7 @@ fn split_fields(line: &str) -> Vec<String> {
     while let Some(character) = characters.next() {
         let last = fields.len() - 1;
         match character {
+            // The password is the fifth field and may contain colons.
             ':' if last < 4 => fields.push(String::new()),
             '\\' => fields[last].extend(characters.next()),
             other => fields[last].push(other),

@@ -12,13 +12,15 @@ use std::{
 
 /// How long work is tried again while the server cannot be reached.
 const MAX_RETRY_TIME: Duration = Duration::from_secs(120);
-/// First and longest pause between two tries. Each is twice the one before.
+/// Pause before the second try. Each further pause is twice the one before.
 const FIRST_PAUSE: Duration = Duration::from_millis(50);
+/// Longest pause between two tries.
 const LAST_PAUSE: Duration = Duration::from_secs(2);
 
 /// A connection, with the statements that it has prepared.
 pub struct PooledConnection {
     client: Client,
+    /// The prepared statements, by their SQL.
     prepared: BTreeMap<&'static str, Statement>,
 }
 
@@ -58,19 +60,23 @@ impl PooledConnection {
 /// Connections to one database. Threads take them in turn.
 pub struct ConnectionPool {
     database: PostgresDatabase,
+    /// How many connections may be open at once. A thread waits while all are in use.
     most: usize,
     state: Mutex<PoolState>,
+    /// Wakes a waiting thread when a connection was put back.
     back: Condvar,
 }
 
+/// The connections of a pool at this moment.
 #[derive(Default)]
 struct PoolState {
     idle: Vec<PooledConnection>,
+    /// How many connections are in use.
     out: usize,
 }
 
 impl ConnectionPool {
-    /// A pool of at most so many connections. Makes none yet.
+    /// A pool of at most `most` connections. It connects only when work needs it.
     #[must_use]
     pub fn new(database: PostgresDatabase, most: usize) -> Self {
         Self { database, most: most.max(1), state: Mutex::default(), back: Condvar::new() }
@@ -107,6 +113,7 @@ impl ConnectionPool {
         }
     }
 
+    /// One try of the work with one connection. Afterwards the connection goes back into the pool, unless it was lost.
     fn run_once<T>(
         &self,
         doing: &'static str,
@@ -128,6 +135,7 @@ impl ConnectionPool {
         done.map_err(|error| DatabaseError::from_server(self.database.shown_name(), doing, &error))
     }
 
+    /// An idle connection or a new one. Waits while as many as allowed are in use.
     fn take_connection(&self) -> Result<PooledConnection, DatabaseError> {
         let mut state = self.lock_state();
         while state.out >= self.most {

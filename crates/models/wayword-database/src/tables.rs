@@ -15,7 +15,7 @@ pub struct SchemaTables {
     pub grants: &'static str,
 }
 
-/// The oldest server, as `server_version_num` counts.
+/// The oldest server that works, PostgreSQL 15, as `server_version_num` counts.
 const OLDEST_SERVER_VERSION: i32 = 150_000;
 
 /// The number of the advisory lock ("Wayw" in ASCII) that a program holds while it makes Wayword's tables.
@@ -35,7 +35,7 @@ impl SchemaTables {
         self.grants.replace("ROLE", &format!("\"{}\"", role.replace('"', "\"\"")))
     }
 
-    /// The statements from a version to the newest.
+    /// The statements that bring tables of version `from` to the newest. Version 0 has no tables.
     fn upgrade_sql(&self, from: usize) -> String {
         let Self { schema, steps, .. } = self;
         let begin = format!(
@@ -47,6 +47,7 @@ impl SchemaTables {
     }
 }
 
+/// The version that all steps together make: one for each step.
 fn steps_len(steps: &[&str]) -> i32 {
     i32::try_from(steps.len()).unwrap_or(i32::MAX)
 }
@@ -58,27 +59,29 @@ fn steps_len(steps: &[&str]) -> i32 {
 /// When the server is too old, the tables are newer than this program, or they have to be made and the role may not.
 pub fn prepare_tables(pool: &ConnectionPool, tables: &SchemaTables) -> Result<(), DatabaseError> {
     let database = pool.database().shown_name().to_owned();
-    let about = pool.with_connection("ask for the server's version", |connection| {
-        let sql = "SELECT current_setting('server_version_num')::int, version(), current_setting('server_encoding')";
-        let row = connection.client().query_one(sql, &[])?;
-        Ok((row.try_get::<_, i32>(0)?, row.try_get::<_, String>(1)?, row.try_get::<_, String>(2)?))
-    })?;
-    if about.0 < OLDEST_SERVER_VERSION {
-        let version = about.1.split_whitespace().nth(1).unwrap_or_default().to_owned();
+    let (version_number, version_text, encoding) =
+        pool.with_connection("ask for the server's version", |connection| {
+            let sql =
+                "SELECT current_setting('server_version_num')::int, version(), current_setting('server_encoding')";
+            let row = connection.client().query_one(sql, &[])?;
+            Ok((row.try_get::<_, i32>(0)?, row.try_get::<_, String>(1)?, row.try_get::<_, String>(2)?))
+        })?;
+    if version_number < OLDEST_SERVER_VERSION {
+        let version = version_text.split_whitespace().nth(1).unwrap_or_default().to_owned();
         return Err(DatabaseError::TooOld { database, version });
     }
-    // Otherwise an answer that was paid for could not be stored.
-    if about.2 != "UTF8" {
-        return Err(DatabaseError::Encoding { database, encoding: about.2 });
+    // In another encoding, an answer that was paid for may have characters that cannot be stored.
+    if encoding != "UTF8" {
+        return Err(DatabaseError::Encoding { database, encoding });
     }
     let newest = steps_len(tables.steps);
-    let found =
+    let version =
         pool.with_connection("ask for the version of the tables", |connection| read_version(connection, tables))?;
-    if found == newest {
+    if version == newest {
         return Ok(());
     }
-    if found > newest {
-        return Err(DatabaseError::Newer { database, schema: tables.schema, version: found });
+    if version > newest {
+        return Err(DatabaseError::Newer { database, schema: tables.schema, version });
     }
     // An error of missing rights gets a better hint, so its message is stored apart from the result.
     let mut refused = None;
@@ -87,7 +90,7 @@ pub fn prepare_tables(pool: &ConnectionPool, tables: &SchemaTables) -> Result<()
         if let Err(error) = &made
             && error.code() == Some(&SqlState::INSUFFICIENT_PRIVILEGE)
         {
-            refused = error.as_db_error().map(|told| told.message().to_owned());
+            refused = error.as_db_error().map(|db_error| db_error.message().to_owned());
         }
         made
     });
@@ -110,13 +113,14 @@ fn read_version(connection: &mut PooledConnection, tables: &SchemaTables) -> Res
     connection.client().query_one(&sql, &[])?.try_get(0)
 }
 
-/// Makes the missing tables in one transaction. Other programs wait for it.
+/// Makes the missing tables in one transaction. A lock makes other programs that want to do the same wait for its end.
 fn make_tables(connection: &mut PooledConnection, tables: &SchemaTables) -> Result<(), postgres::Error> {
     let client = connection.client();
     client.batch_execute("BEGIN")?;
     let done = client.execute("SELECT pg_advisory_xact_lock($1)", &[&TABLES_LOCK_ID]).and_then(|_| {
-        let found = read_version(connection, tables)?;
-        let from = usize::try_from(found).unwrap_or(0);
+        // Another program may have made the tables while this one waited for the lock.
+        let version = read_version(connection, tables)?;
+        let from = usize::try_from(version).unwrap_or(0);
         if from < tables.steps.len() { connection.client().batch_execute(&tables.upgrade_sql(from)) } else { Ok(()) }
     });
     let end = if done.is_ok() { "COMMIT" } else { "ROLLBACK" };

@@ -9,9 +9,9 @@ use std::sync::{Mutex, PoisonError};
 /// Limits of a run as a whole, including its earlier processes.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct RunLimits {
-    /// Most US dollars.
+    /// The most that may be spent, US dollars; `None` for no limit.
     pub max_usd: Option<f64>,
-    /// Most requests that are sent.
+    /// The most requests that may be sent; `None` for no limit.
     pub max_calls: Option<u64>,
 }
 
@@ -30,7 +30,7 @@ pub enum RequestRefusedError {
         max_usd: f64,
         /// The money that is spent, plus the reservations for requests in flight and for lost requests.
         spent_usd: f64,
-        /// The request's upper bound.
+        /// The most that the request may cost, US dollars.
         next_usd: f64,
     },
     /// The price of the request is not known, and there is a limit on money.
@@ -80,6 +80,7 @@ pub(crate) struct RunBudget {
     spent: Mutex<SpentBudget>,
 }
 
+/// What a run has spent of its limits so far.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct SpentBudget {
     /// US dollars that were paid, or that lost requests may have cost.
@@ -98,7 +99,7 @@ pub(crate) fn valid_amount(usd: Option<f64>) -> Option<f64> {
 /// Tolerance, US dollars: rounding in a sum of many small amounts must not refuse the last request that fits.
 const ROUNDING_USD: f64 = 1e-9;
 
-/// Refuses a request that could exceed a limit.
+/// Refuses a request that could exceed a limit. `most_usd` is the most that it may cost; `None` if its price is not known.
 pub(crate) fn check_limits(
     limits: RunLimits,
     spent: SpentBudget,

@@ -32,7 +32,7 @@ pub struct CallKey(String);
 pub struct CallAnswer {
     /// The text of the answer.
     pub text: String,
-    /// Why the answer ended, in the caller's words.
+    /// Why the answer ended, in the caller's words, as `stop` or `length`.
     pub finish: String,
     /// Tokens of the request.
     pub tokens_in: u64,

@@ -5,13 +5,14 @@ use std::cell::Cell;
 use tracing::{Dispatch, Span, dispatcher, subscriber::NoSubscriber};
 
 thread_local! {
+    /// The purpose of this thread's calls, one word for a role such as `see` or `write`.
     static PURPOSE: Cell<Option<&'static str>> = const { Cell::new(None) };
 }
 
 /// The context of some work: the span that it is a part of, the subscriber that gets the spans, and the purpose of the calls.
 #[derive(Debug, Clone)]
 pub struct CallContext {
-    /// `None` if there is no subscriber.
+    /// The subscriber and the span; `None` if there is no subscriber.
     watched: Option<(Dispatch, Span)>,
     purpose: Option<&'static str>,
 }
@@ -29,23 +30,23 @@ impl CallContext {
     /// The context of this thread, for work that goes on in another one.
     #[must_use]
     pub fn from_current_thread() -> Self {
-        let dispatch = dispatcher::get_default(|to| (!to.is::<NoSubscriber>()).then(|| to.clone()));
-        Self { watched: dispatch.map(|to| (to, Span::current())), purpose: Self::current_purpose() }
+        let dispatch = dispatcher::get_default(|current| (!current.is::<NoSubscriber>()).then(|| current.clone()));
+        Self { watched: dispatch.map(|dispatch| (dispatch, Span::current())), purpose: Self::current_purpose() }
     }
 
     /// Runs a function in this context.
-    pub fn run_within<T>(&self, does: impl FnOnce() -> T) -> T {
-        let _before = PurposeGuard(PURPOSE.replace(self.purpose));
+    pub fn run_within<T>(&self, work: impl FnOnce() -> T) -> T {
+        let _guard = PurposeGuard(PURPOSE.replace(self.purpose));
         match &self.watched {
-            Some((to, span)) => dispatcher::with_default(to, || span.in_scope(does)),
-            None => does(),
+            Some((dispatch, span)) => dispatcher::with_default(dispatch, || span.in_scope(work)),
+            None => work(),
         }
     }
 
     /// Runs a function with a purpose for its calls.
-    pub fn with_purpose<T>(purpose: &'static str, does: impl FnOnce() -> T) -> T {
-        let _before = PurposeGuard(PURPOSE.replace(Some(purpose)));
-        does()
+    pub fn with_purpose<T>(purpose: &'static str, work: impl FnOnce() -> T) -> T {
+        let _guard = PurposeGuard(PURPOSE.replace(Some(purpose)));
+        work()
     }
 
     /// The purpose of this thread's calls, if it was set.

@@ -10,8 +10,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Shortest and longest pause between two checks whether another program is done. Each pause is twice as long as the one before.
+/// Pause before the second check whether another program is done. Each further pause is twice as long as the one before.
 const FIRST_PAUSE: Duration = Duration::from_millis(10);
+/// Longest pause between two checks.
 const LAST_PAUSE: Duration = Duration::from_millis(250);
 
 /// How long to wait for a program that has claimed a call and neither sends another request for it nor releases it, because it is
@@ -22,6 +23,7 @@ pub(crate) const ABANDONED_CLAIM_TIMEOUT: Duration = Duration::from_secs(3600);
 pub(crate) struct CallClaim<'a> {
     store: &'a dyn CallStore,
     key: &'a CallKey,
+    /// Whether the claim still has to be released. The ledger releases it itself when it stores the answer.
     is_held: bool,
 }
 
@@ -47,16 +49,17 @@ impl<'a> CallClaim<'a> {
         patience: Duration,
         stopped: impl Fn() -> bool,
     ) -> Result<ClaimOutcome<'a>, LedgerError> {
-        let mut from: Option<String> = None;
+        // The name of a program that has the claim and is no longer waited for.
+        let mut abandoned_by: Option<String> = None;
         loop {
-            match store.claim_call(key, from.as_deref())? {
+            match store.claim_call(key, abandoned_by.as_deref())? {
                 ClaimState::Ours => return Ok(ClaimOutcome::Ours(Self { store, key, is_held: true })),
                 ClaimState::Answered => return Ok(ClaimOutcome::Answered),
                 ClaimState::Others => {}
             }
-            from = match wait_for_holder(store, key, patience, &stopped)? {
+            abandoned_by = match wait_for_holder(store, key, patience, &stopped)? {
                 WaitOutcome::Released => None,
-                WaitOutcome::Abandoned(by) => Some(by),
+                WaitOutcome::Abandoned(name) => Some(name),
                 WaitOutcome::Stopped => return Ok(ClaimOutcome::Stopped),
             };
         }
@@ -82,29 +85,32 @@ enum WaitOutcome {
     Released,
     /// The program of this name has ended, or has sent no request for too long.
     Abandoned(String),
+    /// The run was stopped.
     Stopped,
 }
 
+/// Waits while the program that has the claim is running and sends a request at least every `patience`.
 fn wait_for_holder(
     store: &dyn CallStore,
     key: &CallKey,
     patience: Duration,
     stopped: impl Fn() -> bool,
 ) -> Result<WaitOutcome, LedgerError> {
-    let (mut seen, mut since, mut pause) = (None, Instant::now(), FIRST_PAUSE);
+    let (mut last_holder, mut last_change, mut pause) = (None, Instant::now(), FIRST_PAUSE);
     loop {
         if stopped() {
             return Ok(WaitOutcome::Stopped);
         }
         let Some(holder) = store.claim_holder(key)? else { return Ok(WaitOutcome::Released) };
-        let sends = seen.as_ref() != Some(&holder);
-        if sends {
-            since = Instant::now();
+        // Another holder, or one more request of the same holder.
+        let has_changed = last_holder.as_ref() != Some(&holder);
+        if has_changed {
+            last_change = Instant::now();
         }
-        if holder.is_gone || since.elapsed() >= patience {
+        if holder.is_gone || last_change.elapsed() >= patience {
             return Ok(WaitOutcome::Abandoned(holder.name));
         }
-        seen = Some(holder);
+        last_holder = Some(holder);
         thread::sleep(pause);
         pause = LAST_PAUSE.min(pause * 2);
     }

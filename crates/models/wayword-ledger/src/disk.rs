@@ -30,7 +30,7 @@ const NETWORK_FILE_SYSTEM_TYPES: [(u32, &str); 20] = [
     (0x7c7c_6673, "prl_fs"),
 ];
 
-/// The number of all FUSE file systems. They are served by programs, and the type of the mount distinguishes them.
+/// The `statfs` type number that all FUSE file systems share. They are served by programs, and the type of the mount distinguishes them.
 const FUSE_TYPE_NUMBER: u32 = 0x6573_5546;
 
 /// Mount types of FUSE network file systems, without `fuse.`. Any other type counts as local, as encrypted folders and
@@ -63,8 +63,8 @@ const NETWORKS_BY_FUSE: [&str; 19] = [
 pub fn network_at(path: &Path) -> Option<&'static str> {
     let path = std::path::absolute(path).ok()?;
     // A path that does not exist yet will be on the same file system as its nearest existing folder.
-    let there = path.ancestors().find(|ancestor| ancestor.exists())?;
-    system::network_at(there)
+    let existing = path.ancestors().find(|ancestor| ancestor.exists())?;
+    system::network_at(existing)
 }
 
 /// The name of a network file system, from its type number and, for FUSE, from the type of its mount.
@@ -92,8 +92,8 @@ mod system {
     /// The type of the mount of a device, as `/proc/self/mountinfo` gives it.
     pub(super) fn mounted_as(mounts: &str, major: u32, minor: u32) -> Option<&str> {
         let device = format!("{major}:{minor}");
-        let of_device = |line: &&str| line.split(' ').nth(2) == Some(&device);
-        mounts.lines().find(of_device)?.split_once(" - ")?.1.split(' ').next()
+        let is_for_device = |line: &&str| line.split(' ').nth(2) == Some(&device);
+        mounts.lines().find(is_for_device)?.split_once(" - ")?.1.split(' ').next()
     }
 }
 

@@ -23,7 +23,7 @@ pub enum LedgerError {
     Network {
         /// The file.
         path: PathBuf,
-        /// What the file system is called.
+        /// The name of the file system, as NFS.
         kind: &'static str,
     },
     /// An answer is not the one that was written.
@@ -41,11 +41,11 @@ pub enum LedgerError {
     Store {
         /// The file or the database.
         place: LedgerLocation,
-        /// The operation that failed.
+        /// The operation that failed, as a verb after "cannot".
         doing: &'static str,
         /// The database's message.
         reason: String,
-        /// What to do.
+        /// How the user can fix it.
         hint: &'static str,
         /// Whether the disk is full, or fails.
         is_lost: bool,
@@ -55,9 +55,9 @@ pub enum LedgerError {
         "{place}: cannot {doing}: {source}\nhint: check that the file or its folder exists, that you may use it, and that the disk has room"
     )]
     Io {
-        /// The file, or the ledger of which a file is made.
+        /// The file that failed, or the ledger that was being exported to a file.
         place: LedgerLocation,
-        /// What was tried.
+        /// The operation that failed, as a verb after "cannot".
         doing: &'static str,
         /// The system's error.
         source: Arc<std::io::Error>,
@@ -109,6 +109,7 @@ pub enum LedgerError {
 }
 
 impl LedgerError {
+    /// Makes errors of SQLite into errors of the ledger at `path`, for an operation `doing`.
     pub(crate) fn store_error(path: &std::path::Path, doing: &'static str) -> impl Fn(rusqlite::Error) -> Self {
         let place = LedgerLocation::from_path(path);
         move |error| Self::Store {
@@ -130,6 +131,7 @@ impl LedgerError {
         }
     }
 
+    /// Makes errors of the system into errors of the ledger at `place`, for an operation `doing`.
     pub(crate) fn io_error(place: impl Into<LedgerLocation>, doing: &'static str) -> impl Fn(std::io::Error) -> Self {
         let place = place.into();
         move |source| Self::Io { place: place.clone(), doing, source: Arc::new(source) }
@@ -143,6 +145,7 @@ impl From<wayword_database::DatabaseError> for LedgerError {
     }
 }
 
+/// How the user can fix an error of SQLite.
 fn sqlite_hint(error: &rusqlite::Error) -> &'static str {
     match error.sqlite_error_code() {
         Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => {

@@ -9,11 +9,14 @@ use std::{
 /// The calls that threads are making at the moment.
 #[derive(Debug, Default)]
 pub(crate) struct CallFlights {
+    /// By the key of each call: the signal for the threads that wait for it.
     open: Mutex<BTreeMap<CallKey, Arc<FlightSignal>>>,
 }
 
+/// Wakes the threads that wait for a call.
 #[derive(Debug, Default)]
 struct FlightSignal {
+    /// Whether the call has ended, with an answer or without.
     done: Mutex<bool>,
     signal: Condvar,
 }

@@ -19,7 +19,7 @@ impl LedgerLocation {
         Self::File(path.to_owned())
     }
 
-    /// The command that drops the changed answers.
+    /// The command with which a user drops the changed answers of this ledger, for messages. It is not run here.
     pub(crate) fn prune_changed(&self) -> String {
         match self {
             Self::File(path) => format!("`wayword ledger prune --changed --ledger {}`", path.display()),

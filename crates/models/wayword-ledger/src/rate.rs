@@ -5,7 +5,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How often a waiting thread checks whether it was stopped.
+/// A waiting thread checks at this interval whether it was stopped.
 const LOOK_UP: Duration = Duration::from_millis(100);
 
 /// The rates for a provider that the user has set.
@@ -17,13 +17,13 @@ pub struct ProviderRates {
     pub tokens_per_s: Option<f64>,
 }
 
-/// Waits until the moment `from`; returns false if `stopped` became true first.
-pub(crate) fn wait_until(from: Instant, stopped: impl Fn() -> bool) -> bool {
+/// Waits until the moment `due`; returns false if `stopped` became true first.
+pub(crate) fn wait_until(due: Instant, stopped: impl Fn() -> bool) -> bool {
     loop {
-        match from.saturating_duration_since(Instant::now()) {
+        match due.saturating_duration_since(Instant::now()) {
             Duration::ZERO => return true,
             _ if stopped() => return false,
-            left => thread::sleep(left.min(LOOK_UP)),
+            remaining => thread::sleep(remaining.min(LOOK_UP)),
         }
     }
 }

@@ -1,4 +1,5 @@
-//! A run's use of the ledger. [`LedgerRun::answer_once`] answers a call from the ledger, or makes it, at most once over all threads and programs.
+//! A run's use of the ledger. [`LedgerRun::answer_once`] answers a call from the ledger, or makes it, at most once over all threads
+//! and programs.
 
 use crate::{
     CallAnswer, CallKey, LedgerEntry, LedgerError, ModelCall, RequestRefusedError, RunLimits, RunStopper,
@@ -16,7 +17,8 @@ use std::{
     time::Instant,
 };
 
-/// How many turns in a row may be missed. If a request misses more, the database is too slow for a common rate.
+/// How many turns in a row a request may miss, because the database answered after the turn was over. If it misses more, the
+/// database is too slow for a common rate.
 const MOST_MISSED: usize = 100;
 
 /// A run's use of a ledger: its limits, its spending, and whether it was stopped. Clones share one run.
@@ -30,7 +32,7 @@ pub struct LedgerRun {
 struct RunState {
     id: String,
     limits: RunLimits,
-    /// Has no limits if the store keeps the budget.
+    /// Checks the limits in this process. It has none if the store checks them, for all processes of the run together.
     budget: RunBudget,
     stopper: RunStopper,
     totals: Mutex<RunTotals>,
@@ -59,8 +61,8 @@ pub struct RunTotals {
     pub maybe_usd: f64,
 }
 
-/// The attempts to get an answer to one call. Each attempt is a request, which has to be announced with [`CallAttempts::begin_request`] before it
-/// is sent.
+/// The attempts to get an answer to one call. Each attempt is a request, which has to be announced with
+/// [`CallAttempts::begin_request`] before it is sent.
 pub struct CallAttempts<'a> {
     run: &'a LedgerRun,
     key: &'a CallKey,
@@ -103,14 +105,14 @@ impl Ledger {
     /// # Errors
     /// When the ledger cannot be read.
     pub fn start_run(&self, id: &str, limits: RunLimits) -> Result<LedgerRun, LedgerError> {
-        let (own, spent) = match self.store().keeps_budget() {
+        let (process_limits, spent) = match self.store().keeps_budget() {
             true => (RunLimits::default(), SpentBudget::default()),
             false => (limits, self.store().spent_budget(id)?),
         };
         let state = RunState {
             id: id.to_owned(),
             limits,
-            budget: RunBudget::new(own, spent),
+            budget: RunBudget::new(process_limits, spent),
             stopper: RunStopper::default(),
             totals: Mutex::default(),
         };
@@ -132,16 +134,18 @@ impl LedgerRun {
         send: impl FnOnce(&mut CallAttempts<'_>) -> Result<CallAnswer, E>,
     ) -> Result<CallAnswer, OnceError<E>> {
         let span = CallSpan::begin_call(call);
-        let asked = self.once_within(&span, call, send);
-        match &asked {
+        let outcome = self.once_within(&span, call, send);
+        match &outcome {
             Ok(_) | Err(OnceError::Call(_)) => {}
             Err(OnceError::Refused(_)) => span.record_error("refused"),
             Err(OnceError::NotRecorded { .. }) => span.record_error("not_recorded"),
             Err(OnceError::Ledger(_)) => span.record_error("ledger"),
         }
-        asked
+        outcome
     }
 
+    /// Does the work of [`LedgerRun::answer_once`] and reports to its span. The loop begins anew after each wait for another thread or
+    /// program, and normally finds the answer then.
     fn once_within<E>(
         &self,
         span: &CallSpan,
@@ -171,9 +175,9 @@ impl LedgerRun {
             let mut attempts = CallAttempts { run: self, key: &key, span, open: None, sent: 0, failure: "failed" };
             return match send(&mut attempts) {
                 Ok(answer) => {
-                    let stands = attempts.store_answer(call, answer)?;
+                    let stored = attempts.store_answer(call, answer)?;
                     claim.mark_fulfilled();
-                    Ok(stands)
+                    Ok(stored)
                 }
                 Err(error) => {
                     attempts.mark_failed("given up", true);
@@ -184,6 +188,7 @@ impl LedgerRun {
         }
     }
 
+    /// The answer that the ledger already has.
     fn stored_answer(&self, key: &CallKey, span: &CallSpan) -> Result<Option<CallAnswer>, LedgerError> {
         let answer = self.ledger.store().find_answer(key, &self.state.id)?;
         if answer.is_some() {
@@ -274,10 +279,12 @@ impl CallAttempts<'_> {
     /// When the request may not be sent: the run was stopped, a limit would be exceeded, or the ledger cannot be
     /// written.
     pub fn begin_request(&mut self, most_usd: Option<f64>) -> Result<(), RequestRefusedError> {
+        // If the caller did not report how the request before ended, it may have been paid for.
         self.mark_failed("followed by another", true);
         self.reserve_request(most_usd).inspect_err(|_| self.failure = "refused")
     }
 
+    /// Reserves the money of a request, and writes the request down.
     fn reserve_request(&mut self, most_usd: Option<f64>) -> Result<(), RequestRefusedError> {
         if self.run.is_stopped() {
             return Err(RequestRefusedError::Stopped);
@@ -298,6 +305,7 @@ impl CallAttempts<'_> {
         }
     }
 
+    /// Writes a request down in the ledger, and returns its number there.
     fn keep_sent(&self, most_usd: Option<f64>) -> Result<i64, RequestRefusedError> {
         let RunState { id, limits, .. } = &*self.run.state;
         let request = PendingRequest { run: id, key: self.key, most_usd, at_unix_s: now_unix_s(), limits: *limits };
@@ -364,14 +372,15 @@ impl CallAttempts<'_> {
             totals.tokens_out = totals.tokens_out.saturating_add(answer.tokens_out);
             totals.usd += answer.usd.unwrap_or(0.0);
         });
-        let stands = if is_first { None } else { store.find_answer(self.key, &self.run.state.id)? };
-        Ok(stands.unwrap_or(answer))
+        let earlier = if is_first { None } else { store.find_answer(self.key, &self.run.state.id)? };
+        Ok(earlier.unwrap_or(answer))
     }
 }
 
-/// How many characters of a request an error quotes.
+/// How many characters of a request an error quotes. The rest is cut off.
 const QUOTED_CHARS: usize = 200;
 
+/// The error of a replay that needs a call which the recording does not have.
 fn not_recorded<E>(recording: &Path, call: &ModelCall) -> OnceError<E> {
     let words = call.request.get("messages").and_then(|messages| messages.as_array()?.last()?.get("text")?.as_str());
     OnceError::NotRecorded {

@@ -11,6 +11,7 @@ pub const SPAN_TARGET: &str = "wayword";
 pub(crate) struct CallSpan(Span);
 
 impl CallSpan {
+    /// Begins the span. The fields that are not known yet are empty; the functions below fill them.
     pub(crate) fn begin_call(call: &ModelCall) -> Self {
         let span = info_span!(
             target: SPAN_TARGET,

@@ -1,4 +1,4 @@
-//! Which calls of a ledger a question is about, and what calls cost: the types in which stores answer.
+//! The parameters and results of queries to a ledger: which calls to select, and sums of costs.
 
 use serde::Serialize;
 

@@ -60,6 +60,7 @@ pub enum QueueError {
 }
 
 impl QueueError {
+    /// Makes an error of a file operation out of the system's error, for `map_err`.
     pub(crate) fn for_file(path: impl Into<PathBuf>, doing: &'static str) -> impl FnOnce(io::Error) -> Self {
         let path = path.into();
         move |source| Self::Io { path, doing, source }

@@ -11,7 +11,7 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 
-/// A name in the file's folder that no other process uses, on any machine.
+/// The path of a file until it is whole: in the same folder, under a name that no other process uses, on any machine.
 fn unfinished_path(path: &Path) -> PathBuf {
     static NEXT_NUMBER: AtomicU64 = AtomicU64::new(0);
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
@@ -21,6 +21,7 @@ fn unfinished_path(path: &Path) -> PathBuf {
     name.into()
 }
 
+/// Writes a new file and waits until it is on the disk.
 fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = File::options().create_new(true).write(true).open(path)?;
     file.write_all(bytes)?;
@@ -55,6 +56,7 @@ pub fn put_new(path: &Path, bytes: &[u8]) -> Result<bool, QueueError> {
     Ok(is_new)
 }
 
+/// Whether a file has exactly two names. Not known on systems other than Unix.
 #[cfg(unix)]
 fn has_two_links(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|about| std::os::unix::fs::MetadataExt::nlink(&about) == 2)
@@ -65,7 +67,7 @@ fn has_two_links(_: &Path) -> bool {
     false
 }
 
-/// Writes a file in place of the one of that name.
+/// Writes a file, in place of an older file of that name.
 ///
 /// # Errors
 /// When it cannot be written.

@@ -24,9 +24,9 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// How long a heartbeat counts.
+/// How long a heartbeat counts. A worker without a newer one is taken for dead.
 pub const HEARTBEAT_LEASE: Duration = Duration::from_secs(60);
-/// How many heartbeats there are in that time.
+/// How many heartbeats a worker gives in the time for which one counts.
 const BEATS_PER_LEASE: u32 = 6;
 
 /// The folder of the heartbeat files, in a run folder.
@@ -67,15 +67,18 @@ pub fn worker_name() -> String {
 /// A thread that renews a worker's heartbeat file until it is dropped.
 #[derive(Debug)]
 pub struct HeartbeatThread {
+    /// The heartbeat file, and the token in it that shows that it is this worker's.
     path: PathBuf,
     token: String,
+    /// Whether another worker took over the file.
     is_lost: Arc<AtomicBool>,
+    /// Ends the thread when it is dropped.
     end: Option<mpsc::Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl HeartbeatThread {
-    /// Starts a heartbeat in a file of this name.
+    /// Starts a heartbeat in the file `name`. A heartbeat counts for the time `fresh`.
     ///
     /// # Errors
     /// When another worker has a fresh heartbeat in a file of this name, or in a file for which `excludes` returns true.
@@ -89,11 +92,11 @@ impl HeartbeatThread {
         let workers = folder.join(WORKERS_FOLDER);
         fs::create_dir_all(&workers).map_err(QueueError::for_file(&workers, "make the folder"))?;
         let path = workers.join(name);
-        for HeartbeatEntry { file, beat: told, age } in read_heartbeats(folder)? {
-            if age < fresh && told.token != beat.token && (file == name || excludes(&file)) {
+        for HeartbeatEntry { file, beat: other, age } in read_heartbeats(folder)? {
+            if age < fresh && other.token != beat.token && (file == name || excludes(&file)) {
                 return Err(QueueError::Busy {
                     path: workers.join(file),
-                    who: format!("{} ({})", told.worker, told.part),
+                    who: format!("{} ({})", other.worker, other.part),
                     seconds: age.as_secs(),
                     fresh: fresh.as_secs(),
                 });
@@ -189,7 +192,7 @@ pub fn read_heartbeats(folder: &Path) -> Result<Vec<HeartbeatEntry>, QueueError>
     Ok(beats)
 }
 
-/// The time by the clock of the file system.
+/// The time by the clock of the file system: that of a file written just now.
 fn now_of(folder: &Path) -> Result<SystemTime, QueueError> {
     let path = folder.join(format!(".clock-{}-{:?}", std::process::id(), thread::current().id()));
     let failed = || QueueError::for_file(&path, "ask the file system for the time by");

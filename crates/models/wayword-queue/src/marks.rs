@@ -11,7 +11,7 @@ use std::{
 
 /// The folder of chunks and their marks in a run folder.
 pub(crate) const CHUNKS_FOLDER: &str = "chunks";
-/// Largest mark that is read, bytes.
+/// Largest mark that is read, bytes. A larger file is an error.
 const MOST_BYTES: u64 = 1 << 20;
 
 /// The record of a finished chunk. Times, names and costs are here and not in the results, so that the
@@ -59,7 +59,7 @@ pub(crate) fn tries_path(folder: &Path, chunk: usize) -> PathBuf {
     done_path(folder, chunk).with_extension("tries")
 }
 
-/// The folder of a chunk's results, by the claim under which they are made: two workers never write into one.
+/// The folder of a chunk's results. Each claim has its own folder, so that two workers never write into the same one.
 #[must_use]
 pub fn chunk_folder(folder: &Path, chunk: usize, epoch: i64) -> PathBuf {
     let name = if epoch == 0 { format!("{chunk:06}") } else { format!("{chunk:06}.{epoch}") };
@@ -83,6 +83,7 @@ impl ChunkRecord {
     }
 }
 
+/// A value as a line of JSON. `path` is the file that the line is for, for the error.
 pub(crate) fn to_bytes(path: &Path, value: &impl Serialize) -> Result<Vec<u8>, QueueError> {
     let mut bytes = serde_json::to_vec(value)
         .map_err(|error| QueueError::Broken { path: path.to_owned(), problem: error.to_string() })?;

@@ -9,9 +9,9 @@ use std::{collections::BTreeMap, fs, io::ErrorKind, ops::Range, path::Path};
 pub const PLAN_FILE: &str = "plan.json";
 /// The file that records whether shards or a queue hand out the chunks.
 pub const WORKERS_FILE: &str = "workers.json";
-/// The format of the plan.
+/// The version of the plan's format that this program writes and reads.
 const PLAN_FORMAT: u32 = 1;
-/// Largest plan that is read, bytes: ten million items.
+/// Largest plan that is read, bytes: enough for ten million items.
 const MOST_BYTES: u64 = 1 << 30;
 
 /// Everything that all workers of a run must agree on.
@@ -93,14 +93,14 @@ impl ChunkPlan {
         self.items.len().div_ceil(self.chunk)
     }
 
-    /// The places of a chunk's items.
+    /// The indices of a chunk's items in [`ChunkPlan::items`].
     #[must_use]
     pub fn chunk_range(&self, chunk: usize) -> Range<usize> {
         let end = self.items.len();
         (chunk * self.chunk).min(end)..((chunk + 1) * self.chunk).min(end)
     }
 
-    /// A hash of the whole plan, in hexadecimal digits: equal plans have equal hashes.
+    /// A hash of the whole plan, as 32 hexadecimal digits: equal plans have equal hashes.
     #[must_use]
     pub fn plan_hash(&self) -> String {
         let mut hash = Sha256::new();

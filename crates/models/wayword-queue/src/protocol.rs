@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How often a chunk is begun in vain before it is given up.
+/// How often a chunk is begun without success before it is given up.
 pub const MAX_CHUNK_TRIES: i32 = 3;
 
 /// The state of a chunk.
@@ -57,7 +57,7 @@ impl<W: Clone + PartialEq> ChunkRow<W> {
         Some(self.epoch)
     }
 
-    /// Records a result if it belongs to the latest claim. A result of any other claim is dropped.
+    /// Records a result if it belongs to the latest claim, and returns whether it does. A result of any other claim is dropped.
     pub fn complete_claim(&mut self, epoch: i64) -> bool {
         let holds = self.state == ChunkState::Running && self.epoch == epoch;
         if holds {
@@ -66,7 +66,8 @@ impl<W: Clone + PartialEq> ChunkRow<W> {
         holds
     }
 
-    /// A worker gives the chunk back, unfinished and through no fault of the chunk. It does not count as a try.
+    /// Gives the chunk back, unfinished and through no fault of the chunk. This does not count as a try. Returns whether the claim
+    /// was the latest; otherwise nothing changes.
     pub fn hand_back(&mut self, epoch: i64) -> bool {
         let holds = self.state == ChunkState::Running && self.epoch == epoch;
         if holds {
@@ -76,7 +77,8 @@ impl<W: Clone + PartialEq> ChunkRow<W> {
         holds
     }
 
-    /// A worker could not make the chunk.
+    /// Records that a worker could not make the chunk: it is open again or, after too many tries, given up. Returns whether the claim
+    /// was the latest; otherwise nothing changes.
     pub fn give_up(&mut self, epoch: i64) -> bool {
         let holds = self.state == ChunkState::Running && self.epoch == epoch;
         if holds {

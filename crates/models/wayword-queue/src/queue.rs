@@ -22,6 +22,8 @@ use wayword_database::{ConnectionPool, PostgresDatabase, SchemaTables, prepare_t
 pub const QUEUE_TABLES: SchemaTables =
     SchemaTables { schema: "wayword_queue", steps: &[CREATE_TABLES_SQL], grants: GRANTS_SQL };
 
+/// `chunks.done` is the [`ChunkRecord`] of a finished chunk as JSON. `chunks.reason` is why the chunk last failed, and
+/// `chunks.retries` counts such failures. `chunks.since` is when the chunk last changed hands.
 const CREATE_TABLES_SQL: &str = "
 CREATE TABLE wayword_queue.runs (
     run TEXT PRIMARY KEY, plan TEXT NOT NULL, chunks INTEGER NOT NULL, at TIMESTAMPTZ NOT NULL DEFAULT now()
@@ -40,6 +42,7 @@ CREATE TABLE wayword_queue.workers (
 ) WITH (fillfactor = 50);
 ";
 
+/// The rights that a worker's role needs.
 const GRANTS_SQL: &str = "
 GRANT USAGE ON SCHEMA wayword_queue TO ROLE;
 GRANT SELECT ON wayword_queue.version TO ROLE;
@@ -78,21 +81,26 @@ FROM next WHERE c.run = $1 AND c.chunk = next.chunk RETURNING c.chunk, c.epoch";
 const OWN_CLAIM_SQL: &str =
     "SELECT chunk, epoch FROM wayword_queue.chunks WHERE run = $1 AND worker = $2 AND state = 'running'";
 
+/// Records the result of a chunk, if epoch `$3` is still its latest claim.
 const COMPLETE_SQL: &str = "
 UPDATE wayword_queue.chunks SET state = 'done', done = $4, since = now()
 WHERE run = $1 AND chunk = $2 AND epoch = $3 AND state = 'running'";
 
+/// Whether a chunk was finished under epoch `$3`.
 const IS_DONE: &str = "
 SELECT 1 FROM wayword_queue.chunks WHERE run = $1 AND chunk = $2 AND epoch = $3 AND state = 'done'";
 
+/// Opens a chunk again, without counting the try, if epoch `$3` is still its latest claim.
 const HAND_BACK: &str = "
 UPDATE wayword_queue.chunks SET state = 'open', tries = tries - 1
 WHERE run = $1 AND chunk = $2 AND epoch = $3 AND state = 'running'";
 
+/// Opens a chunk again after a failure, or gives it up after `$4` tries, if epoch `$3` is still its latest claim.
 const GIVE_UP: &str = "
 UPDATE wayword_queue.chunks SET state = CASE WHEN tries >= $4 THEN 'dead' ELSE 'open' END, reason = $5, retries = retries + 1
 WHERE run = $1 AND chunk = $2 AND epoch = $3 AND state = 'running'";
 
+/// Records a heartbeat of a worker.
 const BEAT_SQL: &str = "
 INSERT INTO wayword_queue.workers (run, worker) VALUES ($1, $2)
 ON CONFLICT (run, worker) DO UPDATE SET beat = now()";
@@ -101,11 +109,15 @@ ON CONFLICT (run, worker) DO UPDATE SET beat = now()";
 #[derive(Debug)]
 pub struct ChunkQueue {
     pool: Arc<ConnectionPool>,
+    /// The run's name.
     run: String,
+    /// This worker's name; empty before [`ChunkQueue::join_as`].
     worker: String,
     /// Where the marks of finished chunks go.
     folder: PathBuf,
+    /// How long a heartbeat counts.
     lease: Duration,
+    /// The thread of the heartbeat, and the sender that ends it when it is dropped.
     beating: Option<(mpsc::Sender<()>, JoinHandle<()>)>,
 }
 
@@ -205,6 +217,8 @@ impl ChunkQueue {
         }
     }
 
+    /// Changes the row of a claimed chunk by `sql`, where `$1` to `$3` are run, chunk and epoch, and `rest` the values from `$4` on.
+    /// Returns whether the claim was still the latest.
     fn change_chunk(
         &self,
         doing: &'static str,
@@ -229,24 +243,24 @@ impl ChunkQueue {
     /// When the database cannot be used.
     pub fn read_status(&self) -> Result<QueueStatus, QueueError> {
         Ok(self.pool.with_connection("look at the run", |connection| {
-            let mut seen = QueueStatus::default();
+            let mut status = QueueStatus::default();
             let sql = "SELECT state, count(*) FROM wayword_queue.chunks WHERE run = $1 GROUP BY state";
             for row in connection.query_rows(sql, &[&self.run])? {
                 let count = usize::try_from(row.try_get::<_, i64>(1)?).unwrap_or(0);
                 match row.try_get::<_, &str>(0)? {
-                    "open" => seen.open = count,
-                    "running" => seen.running = count,
-                    "done" => seen.done = count,
+                    "open" => status.open = count,
+                    "running" => status.running = count,
+                    "done" => status.done = count,
                     _ => {}
                 }
             }
             let sql = "SELECT chunk, coalesce(reason, '') FROM wayword_queue.chunks WHERE run = $1 AND state = 'dead' ORDER BY chunk";
             for row in connection.query_rows(sql, &[&self.run])? {
-                seen.dead.push((chunk_index(row.try_get(0)?), row.try_get(1)?));
+                status.dead.push((chunk_index(row.try_get(0)?), row.try_get(1)?));
             }
             let sql = "SELECT reason, sum(retries)::bigint FROM wayword_queue.chunks WHERE run = $1 AND retries > 0 AND reason IS NOT NULL GROUP BY 1 ORDER BY 1";
             for row in connection.query_rows(sql, &[&self.run])? {
-                seen.retries.push((row.try_get(0)?, row.try_get(1)?));
+                status.retries.push((row.try_get(0)?, row.try_get(1)?));
             }
             let sql = "SELECT w.worker, extract(epoch FROM now() - w.beat)::float8, c.chunk, extract(epoch FROM now() - c.since)::float8
                        FROM wayword_queue.workers AS w
@@ -254,14 +268,14 @@ impl ChunkQueue {
                        WHERE w.run = $1 ORDER BY w.worker";
             for row in connection.query_rows(sql, &[&self.run])? {
                 let chunk: Option<i32> = row.try_get(2)?;
-                seen.workers.push(QueueWorker {
+                status.workers.push(QueueWorker {
                     worker: row.try_get(0)?,
                     beat_s: row.try_get(1)?,
                     chunk: chunk.map(chunk_index),
                     chunk_s: row.try_get(3)?,
                 });
             }
-            Ok(seen)
+            Ok(status)
         })?)
     }
 
@@ -271,13 +285,13 @@ impl ChunkQueue {
     /// # Errors
     /// When the database cannot be used or a mark cannot be written.
     pub fn write_missing_marks(&self) -> Result<usize, QueueError> {
-        let kept: Vec<String> = self.pool.with_connection("ask for the finished chunks", |connection| {
+        let records: Vec<String> = self.pool.with_connection("ask for the finished chunks", |connection| {
             let sql = "SELECT done FROM wayword_queue.chunks WHERE run = $1 AND state = 'done' AND done IS NOT NULL";
             connection.query_rows(sql, &[&self.run])?.iter().map(|row| row.try_get(0)).collect()
         })?;
         let mut marked = 0;
-        for kept in kept {
-            let done: ChunkRecord = serde_json::from_str(&kept).map_err(|error| QueueError::Broken {
+        for record in records {
+            let done: ChunkRecord = serde_json::from_str(&record).map_err(|error| QueueError::Broken {
                 path: crate::PLAN.into(),
                 problem: format!("the database has a result that cannot be read: {error}"),
             })?;
@@ -319,10 +333,12 @@ impl ChunkQueue {
     }
 }
 
+/// A chunk's number as the database stores it.
 fn chunk_number(chunk: usize) -> i32 {
     i32::try_from(chunk).unwrap_or(i32::MAX)
 }
 
+/// A chunk's number, out of the database.
 fn chunk_index(chunk: i32) -> usize {
     usize::try_from(chunk).unwrap_or(0)
 }
@@ -348,17 +364,17 @@ impl ChunkBoard for ChunkQueue {
     }
 
     fn complete_chunk(&self, claimed: ChunkClaim, done: &ChunkRecord) -> Result<bool, QueueError> {
-        let kept = serde_json::to_string(done).unwrap_or_default();
-        if self.change_chunk("complete a chunk", COMPLETE_SQL, claimed, &[&kept])? {
+        let record = serde_json::to_string(done).unwrap_or_default();
+        if self.change_chunk("complete a chunk", COMPLETE_SQL, claimed, &[&record])? {
             done.write_mark(&self.folder)?;
             return Ok(true);
         }
-        // Perhaps the first try was carried out, and its answer lost.
+        // No row changed. Perhaps an earlier try of this statement was carried out, and its answer got lost.
         let chunk = chunk_number(claimed.chunk);
-        let found = self.pool.with_connection("ask for a chunk", |connection| {
+        let done_rows = self.pool.with_connection("ask for a chunk", |connection| {
             connection.query_rows(IS_DONE, &[&self.run, &chunk, &claimed.epoch])
         })?;
-        if found.is_empty() {
+        if done_rows.is_empty() {
             return Ok(false);
         }
         done.write_mark(&self.folder)?;

@@ -11,7 +11,7 @@ use std::{cell::Cell, fmt, fs, path::Path, str::FromStr};
 /// Part `k` of `n`: the chunks with a number that is `k` modulo `n`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ShardPart {
-    /// From 0.
+    /// The number of the part, from 0.
     pub k: usize,
     /// How many parts there are.
     pub n: usize,
@@ -60,6 +60,7 @@ impl ShardPart {
 /// How often a chunk was begun.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 struct ChunkTries {
+    /// How often it was begun without adding results.
     tries: i32,
     /// Bytes of results when it was begun last: a chunk that makes progress is not given up.
     bytes: u64,
@@ -71,6 +72,7 @@ pub struct ShardBoard<'a> {
     folder: &'a Path,
     plan: &'a ChunkPlan,
     part: ShardPart,
+    /// The heartbeat of this worker.
     heart: &'a HeartbeatThread,
     /// Every chunk of the part before this one was finished or given up when it was last checked.
     from: Cell<usize>,
@@ -83,6 +85,7 @@ impl<'a> ShardBoard<'a> {
         Self { folder, plan, part, heart, from: Cell::new(0) }
     }
 
+    /// Whether a chunk is finished or given up.
     fn is_over(&self, chunk: usize) -> bool {
         done_path(self.folder, chunk).exists() || dead_path(self.folder, chunk).exists()
     }
@@ -97,6 +100,7 @@ impl<'a> ShardBoard<'a> {
             fs::create_dir_all(&results).map_err(QueueError::for_file(&results, "make the folder"))?;
             let before: ChunkTries = from_file(&tries_path(self.folder, chunk))?.unwrap_or_default();
             let bytes = bytes_in(&results);
+            // After a try that added results, counting starts anew.
             let tries = if bytes > before.bytes { 0 } else { before.tries };
             if tries >= MAX_CHUNK_TRIES {
                 self.mark_dead(

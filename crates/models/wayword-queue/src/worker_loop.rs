@@ -5,17 +5,17 @@ use std::{thread, time::Duration};
 
 /// How often a worker asks again while others still have chunks, which come back if they die.
 const ASK_AGAIN: Duration = Duration::from_secs(2);
-/// How often it checks meanwhile whether it has to stop.
+/// How often a waiting worker checks whether it has to stop.
 const LOOK_UP: Duration = Duration::from_millis(100);
 
-/// How a worker's attempt to make a chunk ended.
+/// How a worker's attempt to make a chunk ended. `S` is the reason for which a worker stops, as the caller defines it.
 #[derive(Debug)]
 pub enum ChunkOutcome<S> {
     /// It is finished, and its results are synced.
     Done(ChunkRecord),
     /// The worker has to stop, through no fault of the chunk.
     Stopped(S),
-    /// The chunk could not be made, for this reason, and the worker stops.
+    /// The chunk could not be made, for the reason in the text, and the worker stops.
     Failed(String, S),
 }
 
@@ -31,7 +31,7 @@ pub struct WorkSummary<S> {
 }
 
 /// Takes chunks from a board until no chunk is left, or the worker has to stop. While other workers have chunks it waits:
-/// their chunks become open again if they die.
+/// their chunks become open again if they die. `make` makes a chunk. `stopped` gives the reason to stop, if there is one.
 ///
 /// # Errors
 /// When the board cannot be reached, or `make` returns an error.
@@ -40,43 +40,44 @@ pub fn work_chunks<S, E: From<QueueError>>(
     mut make: impl FnMut(ChunkClaim) -> Result<ChunkOutcome<S>, E>,
     stopped: impl Fn() -> Option<S>,
 ) -> Result<WorkSummary<S>, E> {
-    let mut finished = WorkSummary { done: Vec::new(), dropped: 0, stopped: None };
+    let mut summary = WorkSummary { done: Vec::new(), dropped: 0, stopped: None };
     loop {
         if let Some(why) = stopped() {
-            finished.stopped = Some(why);
-            return Ok(finished);
+            summary.stopped = Some(why);
+            return Ok(summary);
         }
         let Some(claimed) = board.take_chunk()? else {
-            let left = board.count_remaining()?;
-            if left.open + left.running == 0 {
-                return Ok(finished);
+            let remaining = board.count_remaining()?;
+            if remaining.open + remaining.running == 0 {
+                return Ok(summary);
             }
             wait_or_stop(&stopped);
             continue;
         };
         match make(claimed)? {
             ChunkOutcome::Done(done) => match board.complete_chunk(claimed, &done)? {
-                true => finished.done.push(done),
-                false => finished.dropped += 1,
+                true => summary.done.push(done),
+                false => summary.dropped += 1,
             },
             ChunkOutcome::Stopped(why) => {
                 board.hand_back(claimed)?;
-                finished.stopped = Some(why);
-                return Ok(finished);
+                summary.stopped = Some(why);
+                return Ok(summary);
             }
             ChunkOutcome::Failed(reason, why) => {
                 board.give_up(claimed, &reason)?;
-                finished.stopped = Some(why);
-                return Ok(finished);
+                summary.stopped = Some(why);
+                return Ok(summary);
             }
         }
     }
 }
 
+/// Waits for [`ASK_AGAIN`], or until the worker has to stop.
 fn wait_or_stop<S>(stopped: &impl Fn() -> Option<S>) {
-    let mut left = ASK_AGAIN;
-    while !left.is_zero() && stopped().is_none() {
+    let mut remaining = ASK_AGAIN;
+    while !remaining.is_zero() && stopped().is_none() {
         thread::sleep(LOOK_UP);
-        left = left.saturating_sub(LOOK_UP);
+        remaining = remaining.saturating_sub(LOOK_UP);
     }
 }

@@ -41,17 +41,17 @@ pub fn encode_texts<'a>(
     let texts: Vec<&str> = texts.collect::<BTreeSet<_>>().into_iter().collect();
     let bar = output.progress_bar(texts.len(), "texts");
     let mut vectors = BTreeMap::new();
-    let mut numbers = None;
+    let mut vector_length = None;
     for batch in texts.chunks(ENCODER_BATCH_TEXTS) {
         interrupt::check_interrupt()?;
-        let found = encoder.encode_texts(batch)?;
-        let expected = *numbers.get_or_insert_with(|| found.first().map_or(0, Vec::len));
+        let encoded = encoder.encode_texts(batch)?;
+        let expected = *vector_length.get_or_insert_with(|| encoded.first().map_or(0, Vec::len));
         let fits = |vector: &Vec<f32>| vector.len() == expected && vector.iter().all(|number| number.is_finite());
-        if found.len() != batch.len() || !found.iter().all(fits) {
+        if encoded.len() != batch.len() || !encoded.iter().all(fits) {
             let reason = "it did not give one vector of finite numbers for each text".to_owned();
             return Err(ModelError::Failed { model: encoder.name().to_owned(), reason }.into());
         }
-        vectors.extend(batch.iter().copied().zip(found));
+        vectors.extend(batch.iter().copied().zip(encoded));
         bar.inc(batch.len() as u64);
     }
     bar.finish_and_clear();

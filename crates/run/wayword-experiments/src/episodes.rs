@@ -27,8 +27,8 @@ pub fn read_episodes(file: &Path, platform: &dyn Platform) -> Result<Vec<Episode
         format => format.read_file(file)?,
     };
     match episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
-        Some(blind) => Err(CommandError::usage(
-            format!("{}: episode {} names no viewpoints, but agents need them", file.display(), blind.id),
+        Some(without_viewpoints) => Err(CommandError::usage(
+            format!("{}: episode {} names no viewpoints, but agents need them", file.display(), without_viewpoints.id),
             "give an R2R, REVERIE, RxR or Wayword file whose paths name viewpoints or have poses",
         )),
         None => Ok(episodes),

@@ -2,11 +2,13 @@
 //! (`robustness`), captions against labels (`perceive`), text metrics (`similarity`), and studies with people (`study`).
 //!
 //! # Where things are
-//! - `compare/agents.rs`, `thresholds.rs`, `grounders.rs`, `tools.rs`: the agents with their thresholds and grounders by name, and the model and eyes of `tools`.
+//! - `compare/agents.rs`, `thresholds.rs`, `grounders.rs`, `tools.rs`: the agents with their thresholds and grounders by name, and the
+//!   model and eyes of the agent `tools`.
 //! - [`judge`], [`demands`]: how a submission is held against the episodes. `evaluate/figures.rs` shows its figures.
 //! - `robustness/arm.rs`, `write_texts.rs`, `record.rs`: the arms of a run, and the records of their texts; `eye.rs` is `--eye`.
 //! - `robustness/other_platform/`: the same poses on another platform, and the houses and films that are saved for it.
-//! - `similarity/metrics.rs`, `pictures.rs`: `--metrics` and `--clip`; [`by_pictures`]: what CLIP is shown. [`encoder`]: models that compare texts.
+//! - `similarity/metrics.rs`, `pictures.rs`: `--metrics` and `--clip`; [`by_pictures`]: the pictures and texts that a CLIP scores.
+//!   [`encoder`]: models that compare texts.
 //! - `perceive/detector.rs`: how a detector is measured.
 //! - `study/choose_paths.rs`, `new_study.rs`, `pictures.rs`, `marks.rs`: the paths, texts, pictures and marked words of a study.
 

@@ -72,8 +72,8 @@ fn of_episodes(file: &Path) -> Result<Vec<SingleText>, CommandError> {
     let mut all = Vec::new();
     for episode in wayword_formats::read_any_format(file)? {
         let path = episodes::episode_path_name(&episode);
-        let said = |text| SingleText { item: episode.id.clone(), path: path.clone(), text };
-        all.extend(episode.instructions.into_iter().map(said));
+        let to_text = |text| SingleText { item: episode.id.clone(), path: path.clone(), text };
+        all.extend(episode.instructions.into_iter().map(to_text));
     }
     Ok(all)
 }

@@ -43,28 +43,30 @@ pub fn run_calibrate(args: &CalibrateArgs, output: &CommandOutput) -> Result<Exi
     let weights = SilenceWeights::shipped();
     let samples =
         sample_claims(&walks.iter().collect::<Vec<_>>(), &LabelNames::from_surveys(surveys.iter()), weights, 0);
-    // As if there were as many wrong claims of a kind as true ones: the odds are then the ratio.
-    let known: Vec<&ClaimSample> = samples.iter().filter(|held| is_known(&held.claim)).collect();
+    // Wrong claims are weighted so that those of a kind count as much in all as the true ones of that kind. The odds of
+    // a claim are then the ratio of how often true and wrong claims are missed.
+    let known: Vec<&ClaimSample> = samples.iter().filter(|sample| is_known(&sample.claim)).collect();
     let count = |case: ClaimCase, wrong: bool| {
-        known.iter().filter(|held| held.wrong == wrong && belongs_to_case(&held.claim, case)).count().max(1) as f64
+        known.iter().filter(|sample| sample.wrong == wrong && belongs_to_case(&sample.claim, case)).count().max(1)
+            as f64
     };
     let share = |case: ClaimCase| (case, count(case, false) / count(case, true));
     let shares: BTreeMap<ClaimCase, f64> = ClaimCase::ALL.map(share).into();
-    let observed = known.iter().filter_map(|held| {
-        let missed = held.missed_evidence()?;
-        let weight = if held.wrong { shares[&missed.case] } else { 1.0 };
-        Some(ClaimObservation { claim: &held.claim, missed, wrong: held.wrong, weight })
+    let observed = known.iter().filter_map(|sample| {
+        let missed = sample.missed_evidence()?;
+        let weight = if sample.wrong { shares[&missed.case] } else { 1.0 };
+        Some(ClaimObservation { claim: &sample.claim, missed, wrong: sample.wrong, weight })
     });
     let observed: Vec<ClaimObservation<'_>> = observed.collect();
     let from = args.from.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let calibration = Calibration::fit_names(platform.name(), &from, texts, &observed);
     std::fs::write(&args.out, calibration_text(&calibration)).map_err(CommandError::io(&args.out, "write"))?;
-    let made = CalibrationSummary { names: calibration.names.len(), texts, claims: observed.len() };
-    output.print_result(&made, format!("{} names from {} claims of {texts} texts", made.names, made.claims));
+    let summary = CalibrationSummary { names: calibration.names.len(), texts, claims: observed.len() };
+    output.print_result(&summary, format!("{} names from {} claims of {texts} texts", summary.names, summary.claims));
     Ok(Exit::Done)
 }
 
-/// The numbers that the command prints.
+/// The numbers that the command prints: of fitted names, of texts, and of claims that the labels lack.
 #[derive(Debug, Serialize)]
 struct CalibrationSummary {
     names: usize,

@@ -1,14 +1,15 @@
-//! Numbers with their nouns.
+//! Numbers with their nouns, for messages: "1 item", "2 items".
 
 use wayword_language::lexicon::to_plural;
 
-/// A number with its noun: 1 item, 2 items, 0 different views, 3 calls of unknown price.
-pub fn count_phrase(count: impl TryInto<u64>, of: &str) -> String {
+/// A number with its noun, which is given in the singular: 1 item, 2 items, 0 different views, 3 calls of unknown
+/// price.
+pub fn count_phrase(count: impl TryInto<u64>, noun: &str) -> String {
     match count.try_into().unwrap_or(u64::MAX) {
-        1 => format!("1 {of}"),
-        count => match of.split_once(" of ") {
-            Some((noun, rest)) => format!("{count} {} of {rest}", to_plural(noun)),
-            None => format!("{count} {}", to_plural(of)),
+        1 => format!("1 {noun}"),
+        count => match noun.split_once(" of ") {
+            Some((head, rest)) => format!("{count} {} of {rest}", to_plural(head)),
+            None => format!("{count} {}", to_plural(noun)),
         },
     }
 }

@@ -33,11 +33,12 @@ pub(crate) fn find_doubts(
     let read = followed.and_then(|followed| Ok((followed, read_followable(text, tag)?)));
     let (doubts, unfollowed) = match read {
         Ok((followed, (guide, reading))) => {
-            let found = (&DoubtBounds::default(), &checked.findings[..]);
-            let changes = || by_changes(text, &guide, followed.known_path(), FeatureWeights::fitted(), found);
+            let bounds_and_findings = (&DoubtBounds::default(), &checked.findings[..]);
+            let changes =
+                || by_changes(text, &guide, followed.known_path(), FeatureWeights::fitted(), bounds_and_findings);
             let mut doubts = if checked.world == CheckWorld::Open { changes() } else { by_checks() };
-            let of_ambiguity = |told| from_checks::doubts_from_ambiguity(text, &guide, &reading, told);
-            doubts.extend(ambiguity.into_iter().flat_map(of_ambiguity));
+            let from_ambiguity = |ambiguity| from_checks::doubts_from_ambiguity(text, &guide, &reading, ambiguity);
+            doubts.extend(ambiguity.into_iter().flat_map(from_ambiguity));
             (doubts, is_too_long(&guide).then(|| UnfollowedReason::TooManySteps.reason_words()))
         }
         Err(why) => (by_checks(), Some(why)),

@@ -12,6 +12,7 @@ use wayword_local::DownloadProgress;
 pub struct DownloadBar {
     output: CommandOutput,
     bar: ProgressBar,
+    /// The file that the bar shows.
     file: Mutex<String>,
 }
 
@@ -31,8 +32,8 @@ impl DownloadProgress for DownloadBar {
             self.bar.set_prefix(file.to_owned());
             self.bar.set_length(total.unwrap_or(done));
             if self.bar.is_hidden() {
-                let of = total.map(|total| format!(" of {}", HumanBytes(total))).unwrap_or_default();
-                self.output.say(format_args!("fetching {file}: {}{of} so far", HumanBytes(done)));
+                let of_total = total.map(|total| format!(" of {}", HumanBytes(total))).unwrap_or_default();
+                self.output.say(format_args!("fetching {file}: {}{of_total} so far", HumanBytes(done)));
             }
         }
         self.bar.set_position(done);

@@ -220,7 +220,7 @@ impl CommandError {
     pub fn exit_code(&self) -> Exit {
         match self {
             Self::Busy(_) | Self::BusyElsewhere { .. } => Exit::Busy,
-            // Another worker has the shard, or took this one's over.
+            // Another worker makes the same shard, or took it over from this worker.
             Self::Queue(QueueError::Busy { .. } | QueueError::TakenOver(_)) => Exit::Busy,
             Self::Interrupted => Exit::Interrupted,
             Self::Queue(error) if error.is_refused() => Exit::Stopped,

@@ -27,7 +27,7 @@ impl ErrorParts {
     #[must_use]
     pub fn from_error(error: &CommandError) -> Self {
         let kind = error_kind(error);
-        let at = |place: &Path, what: &dyn Display, hint: &str| Self {
+        let at_place = |place: &Path, what: &dyn Display, hint: &str| Self {
             kind,
             what: what.to_string(),
             place: Some(place.display().to_string()),
@@ -37,27 +37,31 @@ impl ErrorParts {
             CommandError::Format(FormatError::Io { file, doing, source }) => {
                 let is_missing = source.kind() == std::io::ErrorKind::NotFound;
                 let hint = if is_missing { "check the spelling of the path" } else { "" };
-                at(file, &format!("cannot {doing} it: {source}"), hint)
+                at_place(file, &format!("cannot {doing} it: {source}"), hint)
             }
-            CommandError::Format(FormatError::Document { file, problem, hint }) => at(file, problem, hint),
+            CommandError::Format(FormatError::Document { file, problem, hint }) => at_place(file, problem, hint),
             CommandError::Format(FormatError::Item(wrong)) => {
                 let id = wrong.id.as_ref().map_or_else(String::new, |id| format!(" (id {id})"));
                 let place = format!("{}: {}{id}: field \"{}\"", wrong.file.display(), wrong.place, wrong.field);
-                at(place.as_ref(), &wrong.problem, wrong.hint)
+                at_place(place.as_ref(), &wrong.problem, wrong.hint)
             }
-            CommandError::Platform(PlatformError::File { file, reason, hint }) => at(file, reason, hint),
-            CommandError::Platform(PlatformError::NoFile { file, hint }) => at(file, &"there is no such file", hint),
-            CommandError::Platform(PlatformError::Lost { world, reason, hint }) => at(world.as_ref(), reason, hint),
+            CommandError::Platform(PlatformError::File { file, reason, hint }) => at_place(file, reason, hint),
+            CommandError::Platform(PlatformError::NoFile { file, hint }) => {
+                at_place(file, &"there is no such file", hint)
+            }
+            CommandError::Platform(PlatformError::Lost { world, reason, hint }) => {
+                at_place(world.as_ref(), reason, hint)
+            }
             CommandError::Platform(PlatformError::UnknownScene { scene, hint }) => {
-                at(scene.as_ref(), &"there is no such scene", hint)
+                at_place(scene.as_ref(), &"there is no such scene", hint)
             }
             CommandError::Platform(PlatformError::NoSuchPath { scene, request, hint }) => {
-                at(scene.as_str().as_ref(), &format!("the scene has no path with {request}"), hint)
+                at_place(scene.as_str().as_ref(), &format!("the scene has no path with {request}"), hint)
             }
             error => {
-                let told = error.to_string();
+                let text = error.to_string();
                 let (what, hint) =
-                    told.split_once(HINT_PREFIX).map_or((&*told, None), |(what, hint)| (what, Some(hint)));
+                    text.split_once(HINT_PREFIX).map_or((&*text, None), |(what, hint)| (what, Some(hint)));
                 let place = file_of(error).map(|file| file.display().to_string());
                 Self { kind, what: what.to_owned(), place, hint: hint.map(str::to_owned) }
             }
@@ -75,7 +79,7 @@ fn file_of(error: &CommandError) -> Option<&Path> {
     }
 }
 
-/// The kind of an error, as [`ErrorParts::error_kind`] lists them.
+/// The kind of an error, as [`ErrorParts::kind`] lists them.
 fn error_kind(error: &CommandError) -> &'static str {
     use wayword_navigation::WalkError;
     use wayword_synthesis::observe::ObserveError;

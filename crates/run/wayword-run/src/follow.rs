@@ -30,7 +30,7 @@ pub(crate) struct KnownScene {
     pub(crate) listed: Arc<wayword_checks::BuildingInventory>,
     /// The same list, for the description of a target.
     pub(crate) listing: BuildingListing,
-    /// The same building, for the follower.
+    /// The building as the follower knows it: viewpoints, rooms and things.
     pub(crate) followed: KnownBuilding,
 }
 
@@ -38,7 +38,7 @@ pub(crate) struct KnownScene {
 pub struct KnownScenes(RecentCache<SceneId, KnownScene>);
 
 impl KnownScenes {
-    /// None yet.
+    /// An empty cache.
     #[must_use]
     pub fn new() -> Self {
         Self(RecentCache::new(SCENES_KEPT))
@@ -73,24 +73,29 @@ static CHOICE_WEIGHTS: LazyLock<FeatureWeights> = LazyLock::new(FeatureWeights::
 /// A path as the follower knows it.
 pub(crate) struct FollowedPath<'a> {
     place: FollowedPlace<'a>,
+    /// The viewpoints of the path, as indices into the building.
     walk: Vec<usize>,
+    /// The heading at the start, radians clockwise from north.
     heading_rad: f64,
 }
 
 /// The surroundings of a path, as far as they are known.
 enum FollowedPlace<'a> {
     /// The building with its viewpoint graph.
-    By(&'a KnownScene),
+    Graph(&'a KnownScene),
     /// The path alone: there is no graph, so no other walk is known.
-    Nothing(KnownBuilding),
+    PathAlone(KnownBuilding),
 }
 
 /// The result of following a text.
 pub(crate) struct FollowerFindings {
+    /// The finding about the route, and findings about wrong turns.
     pub(crate) findings: Vec<CheckFinding>,
+    /// `None` if the text could not be followed.
     pub(crate) route: Option<RouteShares>,
     /// How much the text would fit better with its most doubtful turn reversed: a difference of natural logs of likelihood.
     pub(crate) turn_gain: Option<f64>,
+    /// The places where the text may end; `None` if it could not be followed.
     pub(crate) ends: Option<TextEnds>,
     /// Whether its turns were judged.
     pub(crate) turns: TurnJudge,
@@ -107,7 +112,9 @@ pub struct RouteShares {
 
 /// The ends that a text may mean.
 pub(crate) struct TextEnds {
+    /// Number of places where the text may end, the end of the path among them.
     pub(crate) count: usize,
+    /// A thing or room that only the end of the path has, if there is one: naming it would settle which end is meant.
     pub(crate) told_apart_by: Option<String>,
 }
 
@@ -128,7 +135,7 @@ impl<'a> FollowedPath<'a> {
             path.frames.iter().map(place).collect::<Option<Vec<usize>>>()
         };
         if let Some((scene, walk)) = scene.and_then(|scene| Some((scene, on_graph(scene)?))) {
-            return Ok(Self { place: FollowedPlace::By(scene), walk, heading_rad });
+            return Ok(Self { place: FollowedPlace::Graph(scene), walk, heading_rad });
         }
         let place = |(frame, seen): (&Frame, &FrameEvidence)| PathPlace {
             position: frame.pose.position,
@@ -141,22 +148,23 @@ impl<'a> FollowedPath<'a> {
         };
         let building = KnownBuilding::along_path(path.frames.iter().zip(&evidence.frames).map(place).collect());
         let walk = (0..path.frames.len()).collect();
-        Ok(Self { place: FollowedPlace::Nothing(building), walk, heading_rad })
+        Ok(Self { place: FollowedPlace::PathAlone(building), walk, heading_rad })
     }
 
-    /// Follows a text, and judges its steps. `tag` is that of its language, where its file gives one.
+    /// Follows a text, and judges its route and its single steps. `tag` is the tag of its language, where its file
+    /// gives one.
     pub(crate) fn follow_text(&self, text: &str, tag: Option<&str>) -> FollowerFindings {
         let guide = match read_guide(text, tag) {
             Ok(guide) => guide,
             Err(why) => return FollowerFindings::not_followed(why),
         };
-        let mut told = self.judge_guide(&guide);
-        if told.turns == TurnJudge::JudgedElsewhere {
+        let mut followed = self.judge_guide(&guide);
+        if followed.turns == TurnJudge::JudgedElsewhere {
             let judged = judge_steps(&guide, self.known_path(), FeatureWeights::fitted(), GainThresholds::default());
-            told.findings.extend(judged.wrong);
-            told.turn_gain = judged.turn_gain;
+            followed.findings.extend(judged.wrong);
+            followed.turn_gain = judged.turn_gain;
         }
-        told
+        followed
     }
 
     /// Only judges where a text leads, without its single turns.
@@ -172,17 +180,19 @@ impl<'a> FollowedPath<'a> {
 
     /// The prior over other walks; `None` if the path alone is known.
     fn walk_prior(&self) -> Option<WalkPrior> {
-        matches!(self.place, FollowedPlace::By(_)).then(WalkPrior::default)
+        matches!(self.place, FollowedPlace::Graph(_)).then(WalkPrior::default)
     }
 
     pub(crate) fn known_path(&self) -> KnownWalk<'_> {
         let building = match &self.place {
-            FollowedPlace::By(scene) => &scene.followed,
-            FollowedPlace::Nothing(building) => building,
+            FollowedPlace::Graph(scene) => &scene.followed,
+            FollowedPlace::PathAlone(building) => building,
         };
         KnownWalk { building, walk: &self.walk, heading_rad: self.heading_rad }
     }
 
+    /// Judges where the steps of a text lead. The turns are left to the caller, which `TurnJudge::JudgedElsewhere`
+    /// marks.
     fn judge_guide(&self, guide: &Guide) -> FollowerFindings {
         let known = self.known_path();
         let routed = judge_route(guide, known, self.walk_prior(), FeatureWeights::fitted(), GainThresholds::default());
@@ -193,9 +203,9 @@ impl<'a> FollowedPath<'a> {
         if let Err(why @ (UnfollowedReason::TooManySteps | UnfollowedReason::TooFewSteps)) = routed {
             return FollowerFindings::not_followed(why.reason_words());
         }
-        let seen = routed.as_ref().ok();
-        let ends = seen.map(|route| TextEnds { count: route.ends.len(), told_apart_by: apart(route) });
-        let route = seen.map(|route| RouteShares { annotated: route.share, other: route.other });
+        let verdict = routed.as_ref().ok();
+        let ends = verdict.map(|route| TextEnds { count: route.ends.len(), told_apart_by: apart(route) });
+        let route = verdict.map(|route| RouteShares { annotated: route.share, other: route.other });
         let finding = routed.map_or_else(|why| unknown_route(why.reason_words()), |route| route.finding);
         FollowerFindings { findings: vec![finding], route, turn_gain: None, ends, turns: TurnJudge::JudgedElsewhere }
     }

@@ -28,8 +28,11 @@ impl Drop for AtTheEnd<'_> {
 
 /// The state of the work.
 struct OrderedProgress {
+    /// Index of the item that is begun next.
     next: usize,
+    /// Number of items that were passed to `keep`.
     kept: usize,
+    /// Whether no further item is begun.
     stopped: bool,
 }
 
@@ -81,6 +84,7 @@ pub fn in_order<I: Sync, R: Send, E>(
             });
         }
         drop(sender);
+        // Results that came before those of earlier items.
         let mut waiting = BTreeMap::new();
         let mut kept = 0;
         for (at, result) in results {

@@ -32,13 +32,15 @@ static PROCESS_MARKS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// How long a child process may take to answer a request from before the interrupt.
 const CHILD_GRACE: Duration = Duration::from_secs(10);
-/// After that, how long a command without models may take before it is ended at any point: a simulator may keep it waiting. A command
-/// with models is not ended, because the calls in flight are paid for.
+/// How long after `CHILD_GRACE` a command without models may still take, because a simulator may keep it waiting. Then
+/// it is ended at any point. A command with models is not ended, because the calls in flight are paid for.
 const LAST_GRACE: Duration = Duration::from_secs(5);
 
-/// How to stop sending calls, and whether the command makes any.
+/// How a command comes to an end.
 struct CommandEnding {
+    /// Stops the sending of calls to models.
     stop: Box<dyn Fn() + Send>,
+    /// Whether the command makes calls to models.
     has_calls: bool,
 }
 
@@ -46,8 +48,9 @@ struct CommandEnding {
 #[must_use]
 pub struct GracefulEnding(());
 
-/// From now on an interrupt stops the sending of `calls`, and the command calls [`check_interrupt`] between two items. A second interrupt ends
-/// the process.
+/// Makes the command finish its items after an interrupt, until the returned value is dropped: the interrupt stops the
+/// sending of `calls`, and the command calls [`check_interrupt`] between two items. A second interrupt ends the
+/// process.
 pub fn finish_first(calls: Option<&ModelCalls>) -> GracefulEnding {
     let stop: Box<dyn Fn() + Send> = match calls.map(ModelCalls::sending_stopper) {
         Some(ending) => Box::new(ending),
@@ -114,9 +117,9 @@ pub fn listen_for_signals(pending: PendingSignals, output: &CommandOutput) {
     let Some(mut signals) = pending.0 else { return };
     thread::spawn(move || {
         for _ in signals.forever() {
-            let again = INTERRUPT_ASKED.swap(true, Ordering::Relaxed);
+            let is_second = INTERRUPT_ASKED.swap(true, Ordering::Relaxed);
             match lock_ending().as_ref() {
-                Some(ending) if !again => finish_items(ending, output.clone()),
+                Some(ending) if !is_second => finish_items(ending, output.clone()),
                 _ => end_at_once(&output),
             }
         }
@@ -143,14 +146,15 @@ fn finish_items(ending: &CommandEnding, output: CommandOutput) {
 /// Catches no signals: the system ends the process.
 #[cfg(not(unix))]
 #[must_use]
-pub fn catch_signals() -> Pending {
-    Pending()
+pub fn catch_signals() -> PendingSignals {
+    PendingSignals()
 }
 
 /// Has no signals to handle.
 #[cfg(not(unix))]
-pub fn listen_for_signals(_: Pending, _: &Output) {}
+pub fn listen_for_signals(_: PendingSignals, _: &CommandOutput) {}
 
+/// Ends the process and its children, without waiting for the command.
 #[cfg(unix)]
 fn end_at_once(output: &CommandOutput) {
     output.print_error(&CommandError::Interrupted);

@@ -53,8 +53,9 @@ fn episode_items(
     platform: &dyn Platform,
 ) -> Result<Vec<RunItem>, CommandError> {
     let episodes = wayword_formats::read_any_format(file)?;
-    if let Some(blind) = episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
-        let problem = format!("{}: episode {} names no viewpoints, but paths need them", file.display(), blind.id);
+    if let Some(without_viewpoints) = episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
+        let problem =
+            format!("{}: episode {} names no viewpoints, but paths need them", file.display(), without_viewpoints.id);
         return Err(CommandError::usage(
             problem,
             "give an R2R, REVERIE or RxR file, or a Wayword file whose paths name viewpoints (of matterport, say)",
@@ -63,11 +64,16 @@ fn episode_items(
     let wanted =
         |episode: &Episode| settings.scan.is_empty() || settings.scan.iter().any(|scan| scan == episode.scene.as_str());
     // Every scene gets its one official name, because under two names it could come into two splits.
-    let called = |mut episode: Episode| {
+    let with_official_name = |mut episode: Episode| {
         episode.scene = platform.files().canonical_scene(&episode.scene);
         episode
     };
-    Ok(episodes.into_iter().filter(wanted).map(called).map(|episode| RunItem::Episode(Box::new(episode))).collect())
+    Ok(episodes
+        .into_iter()
+        .filter(wanted)
+        .map(with_official_name)
+        .map(|episode| RunItem::Episode(Box::new(episode)))
+        .collect())
 }
 
 fn random_items(settings: &RunSettings, platform: &dyn Platform) -> Result<Vec<RunItem>, CommandError> {
@@ -122,8 +128,9 @@ fn without_repeats(items: Vec<RunItem>, settings: &RunSettings, platform: &dyn P
     items.into_iter().filter(|item| is_new(item)).collect()
 }
 
-/// The scene of a random path. Paths go scene by scene, because a platform keeps only the last few scenes loaded. Paths that were
-/// asked for later go through the scenes again, so that earlier paths stay in their scenes.
+/// The index of the scene of a random path. Paths go scene by scene, because a platform keeps only the last few scenes
+/// loaded: of 8 paths through 4 scenes, 0 and 1 are in the first. Paths that a later command adds go through the scenes
+/// again from the first, so that earlier paths stay in their scenes.
 fn first_scene(number: usize, settings: &RunSettings, scenes: usize) -> usize {
     let steps = settings.raised_from.iter().copied().chain([settings.paths]);
     let mut start = 0;

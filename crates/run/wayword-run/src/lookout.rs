@@ -18,6 +18,7 @@ use wayword_synthesis::detection::{CaptionDetector, parse_noun_list, usual_nouns
 pub struct DetectorLookout {
     detector: Arc<dyn ObjectDetector>,
     figures: DetectorFigures,
+    /// The names that it looks for in every view.
     nouns: Vec<String>,
     /// Views that it has looked at.
     views: AtomicUsize,

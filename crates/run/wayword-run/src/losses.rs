@@ -2,7 +2,8 @@
 
 use wayword_core::FailureKind;
 
-/// A command ends after this many lost items in a row, because the other items would be lost too.
+/// A command ends after this many items in a row that were lost, because the other items would be lost too. The same
+/// number counts for items that all lack the same thing.
 pub(crate) const MOST_IN_A_ROW: usize = 5;
 
 /// Number of lost items in a row.

@@ -16,7 +16,9 @@ use wayword_world::output_lines::is_unseen;
 /// How the program prints.
 #[derive(Clone)]
 pub struct CommandOutput {
+    /// Whether results are printed as JSON.
     json: bool,
+    /// Whether messages and progress are left out.
     quiet: bool,
     /// Gets everything in place of the terminal, if there is one.
     listener: Option<Arc<dyn CommandOutputListener>>,
@@ -42,7 +44,8 @@ impl fmt::Debug for CommandOutput {
     }
 }
 
-/// Longest error that is printed, characters, because parsers quote the whole line that they fail on.
+/// Longest error that is printed, characters, because parsers quote the whole line that they fail on. The rest is cut
+/// off.
 const MOST_ERROR_CHARS: usize = 1000;
 
 /// A text without control characters. Every text from a model, a server, a child process or a file goes through here before it is
@@ -60,7 +63,7 @@ fn tame_error(text: &str) -> String {
     tamed
 }
 
-/// The same JSON text with control characters written as JSON escapes.
+/// As [`tame_text`], for JSON: control characters become JSON escapes, so that the value stays the same.
 fn tame_json(json: &str) -> String {
     let mut tamed = String::with_capacity(json.len());
     for c in json.chars() {
@@ -74,7 +77,7 @@ fn tame_json(json: &str) -> String {
     tamed
 }
 
-/// Prints a line of a child process.
+/// Prints a line that comes from elsewhere, such as a child process or a platform, on standard error.
 pub fn pass_on(line: &str) {
     eprintln!("{}", tame_error(line));
 }
@@ -127,7 +130,8 @@ impl CommandOutput {
         eprintln!("{}: {}", if red { "\x1b[31merror\x1b[0m" } else { "error" }, tame_error(&error.to_string()));
     }
 
-    /// A progress bar, hidden if standard error is not a terminal.
+    /// A progress bar over `total` things, which `what` names, as in "items". Hidden if standard error is not a
+    /// terminal.
     #[must_use]
     pub fn progress_bar(&self, total: usize, what: &'static str) -> ProgressBar {
         self.make_bar(total as u64, "{prefix} {bar:32} {pos}/{len}  {msg}{left}").with_prefix(what)
@@ -165,6 +169,7 @@ impl CommandOutput {
     }
 }
 
+/// The style of a bar. In the template, `{left}` is the time that is left.
 fn bar_style(template: &str) -> ProgressStyle {
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     style.with_key("left", |state: &ProgressState, out: &mut dyn fmt::Write| {
@@ -173,7 +178,8 @@ fn bar_style(template: &str) -> ProgressStyle {
     })
 }
 
-/// The remaining time. It is not known before the first item is done, and empty then.
+/// The remaining time for the end of a bar, as in "  2m left". Empty before the first item is done, because it is not
+/// known then.
 fn remaining_text(eta: Duration) -> String {
     if eta.is_zero() { String::new() } else { format!("  {:#} left", HumanDuration(eta.max(Duration::from_secs(1)))) }
 }

@@ -11,14 +11,15 @@ use wayword_checks::{detection::DetectorFigures, open::Calibration};
 const FORMAT_KEY: &str = "format";
 /// The key of the version of the program.
 const WRITER_KEY: &str = "wayword";
-/// Longest name of a format or a version that an error repeats, characters.
+/// Longest name of a format or a version that an error repeats, characters. The rest is cut off.
 const MAX_SHOWN_CHARS: usize = 60;
 
-/// The content of a file with this head. A file without a head is accepted as well: the first versions wrote none.
+/// The content of a file that begins with the two keys (its head). A file without a head is accepted as well: the first
+/// versions of this program wrote none.
 pub trait OwnFormat: DeserializeOwned {
     /// The name and the version of the format.
     const NAME: &str;
-    /// The format's number in files of the time before formats had names.
+    /// The format's number in old files, from before formats had names; `None` for a format that never had a number.
     const NUMBER: Option<i64> = None;
 }
 
@@ -37,12 +38,12 @@ impl OwnFormat for DetectorFigures {
 /// Why a file of this program cannot be used.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum OwnFormatError {
-    /// It has another format.
+    /// The file has another format than the one that is read.
     #[error("its format is {found}{}, and this is version {}, which reads {known}", .by.as_ref().map_or_else(String::new, |by| format!(" and version {by} of this program wrote it")), env!("CARGO_PKG_VERSION"))]
     Other {
-        /// Its format.
+        /// The format that the file names.
         found: String,
-        /// The version that wrote it, if the file names it.
+        /// The version of this program that wrote the file, if the file names it.
         by: Option<String>,
         /// The format that is read here.
         known: &'static str,
@@ -53,7 +54,7 @@ pub(crate) enum OwnFormatError {
 }
 
 impl OwnFormatError {
-    /// The hint for the user; `otherwise` is the one for a broken file.
+    /// The hint for the user. `otherwise` is the hint for a broken file, which depends on the kind of file.
     pub(crate) fn hint_or<'a>(&self, otherwise: &'a str) -> &'a str {
         match self {
             Self::Other { .. } => "use the version that wrote it, or give another file or folder",
@@ -98,6 +99,7 @@ fn parse_body<S: OwnFormat>(text: &str) -> Result<Table, OwnFormatError> {
     }
 }
 
+/// A value of the head as text, cut so that an error stays short.
 fn short_value(value: &Value) -> String {
     value.to_string().chars().take(MAX_SHOWN_CHARS).collect()
 }

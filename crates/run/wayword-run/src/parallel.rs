@@ -29,9 +29,11 @@ pub fn at_once<I: Sync, R: Send>(
             made.lock().unwrap_or_else(PoisonError::into_inner).push((at, result));
         }
     };
-    let occasion = CallContext::from_current_thread();
+    // The calls that the other threads make belong to the span of this thread.
+    let call_context = CallContext::from_current_thread();
     thread::scope(|scope| {
-        let others: Vec<_> = (1..threads.min(items.len())).map(|_| scope.spawn(|| occasion.run_within(work))).collect();
+        let others: Vec<_> =
+            (1..threads.min(items.len())).map(|_| scope.spawn(|| call_context.run_within(work))).collect();
         work();
         for other in others {
             if let Err(panic) = other.join() {

@@ -54,9 +54,10 @@ pub fn picture_file(folder: &Path, item: &str, frame: usize) -> PathBuf {
     folder.join(format!("{item}_{frame}.jpg"))
 }
 
-/// Largest picture that is read, bytes.
+/// Largest picture that is read, bytes. A larger one counts as missing.
 pub const MOST_BYTES: u64 = 4 << 20;
-/// Largest side of a picture that is read, pixels: a small file can hold a picture that fills the memory.
+/// Largest side of a picture that is read, pixels, because a small file can hold a picture that fills the memory. A
+/// larger picture counts as missing.
 pub const MOST_SIDE_PX: u32 = 4096;
 
 /// A picture as it lies in a run's folder.

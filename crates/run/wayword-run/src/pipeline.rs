@@ -31,7 +31,8 @@ use wayword_synthesis::{
 pub struct MadeItem {
     /// The path and what was seen along it.
     pub walk: ObservedWalk,
-    /// As many per style as each path gets, in the order of the run's styles.
+    /// The outcomes of its texts, style by style in the order of the run's styles. Each style has as many as
+    /// `--per-path` asks for.
     pub outcomes: Vec<WritingOutcome>,
     /// The picture ahead of each frame, if the platform has pictures.
     pub pictures: Vec<FrameJpeg>,
@@ -62,7 +63,8 @@ pub struct ItemTextOrder<'a> {
 pub struct WrittenItem {
     /// The path and what was seen along it.
     pub walk: ObservedWalk,
-    /// As many per style as each path gets, in the order of the run's styles.
+    /// The outcomes of its texts, style by style in the order of the run's styles. Each style has as many as
+    /// `--per-path` asks for.
     pub outcomes: Vec<WritingOutcome>,
     /// The view ahead of each frame.
     ahead: Vec<View>,
@@ -109,15 +111,15 @@ pub fn write_item(
     let observers = team.observers();
     let talk = |views: &[PlannedView]| -> Result<Vec<Caption>, ModelError> {
         // The other views are described although one fails, so the error is always that of the first failing view in order.
-        let ends = |told: &Result<Caption, ModelError>| told.as_ref().is_err_and(ModelError::ends_run);
+        let ends = |caption: &Result<Caption, ModelError>| caption.as_ref().is_err_and(ModelError::ends_run);
         at_once(views, threads, |planned| talk_about(&planned.view, observers), ends).into_iter().collect()
     };
     let mut observations = observe_with(&world, &path, settings.frames, observers, &talk)?;
     if let Some(lookout) = team.lookout() {
-        let looked = CallContext::with_purpose("detect", || {
+        let view_count = CallContext::with_purpose("detect", || {
             seek_along_path(&world, &path, &mut observations, lookout.to_seeker())
         })?;
-        lookout.has_looked_at(looked);
+        lookout.has_looked_at(view_count);
     }
     let walk = ObservedWalk::new(path, observations);
     let detector = team.lookout().map(DetectorLookout::name);
@@ -141,7 +143,7 @@ pub fn write_item(
     let ahead = views_ahead(&world, &walk.path)?;
     let shown =
         if settings.roles.write_sees { shown_pictures(&ahead, settings.roles.write.as_str())? } else { Vec::new() };
-    let of_style = |MeasuredStyle { style, profile, hash }: &MeasuredStyle| {
+    let write_style = |MeasuredStyle { style, profile, hash }: &MeasuredStyle| {
         let order = InstructionOrder {
             walk: &walk,
             memory: &memory,
@@ -160,7 +162,7 @@ pub fn write_item(
         write_texts(team, order, settings.per_path)
     };
     let ends = |texts: &Result<Vec<WritingOutcome>, ModelError>| texts.as_ref().is_err_and(ModelError::ends_run);
-    let outcomes = at_once(styles, threads, of_style, ends).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let outcomes = at_once(styles, threads, write_style, ends).into_iter().collect::<Result<Vec<_>, _>>()?;
     Ok(WrittenItem { walk, outcomes: outcomes.into_iter().flatten().collect(), ahead })
 }
 
@@ -204,22 +206,23 @@ fn shown_pictures(ahead: &[View], writer: &str) -> Result<Vec<FramePicture>, Mod
     Ok(places.map(|at| all[at].clone()).collect())
 }
 
-/// Follows the texts of one path.
+/// Follows the texts of one path for `write_and_repair`.
 struct PathFollower<'a> {
     /// The path, or the reason why it cannot be followed.
     followed: Result<FollowedPath<'a>, &'static str>,
     evidence: &'a Evidence,
+    /// Whether an ambiguous text fails (`--reject-ambiguous`).
     rejects_ambiguous: bool,
 }
 
 impl TextFollower for PathFollower<'_> {
     fn follow(&self, text: &str, checked: &mut TextFindings) -> TextAmbiguity {
-        let told = match &self.followed {
+        let findings = match &self.followed {
             Ok(followed) => followed.judge_route(text),
             Err(why) => FollowerFindings::not_followed(why),
         };
-        told.add_to(checked);
-        let ambiguity = told.text_ambiguity(text, self.evidence);
+        findings.add_to(checked);
+        let ambiguity = findings.text_ambiguity(text, self.evidence);
         checked.add_findings(ambiguity_rejection(&ambiguity).filter(|_| self.rejects_ambiguous));
         ambiguity
     }
@@ -268,6 +271,7 @@ pub fn path_panoramas(platform: &dyn Platform, path: &Path) -> Result<Vec<Vec<Vi
     path.frames.iter().map(views).collect()
 }
 
+/// The views from a frame, for which the platform need not make pictures.
 fn labels_at(
     platform: &dyn Platform,
     scene: &SceneId,
@@ -296,9 +300,9 @@ fn collect_evidence(
         true => Evidence::from_labels(&walk.path, &path_panoramas(platform, &walk.path)?),
         false => None,
     };
-    let heard = || match detector.filter(|_| sources.detector && !sources.captions) {
+    let without_labels = || match detector.filter(|_| sources.detector && !sources.captions) {
         Some(detector) => Evidence::from_detector(&walk.path, &detector_only(&walk.observations, detector)),
         None => walk.evidence(),
     };
-    Ok(labels.or_else(heard).unwrap_or_else(|| Evidence::of_path_alone(&walk.path)))
+    Ok(labels.or_else(without_labels).unwrap_or_else(|| Evidence::of_path_alone(&walk.path)))
 }

@@ -12,11 +12,11 @@ use crate::{
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{Platform, PlatformError, SceneCondition, SceneId, SceneLack};
 
-/// Most scenes that are examined at a time: one may take some hundred megabytes.
+/// Most scenes that are examined at the same time, because one may take some hundred megabytes of memory.
 const AT_A_TIME: usize = 4;
 /// From this number of scenes on, a message announces that they are being examined, because that takes a while.
 const MIN_ANNOUNCED_SCENES: usize = 20;
-/// Scenes that an error names.
+/// Most scenes that an error names; it counts the others.
 const MAX_NAMED_SCENES: usize = 3;
 
 /// The settings of a new run, completed by the scenes that its random paths leave out. A message names each of them once, with
@@ -66,22 +66,27 @@ fn left_out(
     output: &CommandOutput,
 ) -> Result<BTreeMap<String, SceneLack>, CommandError> {
     let conditions = examine_scenes(scenes, platform, output)?;
-    let bad = conditions.into_iter().filter_map(|found| Some((found.scene.to_string(), found.unusable?)));
-    let bad: BTreeMap<String, SceneLack> = bad.collect();
-    if !scenes.is_empty() && bad.len() >= scenes.len() {
-        let reasons: Vec<&str> = bad.values().take(MAX_NAMED_SCENES).map(|lack| lack.what.as_str()).collect();
-        let more = bad.len().saturating_sub(MAX_NAMED_SCENES);
+    let unusable =
+        conditions.into_iter().filter_map(|condition| Some((condition.scene.to_string(), condition.unusable?)));
+    let unusable: BTreeMap<String, SceneLack> = unusable.collect();
+    if !scenes.is_empty() && unusable.len() >= scenes.len() {
+        let reasons: Vec<&str> = unusable.values().take(MAX_NAMED_SCENES).map(|lack| lack.what.as_str()).collect();
+        let more = unusable.len().saturating_sub(MAX_NAMED_SCENES);
         let rest = if more > 0 { format!("; and {more} more") } else { String::new() };
-        let hint = bad.values().next().map(|lack| lack.hint.clone()).unwrap_or_default();
+        let hint = unusable.values().next().map(|lack| lack.hint.clone()).unwrap_or_default();
         return Err(CommandError::usage(format!("no scene can be used: {}{rest}", reasons.join("; ")), hint));
     }
-    for (scene, SceneLack { what, hint }) in &bad {
+    for (scene, SceneLack { what, hint }) in &unusable {
         output.say(format_args!("left out: scene {scene}: {what}\nhint: {hint}"));
     }
-    if !bad.is_empty() {
-        output.say(format_args!("{} of {} are used", scenes.len() - bad.len(), count_phrase(scenes.len(), "scene")));
+    if !unusable.is_empty() {
+        output.say(format_args!(
+            "{} of {} are used",
+            scenes.len() - unusable.len(),
+            count_phrase(scenes.len(), "scene")
+        ));
     }
-    Ok(bad)
+    Ok(unusable)
 }
 
 /// The conditions of scenes, in their order. A scene that the platform cannot examine is skipped.

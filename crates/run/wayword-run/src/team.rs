@@ -27,11 +27,14 @@ use wayword_synthesis::{
 pub struct RoleTeam {
     asker: Box<dyn QuestionAsker>,
     answerer: Box<dyn ViewAnswerer>,
+    /// Whether labels answer, and no model.
     sees_labels: bool,
     summariser: Box<dyn CaptionSummariser>,
     writer: Box<dyn InstructionWriter>,
+    /// Writes if all texts of a model failed.
     finisher: Option<RulesWriter>,
     mode: DialogueMode,
+    /// The hash of the prompts, for provenance; `None` if no model takes part.
     prompts_hash: Option<String>,
     lookout: Option<DetectorLookout>,
     /// The name of the lookout's detector with the meaning of its scores, for provenance.
@@ -77,13 +80,13 @@ impl RoleTeam {
         };
         let prompts_hash = (!roles.model_names().is_empty()).then(|| prompts.hash().to_owned());
         let prompts = || Arc::clone(&prompts);
-        let sees = model(&roles.see, "see")?;
-        let sees_labels = sees.is_none();
+        let seeing_model = model(&roles.see, "see")?;
+        let sees_labels = seeing_model.is_none();
         // Without a dialogue there is no asker and no summariser.
         let in_dialogue =
             |player: &RolePlayer, purpose| if settings.has_dialogue() { model(player, purpose) } else { Ok(None) };
-        let writes = model(&roles.write, "write")?;
-        let finisher = writes.is_some() && roles.finish == FailureFinish::Rules;
+        let writing_model = model(&roles.write, "write")?;
+        let has_finisher = writing_model.is_some() && roles.finish == FailureFinish::Rules;
         Ok(Self {
             asker: match in_dialogue(&roles.ask, "ask")? {
                 Some(model) => Box::new(ModelAsker::new(model, prompts())),
@@ -95,7 +98,7 @@ impl RoleTeam {
                 Some(model) => Box::new(ModelSummariser::new(model, prompts())),
                 None => Box::new(RulesSummariser),
             },
-            answerer: match sees {
+            answerer: match seeing_model {
                 Some(model) => {
                     let manner =
                         calls.map_or(Ok(PromptManner::Chat), |calls| calls.prompt_manner(roles.see.as_str()))?;
@@ -110,11 +113,11 @@ impl RoleTeam {
                 None => Box::new(labels),
             },
             sees_labels,
-            writer: match writes {
+            writer: match writing_model {
                 Some(model) => Box::new(ModelWriter::new(model, prompts())),
                 None => Box::new(RulesWriter),
             },
-            finisher: finisher.then_some(RulesWriter),
+            finisher: has_finisher.then_some(RulesWriter),
             mode: settings.dialogue_mode(),
             prompts_hash,
             lookout: None,

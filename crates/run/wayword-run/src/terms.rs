@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 /// Platforms with scenes that this program generates. Results made from them belong to the user.
 const OWN_PLATFORMS: [&str; 1] = ["house"];
-/// The document with the full terms.
+/// The document that has the full terms.
 const TOLD_IN: &str = "docs/DATA.md";
 
 /// Whether the scenes of a platform belong to other people, so that their terms apply.

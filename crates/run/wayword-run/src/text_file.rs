@@ -8,7 +8,7 @@ use std::{
 };
 use wayword_world::files;
 
-/// Largest file that is read, bytes.
+/// Largest file that is read, bytes. A larger one is refused.
 const MOST_BYTES: u64 = 4 << 20;
 
 /// The text of a file, without a byte order mark. `what` is what the program was doing, for the error ("read the settings").
@@ -16,18 +16,18 @@ const MOST_BYTES: u64 = 4 << 20;
 /// # Errors
 /// When it cannot be read, is not a plain file (but a pipe, say), is not UTF-8, or is larger than 4 MiB.
 pub fn read_text_file(path: &Path, what: &'static str) -> Result<String, CommandError> {
-    let wrong = |reason: &str, hint: &str| CommandError::usage(format!("{}: this {reason}", path.display()), hint);
-    let about = fs::metadata(path).map_err(CommandError::io(path, what))?;
-    if let Some(reason) = files::describe_irregular(&about) {
-        return Err(wrong(reason, "give a file"));
+    let refusal = |reason: &str, hint: &str| CommandError::usage(format!("{}: this {reason}", path.display()), hint);
+    let metadata = fs::metadata(path).map_err(CommandError::io(path, what))?;
+    if let Some(reason) = files::describe_irregular(&metadata) {
+        return Err(refusal(reason, "give a file"));
     }
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(CommandError::io(path, what))?;
     file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(CommandError::io(path, what))?;
     if bytes.len() as u64 > MOST_BYTES {
-        return Err(wrong("is larger than 4 MiB", "check that this is the right file"));
+        return Err(refusal("is larger than 4 MiB", "check that this is the right file"));
     }
-    files::decode_utf8(bytes).map_err(|reason| wrong(reason, "check that this is the right file"))
+    files::decode_utf8(bytes).map_err(|reason| refusal(reason, "check that this is the right file"))
 }
 
 #[cfg(test)]

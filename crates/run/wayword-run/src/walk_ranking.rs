@@ -31,8 +31,8 @@ impl KnownScenes {
         most: usize,
     ) -> Result<Vec<MeantWalk>, CommandError> {
         let known = self.get_or_survey(platform, scene)?;
-        let nowhere = || PlatformError::UnknownViewpoint { scene: scene.clone(), viewpoint: start.clone() };
-        let place = known.survey.viewpoint_index(start).ok_or_else(nowhere)?;
+        let unknown_start = || PlatformError::UnknownViewpoint { scene: scene.clone(), viewpoint: start.clone() };
+        let place = known.survey.viewpoint_index(start).ok_or_else(unknown_start)?;
         let unfollowed = |why: &str| {
             let hint = "give the steps of a walk in English, as in \"Go past the bed and turn left\"";
             CommandError::usage(format!("the text cannot be followed: {why}"), hint)
@@ -43,11 +43,12 @@ impl KnownScenes {
             return Err(unfollowed("it has too many steps"));
         }
         let fit = WalkFit::new(&GuideTrial::new(&guide, &known.followed), &tree, FeatureWeights::fitted());
+        // Place 0 of the tree is the start alone, which is no walk.
         let mut by_share: Vec<(usize, f64)> = walk_shares(&fit, &tree).into_iter().enumerate().skip(1).collect();
         by_share.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        let name = |place: usize| known.survey.viewpoints().get(place).map(|viewpoint| viewpoint.id.clone());
+        let viewpoint_id = |place: usize| known.survey.viewpoints().get(place).map(|viewpoint| viewpoint.id.clone());
         let walk = |(walk, share): (usize, f64)| MeantWalk {
-            viewpoints: tree.viewpoints(walk).into_iter().filter_map(name).collect(),
+            viewpoints: tree.viewpoints(walk).into_iter().filter_map(viewpoint_id).collect(),
             share,
         };
         Ok(by_share.into_iter().take(most).map(walk).collect())

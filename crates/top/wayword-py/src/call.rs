@@ -28,7 +28,7 @@ use wayword_run::{
 
 /// How often a call checks for Ctrl-C and reports its progress.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
-/// How long the end of the interpreter waits for a command of another thread.
+/// How long the end of the interpreter waits for a command of another thread. Then it ends without it.
 const FINISHED_WITHIN: Duration = Duration::from_secs(20);
 /// Stack of the thread that runs a command, bytes: as much as the main thread of a program has.
 const THREAD_STACK_BYTES: usize = 8 << 20;
@@ -68,8 +68,8 @@ pub(crate) fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
 pub(crate) fn call(py: Python<'_>, arguments: Vec<OsString>, hears: Py<PyAny>) -> PyResult<(u8, String)> {
     let name = arguments.first().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let typed = std::iter::once(OsString::from("wayword")).chain(arguments);
-    let cli =
-        WaywordCli::try_parse_from(typed).map_err(|told| raised_of(py, "input", in_parts(&name, &told.to_string())))?;
+    let cli = WaywordCli::try_parse_from(typed)
+        .map_err(|error| raised_of(py, "input", in_parts(&name, &error.to_string())))?;
     let heard = Arc::new(CommandListener::default());
     let output = CommandOutput::heard_by(Arc::clone(&heard) as Arc<dyn CommandOutputListener>);
     let exit = run_in_turn(py, &heard, &hears, || commands::run_command(cli.command, &output))?
@@ -77,10 +77,11 @@ pub(crate) fn call(py: Python<'_>, arguments: Vec<OsString>, hears: Py<PyAny>) -
     Ok((exit as u8, lock_mutex(&heard.data).take().unwrap_or_default()))
 }
 
-/// The message of the command line's parser, without its usage, and with a hint.
-fn in_parts(command: &str, told: &str) -> (String, Option<String>, Option<String>) {
-    let told = told.trim_start_matches("error: ");
-    let what = ["\n\nUsage:", "\n\nFor more"].iter().fold(told, |told, end| told.split(end).next().unwrap_or(told));
+/// An error of the command line's parser as problem, place and hint. The usage is cut off, because Python's users type
+/// no command line.
+fn in_parts(command: &str, message: &str) -> (String, Option<String>, Option<String>) {
+    let message = message.trim_start_matches("error: ");
+    let what = ["\n\nUsage:", "\n\nFor more"].iter().fold(message, |text, end| text.split(end).next().unwrap_or(text));
     (what.trim().to_owned(), None, Some(format!("arguments are the flags of `wayword {command} --help`")))
 }
 
@@ -93,8 +94,11 @@ pub(crate) fn guarded_by(program: PathBuf, arguments: Vec<OsString>) {
 /// Collects the messages, the progress and the result of a command.
 #[derive(Default)]
 struct CommandListener {
+    /// The result, as JSON.
     data: Mutex<Option<String>>,
+    /// Messages that Python did not get yet.
     said: Mutex<Vec<String>>,
+    /// The progress bar that was begun last.
     bar: Mutex<Option<ProgressBar>>,
 }
 
@@ -114,6 +118,7 @@ impl CommandOutputListener for CommandListener {
 
 /// How a call of the Python object `hears` ended.
 enum PythonOutcome {
+    /// It returned.
     Well,
     /// Python received a signal.
     Signal(PyErr),
@@ -126,15 +131,15 @@ enum PythonOutcome {
 impl CommandListener {
     /// Passes the messages since the last call, and the progress, to Python.
     fn pass_to_python(&self, hears: Option<&Py<PyAny>>) -> PythonOutcome {
-        let said = std::mem::take(&mut *lock_mutex(&self.said));
+        let messages = std::mem::take(&mut *lock_mutex(&self.said));
         let bar = lock_mutex(&self.bar).clone();
-        let told = Python::try_attach(|py| {
+        let outcome = Python::try_attach(|py| {
             if let Err(error) = py.check_signals() {
                 return PythonOutcome::Signal(error);
             }
             let Some(hears) = hears else { return PythonOutcome::Well };
-            let tell = || -> PyResult<()> {
-                for text in said {
+            let pass_all = || -> PyResult<()> {
+                for text in messages {
                     hears.call_method1(py, "say", (text,))?;
                 }
                 if let Some(bar) = bar {
@@ -143,9 +148,9 @@ impl CommandListener {
                 }
                 Ok(())
             };
-            tell().map_or_else(PythonOutcome::Raised, |()| PythonOutcome::Well)
+            pass_all().map_or_else(PythonOutcome::Raised, |()| PythonOutcome::Well)
         });
-        told.unwrap_or(PythonOutcome::Ended)
+        outcome.unwrap_or(PythonOutcome::Ended)
     }
 }
 
@@ -182,6 +187,7 @@ fn in_thread<T: Send>(
 ) -> PyResult<Result<T, CommandError>> {
     let (done, raised) = py.detach(|| {
         thread::scope(|scope| {
+            // Nothing is sent: the channel closes when the work ends.
             let (ends, ended) = channel::<()>();
             let worker = thread::Builder::new().stack_size(THREAD_STACK_BYTES).spawn_scoped(scope, move || {
                 let result = work();

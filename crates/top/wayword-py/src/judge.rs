@@ -80,13 +80,13 @@ impl Judge {
 
 /// The exception for a submission that is not scored.
 fn problems_error(py: Python<'_>, problems: &TrajectoryProblems) -> PyErr {
-    let told: Vec<(Option<&str>, &str)> =
+    let listed: Vec<(Option<&str>, &str)> =
         problems.listed_problems().iter().map(|problem| (problem.instr_id.as_deref(), &*problem.problem)).collect();
-    let made = py
+    let exception = py
         .import("wayword.errors")
         .and_then(|errors| errors.getattr("SubmissionError"))
-        .and_then(|class| class.call1((told, problems.count(), problems.missing_count())));
-    made.map_or_else(|error| error, PyErr::from_value)
+        .and_then(|class| class.call1((listed, problems.count(), problems.missing_count())));
+    exception.map_or_else(|error| error, PyErr::from_value)
 }
 
 /// The exception for a trajectory that cannot be read.
@@ -103,10 +103,10 @@ fn each_trajectory<'py>(
     let py = submission.py();
     let flawed = |at: usize| {
         move |error: PyErr| {
-            let is_ours = error.is_instance_of::<PyTypeError>(py) || error.is_instance_of::<PyValueError>(py);
+            let is_wrong_entry = error.is_instance_of::<PyTypeError>(py) || error.is_instance_of::<PyValueError>(py);
             // All other exceptions come from the caller's own iterators and are passed on.
-            let is_ours = is_ours || error.is_instance_of::<PyLookupError>(py);
-            if is_ours { unread_error(py, at, &error.to_string()) } else { error }
+            let is_wrong_entry = is_wrong_entry || error.is_instance_of::<PyLookupError>(py);
+            if is_wrong_entry { unread_error(py, at, &error.to_string()) } else { error }
         }
     };
     if let Ok(mapping) = submission.cast::<PyDict>() {
@@ -134,29 +134,32 @@ const PART_TRAJECTORIES: usize = 256;
 /// A part of the trajectories from Python, copied, so that the interpreter can be released while they are scored.
 #[derive(Default)]
 struct TrajectoryPart {
-    /// All names, one after the other.
+    /// All texts (instructions, viewpoints, objects), one after the other. The ranges of bytes below point into it.
     names: String,
-    /// The viewpoints of all trajectories.
+    /// The viewpoints of all trajectories, each as a range of `names`.
     steps: Vec<Range<usize>>,
     trajectories: Vec<HandedTrajectory>,
 }
 
-/// One trajectory.
+/// One trajectory of a [`TrajectoryPart`].
 struct HandedTrajectory {
+    /// The instruction, as a range of `names`.
     name: Range<usize>,
+    /// Its viewpoints, as a range of `steps`.
     steps: Range<usize>,
+    /// The object that the agent names, as a range of `names`.
     object: Option<Range<usize>>,
 }
 
 impl TrajectoryPart {
     /// Scores the trajectories, and is empty afterwards.
     fn score_part(&mut self, scoring: &mut SubmissionScoring<'_>) {
-        for one in &self.trajectories {
-            let names = self.steps[one.steps.clone()].iter().map(|step| self.text_at(step));
+        for trajectory in &self.trajectories {
+            let names = self.steps[trajectory.steps.clone()].iter().map(|step| self.text_at(step));
             scoring.take_trajectory(
-                self.text_at(&one.name),
+                self.text_at(&trajectory.name),
                 names,
-                one.object.as_ref().map(|object| self.text_at(object)),
+                trajectory.object.as_ref().map(|object| self.text_at(object)),
             );
         }
         self.names.clear();
@@ -164,6 +167,7 @@ impl TrajectoryPart {
         self.trajectories.clear();
     }
 
+    /// Copies one trajectory.
     fn take_trajectory(
         &mut self,
         name: &Bound<'_, PyAny>,

@@ -12,9 +12,9 @@ pub(crate) fn exception_for(py: Python<'_>, error: CommandError) -> PyErr {
 /// The exception of a kind, with the problem, its place, and a hint.
 pub(crate) fn raised_of(py: Python<'_>, kind: &str, parts: (String, Option<String>, Option<String>)) -> PyErr {
     let (what, place, hint) = parts;
-    let made = py
+    let exception = py
         .import("wayword.errors")
         .and_then(|errors| errors.getattr("of_kind"))
         .and_then(|of_kind| of_kind.call1((kind, what, place, hint)));
-    made.map_or_else(|error| error, PyErr::from_value)
+    exception.map_or_else(|error| error, PyErr::from_value)
 }

@@ -1,4 +1,4 @@
-//! `wayword demo`.
+//! `wayword demo`: writes instructions for one path through a generated house, without a model, and prints them.
 
 use clap::Args;
 use serde::Serialize;

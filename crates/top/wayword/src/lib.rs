@@ -40,10 +40,10 @@ pub fn main(arguments: Vec<OsString>) -> u8 {
     leave_contained_panics_to_errors();
     let cli = match WaywordCli::try_parse_from(arguments) {
         Ok(cli) => cli,
-        Err(told) => {
+        Err(parse_error) => {
             // A closed output is no error.
-            let _ = told.print();
-            return u8::try_from(told.exit_code()).unwrap_or(u8::MAX);
+            let _ = parse_error.print();
+            return u8::try_from(parse_error.exit_code()).unwrap_or(u8::MAX);
         }
     };
     let output = CommandOutput::new(cli.json, cli.quiet);

@@ -1,4 +1,4 @@
-//! `wayword report`.
+//! `wayword report`: writes the HTML pages of a run or a comparison.
 
 use clap::Args;
 use std::{
@@ -39,6 +39,7 @@ const MAX_REPORT_WALKS: usize = 100;
 /// Most runs below a folder that an error names.
 const MAX_NAMED_ITEMS: usize = 3;
 
+/// Runs `wayword report`: finds out whether the folder holds a run or a comparison, and writes its pages.
 pub(crate) fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     expect_run(&args.run)?;
     let out = args.out.clone().unwrap_or_else(|| args.run.join(file::REPORT));

@@ -21,19 +21,25 @@ pub(super) enum AlignmentStep {
     Free,
 }
 
-/// How far a text has got: the frame of its last place, the frame of its last turn, and the first move after that turn.
+/// How far a text has got on the path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct AlignmentProgress {
+    /// The frame of its last place.
     place: usize,
+    /// The frame of its last turn.
     turn: usize,
+    /// The first move after that turn.
     next_move: usize,
 }
 
-/// A state, the state of the layer before that it came from, and the frame of the step between them.
+/// One way to map the text up to a step. All the ways to map it up to the same step are a layer of the search.
 #[derive(Debug, Clone, Copy)]
 struct AlignmentState {
+    /// How far the text has got.
     state: AlignmentProgress,
+    /// The index, in the layer before, of the state that this one continues.
     before: usize,
+    /// The frame of the step; `None` for a step that needs none.
     frame: Option<usize>,
 }
 
@@ -79,13 +85,13 @@ fn drop_dominated(mut reached: Vec<AlignmentState>) -> Vec<AlignmentState> {
     // A state that dominates another one comes before it.
     reached.sort_by_key(|reached| reached.state);
     let mut kept: Vec<AlignmentState> = Vec::new();
-    for one in reached {
+    for candidate in reached {
         let dominates = |other: &AlignmentState| {
-            let (a, b) = (other.state, one.state);
+            let (a, b) = (other.state, candidate.state);
             a.place <= b.place && a.turn <= b.turn && a.next_move <= b.next_move
         };
         if !kept.iter().any(dominates) {
-            kept.push(one);
+            kept.push(candidate);
         }
     }
     kept
@@ -137,15 +143,15 @@ struct PathBends {
 impl PathBends {
     fn from_evidence(evidence: &Evidence) -> Self {
         let deg: Vec<f64> = evidence.moves.iter().map(|step| step.turn_rad.to_degrees()).collect();
-        let to = |side: Side| {
+        let turns_to = |side: Side| {
             let spans = (0..deg.len())
                 .flat_map(|first| (first..(first + motion::BEND_MOVES).min(deg.len())).map(move |last| (first, last)));
             spans.filter(|(first, last)| is_turn(side, &deg[*first..=*last])).collect()
         };
         Self {
-            left: to(Side::Left),
-            right: to(Side::Right),
-            around: to(Side::Behind),
+            left: turns_to(Side::Left),
+            right: turns_to(Side::Right),
+            around: turns_to(Side::Behind),
             moves: evidence.motion.goes_anywhere(&evidence.moves, evidence.frames.len()),
         }
     }
@@ -159,6 +165,7 @@ impl PathBends {
             Side::Ahead | Side::Behind => &self.around,
         };
         let rest = &all[all.partition_point(|(first, _)| *first < from)..];
+        // The bends ascend by their first move and have few moves, so the one that ends soonest is among the first few.
         let soonest_end = rest.iter().map(|(_, last)| *last).take(motion::BEND_MOVES * motion::BEND_MOVES).min();
         rest.iter().copied().take_while(|(first, _)| soonest_end.is_some_and(|end| *first <= end)).collect()
     }
@@ -170,6 +177,7 @@ fn is_turn(side: Side, bend: &[f64]) -> bool {
     let total = bend.iter().sum::<f64>() * sign;
     match (side, bend.len()) {
         (Side::Ahead | Side::Behind, moves) => moves <= 2 && total.abs() >= motion::AROUND_AT_LEAST_DEG,
+        // A move that turns nearly around to the other side ends in almost the same direction.
         (_, 1) => total >= motion::SLIGHT_DEG || total <= -motion::AROUND_DEG,
         _ => total >= motion::BEND_DEG && bend.iter().all(|deg| deg * sign >= motion::BEND_STEP_DEG),
     }

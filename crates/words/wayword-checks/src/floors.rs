@@ -5,6 +5,7 @@ use crate::evidence::Evidence;
 use wayword_core::{CheckFinding, CheckKind, ClimbDirection, PathMotion, Verdict};
 use wayword_language::reading::{EventContent, StoreyMention, TextEvent, TextReading};
 
+/// The findings about the stairs and storeys of a text: a pass if all of them fit the path.
 pub(super) fn check_floors(reading: &TextReading, evidence: &Evidence) -> Vec<CheckFinding> {
     let stairs = reading.events.iter().filter_map(|event| {
         let (verdict, wrong) = match event.what {
@@ -53,7 +54,7 @@ fn climb_verdict(climbs: bool, evidence: &Evidence) -> Verdict {
     }
 }
 
-/// "The bedroom upstairs" is right for a path that ends upstairs, wherever it starts.
+/// "The bedroom upstairs" is right for a path that ends upstairs (on storey 2 or higher), wherever it starts.
 fn verdict_on_storey(climb: ClimbDirection, evidence: &Evidence) -> Verdict {
     let ends_there = match evidence.frames.last().and_then(|frame| frame.level) {
         Some(level) => (level >= 2) == (climb == ClimbDirection::Up),
@@ -65,24 +66,24 @@ fn verdict_on_storey(climb: ClimbDirection, evidence: &Evidence) -> Verdict {
 
 /// The storeys that a text names, in the order of the path.
 fn named_floors(reading: &TextReading) -> Vec<(&TextEvent, StoreyMention)> {
-    let mut told: Vec<(&TextEvent, StoreyMention)> = Vec::new();
+    let mut named: Vec<(&TextEvent, StoreyMention)> = Vec::new();
     for event in &reading.events {
         let EventContent::Floor(floor) = event.what else { continue };
         if floor.aside {
             continue;
         }
-        // "To the second floor from the first".
-        let behind =
-            told.last().is_some_and(|(before, other)| floor.leaves && !other.leaves && before.clause == event.clause);
-        told.insert(told.len() - usize::from(behind), (event, floor));
+        // "To the second floor from the first": the text names the storey that the path leaves last, not first.
+        let is_start =
+            named.last().is_some_and(|(before, other)| floor.leaves && !other.leaves && before.clause == event.clause);
+        named.insert(named.len() - usize::from(is_start), (event, floor));
     }
-    told
+    named
 }
 
 /// The first wrong storey of a text. The path has to pass the storeys in their order, and to end on the last one where
 /// the text names that as the goal.
 fn wrong_floor(
-    told: &[(&TextEvent, StoreyMention)],
+    named: &[(&TextEvent, StoreyMention)],
     reading: &TextReading,
     levels: &[Option<u32>],
 ) -> Option<CheckFinding> {
@@ -96,8 +97,9 @@ fn wrong_floor(
         };
         new_finding(CheckKind::Floors, verdict, reason, Some(event.span))
     };
-    let ends = |at: usize| {
-        let (event, floor) = told[at];
+    // Whether the path has to end on a storey: no other storey and no climb follows it.
+    let is_goal = |at: usize| {
+        let (event, floor) = named[at];
         let goes_on = || {
             reading.events.iter().any(|other| {
                 matches!(other.what, EventContent::Climb(_))
@@ -105,16 +107,16 @@ fn wrong_floor(
                     && other.clause != event.clause
             })
         };
-        at + 1 == told.len() && !floor.leaves && !goes_on()
+        at + 1 == named.len() && !floor.leaves && !goes_on()
     };
     // The first storey of the text that no frame from there on allows.
     let first_off = |allows: &dyn Fn(Option<u32>, StoreyMention) -> bool| {
         let mut from = 0;
-        told.iter().enumerate().position(|(at, (_, floor))| {
-            let first = if ends(at) { levels.len().saturating_sub(1).max(from) } else { from };
-            let found = (first..levels.len()).find(|frame| allows(levels[*frame], *floor));
-            from = found.unwrap_or(from);
-            found.is_none()
+        named.iter().enumerate().position(|(at, (_, floor))| {
+            let first = if is_goal(at) { levels.len().saturating_sub(1).max(from) } else { from };
+            let next = (first..levels.len()).find(|frame| allows(levels[*frame], *floor));
+            from = next.unwrap_or(from);
+            next.is_none()
         })
     };
     let highest = levels.iter().flatten().max().copied();
@@ -126,7 +128,7 @@ fn wrong_floor(
         (Some(level), None) => Some(level) == highest,
     };
     if let Some(at) = first_off(&possible) {
-        return Some(wrong(Verdict::Fail, &told[at]));
+        return Some(wrong(Verdict::Fail, &named[at]));
     }
-    first_off(&certain).map(|at| wrong(Verdict::Unverified, &told[at]))
+    first_off(&certain).map(|at| wrong(Verdict::Unverified, &named[at]))
 }

@@ -4,6 +4,7 @@ use super::{new_finding, or_pass};
 use wayword_core::{CheckFinding, CheckKind, StyleConstraints, Verdict};
 use wayword_language::text::{sentence_count, word_count};
 
+/// The findings about the length of a text: a pass if it keeps all limits of its style.
 pub(super) fn check_form(text: &str, constraints: &StyleConstraints) -> Vec<CheckFinding> {
     let (sentences, words) = (sentence_count(text), word_count(text));
     let counted = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });

@@ -9,11 +9,12 @@ use wayword_language::{
     reading::{EventContent, PlaceLink, PlaceMention, TextEvent, TextReading},
 };
 
-/// "Stop by the sofa": its centre is no farther than this from the eye, metres. For things on the floor that is 2 m
-/// along the floor.
+/// "Stop by the sofa" fails where the sofa's centre is farther than this from the eye at the end, metres. For things on
+/// the floor that is 2 m along the floor.
 const NEAR_M: f64 = 2.5;
 
-/// The mistake at the end of a text, if there is one. `object`: the task's, which has a check of its own.
+/// The mistake at the end of a text, if there is one. The event `object` is left out: it names the object of the
+/// task, which has a check of its own.
 pub(super) fn check_goal(reading: &TextReading, evidence: &Evidence, object: Option<usize>) -> Option<CheckFinding> {
     if evidence.source == EvidenceSource::Nothing {
         return None;
@@ -36,7 +37,7 @@ pub(super) fn check_goal(reading: &TextReading, evidence: &Evidence, object: Opt
 }
 
 /// The places that a text ends at: the first of the clause that stops, and the last that one is sent to, if one goes no
-/// farther after it. Where a text stops, only a room counts as the latter.
+/// farther after it. Where a text has a stop, the second one counts only if it is a room.
 fn end_places(reading: &TextReading) -> [Option<(usize, &PlaceMention)>; 2] {
     let events = &reading.events;
     let place = |at: usize| match &events[at].what {
@@ -60,10 +61,11 @@ fn end_places(reading: &TextReading) -> [Option<(usize, &PlaceMention)>; 2] {
     [at_stop, sent_to]
 }
 
+/// The mistake in the last room of a text. `near`: the frames at the end of the path.
 fn wrong_room(name: &str, near: &[FrameEvidence]) -> Option<(Verdict, String)> {
     let is_it = |room: &String| same_room(room, name);
     let last = near.last()?;
-    // They are storeys, and their rooms have names of their own.
+    // A basement and an attic are storeys, and their rooms have names of their own.
     if matches!(room_name(name), Some("basement" | "attic")) {
         return None;
     }
@@ -90,12 +92,14 @@ fn too_far(name: &str, last: &FrameEvidence, reading: &TextReading) -> Option<(V
     is_far.then(|| (Verdict::Fail, format!("the nearest {name:?} is {far_m:.1} m from where the path ends")))
 }
 
+/// The mistake in the last thing of a text, which none of the frames at the end of the path (`near`) may show.
 fn wrong_thing(name: &str, near: &[FrameEvidence], source: EvidenceSource) -> Option<(Verdict, String)> {
     let shows = |frame: &FrameEvidence| frame.things.iter().any(|thing| names_agree(&thing.name, name));
     if near.iter().any(shows) {
         return None;
     }
     let class = find_thing(name).map(|thing| thing.class);
+    // Doors, stairs, fabrics and unknown things are often in sight without being listed.
     let is_listed =
         class.is_some_and(|class| !matches!(class, ThingClass::Door | ThingClass::Stairs)) && !is_fabric(name);
     let is_perhaps = near.iter().any(|frame| frame.may_show(name));

@@ -101,11 +101,11 @@ pub(crate) fn is_beyond(place: &PlaceMention, evidence: &Evidence) -> bool {
     if matches!(&*place.name, "wall" | "floor" | "ceiling") && place.side.is_none() && place.colour.is_none() {
         return true;
     }
-    let tells_which = matches!(place.link, PlaceLink::Beside | PlaceLink::Within) && place.side.is_none();
+    let only_identifies = matches!(place.link, PlaceLink::Beside | PlaceLink::Within) && place.side.is_none();
     let beyond = &evidence.beyond;
     let is_room = || place.is_room && beyond.rooms.iter().any(|room| same_room(room, &place.name));
     let is_thing = || place.is_thing && beyond.things.iter().any(|thing| names_agree(thing, &place.name));
-    tells_which && (is_room() || is_thing())
+    only_identifies && (is_room() || is_thing())
 }
 
 /// The verdict on a place that is wrong at every frame that shows it. It may still be right at frames with unknown
@@ -116,7 +116,7 @@ fn wrong_unless_elsewhere(shown: &ShownFrames) -> Verdict {
 
 /// The mistake in the colour that the text gives a place.
 fn wrong_colour(place: &PlaceMention, shown: &ShownFrames, evidence: &Evidence) -> Option<(Verdict, String)> {
-    let told = place.colour.as_ref()?;
+    let claimed = place.colour.as_ref()?;
     let things = shown
         .frames
         .iter()
@@ -124,23 +124,24 @@ fn wrong_colour(place: &PlaceMention, shown: &ShownFrames, evidence: &Evidence) 
         .filter(|thing| names_agree(&thing.name, &place.name));
     let known: Vec<&String> = things.flat_map(|thing| thing.colour.iter().chain(&thing.more_colours)).collect();
     // "The brown chair" for a dark brown one is no mistake, nor is "cream" for beige.
-    let fits = known.iter().any(|colour| same_colour(colour, told));
+    let fits = known.iter().any(|colour| same_colour(colour, claimed));
     match (known.is_empty(), fits) {
         (_, true) => None,
         (true, false) if shown.frames.is_empty() => None,
         (true, false) => {
-            Some((Verdict::Unverified, format!("the program cannot check whether {:?} is {told}", place.name)))
+            Some((Verdict::Unverified, format!("the program cannot check whether {:?} is {claimed}", place.name)))
         }
         (false, false) => {
-            Some((wrong_unless_elsewhere(shown), format!("no {:?} along the path is {told}", place.name)))
+            Some((wrong_unless_elsewhere(shown), format!("no {:?} along the path is {claimed}", place.name)))
         }
     }
 }
 
-/// The evidence, sorted by name. A path shows a few dozen names over and over, so each place of a text is compared
-/// with each name once.
+/// The things of the evidence, sorted by name. A path shows a few dozen names over and over, so each place of a text is
+/// compared with each name once.
 struct SightingIndex<'a> {
     evidence: &'a Evidence,
+    /// By the name of a thing, the frames that show one.
     frames_of_things: BTreeMap<&'a str, Vec<usize>>,
     /// The frames on both sides of a door or doorway through which the walk leads.
     doors: Vec<usize>,
@@ -162,6 +163,7 @@ impl<'a> SightingIndex<'a> {
         Self { evidence, frames_of_things, doors: frames_at_doors(evidence) }
     }
 
+    /// The frames that show a place, and those that may show it.
     fn frames_showing(&self, place: &PlaceMention) -> ShownFrames {
         let (mut frames, mut unknown) = (Vec::new(), Vec::new());
         if place.is_room {
@@ -188,6 +190,7 @@ impl<'a> SightingIndex<'a> {
     }
 }
 
+/// The last frame, if it shows the place.
 fn at_the_end(place: &PlaceMention, evidence: &Evidence) -> ShownFrames {
     let last = evidence.frames.len().saturating_sub(1);
     let is_seen = evidence.final_things().iter().any(|thing| names_agree(&thing.name, &place.name));

@@ -13,26 +13,28 @@ use wayword_language::{
     text::{TextToken, split_tokens},
 };
 
-/// This many words in a row that are in a reference too are a copy.
+/// A run of this many words that a reference also has is a copy.
 pub const LONG_RUN: usize = 10;
-/// So are this many, where they speak of something that is not this text's own matter, and where fewer than
-/// [`FORMULA_REFERENCES`] references hold them.
+/// A run of this many words is a copy if it names something beside the text's own topic, and if fewer than
+/// [`FORMULA_REFERENCES`] references have it.
 pub const SHARED_RUN: usize = 6;
-/// A run that this many references share is a formula, and no copy from one of them.
+/// A shorter run than [`LONG_RUN`] that this many references share is a formula, and no copy from one of them.
 pub const FORMULA_REFERENCES: u8 = 3;
-/// A run that our own writer avoids where it can, though it may be a formula.
+/// Our own writer avoids a run of this many words that a reference has, though the run may be a formula.
 const AVOIDED_RUN: usize = 8;
 
 /// The runs of words of a style's reference texts, indexed once for all texts.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ReferenceRuns {
-    /// How many references hold a run of [`SHARED_RUN`] words, up to [`FORMULA_REFERENCES`].
+    /// By the hash of a run of [`SHARED_RUN`] words, how many references have it, up to [`FORMULA_REFERENCES`].
     shared: HashMap<u64, u8>,
+    /// Hashes of all runs of [`AVOIDED_RUN`] words.
     avoided: HashSet<u64>,
+    /// Hashes of all runs of [`LONG_RUN`] words.
     long: HashSet<u64>,
 }
 
-/// The subject of a text. Words for it are no copy, even if a reference has them too.
+/// The topic of a text. Words for it are no copy, even if a reference has them too.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct TextTopic<'a> {
     /// The name of its target.
@@ -61,13 +63,13 @@ impl ReferenceRuns {
 
     /// The byte range of the first run of a text that is copied.
     #[must_use]
-    pub fn find_copy(&self, text: &str, matter: TextTopic<'_>) -> Option<[usize; 2]> {
+    pub fn find_copy(&self, text: &str, topic: TextTopic<'_>) -> Option<[usize; 2]> {
         let words = word_tokens(text);
-        let says_something = |run: &[TextToken]| run.iter().any(|token| !STOCK.contains(&token.word.as_str()));
-        let is_long = |run: &&[TextToken]| says_something(run) && self.long.contains(&run_hash(run));
+        let has_content_word = |run: &[TextToken]| run.iter().any(|token| !STOCK.contains(&token.word.as_str()));
+        let is_long = |run: &&[TextToken]| has_content_word(run) && self.long.contains(&run_hash(run));
         let is_shared = |run: &&[TextToken]| {
             let count = self.shared.get(&run_hash(run)).copied().unwrap_or_default();
-            (1..FORMULA_REFERENCES).contains(&count) && run.iter().any(|token| is_content(&token.word, matter))
+            (1..FORMULA_REFERENCES).contains(&count) && run.iter().any(|token| is_content(&token.word, topic))
         };
         let run = words.windows(LONG_RUN).find(is_long).or_else(|| words.windows(SHARED_RUN).find(is_shared))?;
         Some([run[0].span[0], run[run.len() - 1].span[1]])
@@ -92,25 +94,26 @@ fn run_hash(run: &[TextToken]) -> u64 {
     hasher.finish()
 }
 
-/// Whether a word speaks of something other than the way, a storey, and the matter of the text.
-fn is_content(word: &str, matter: TextTopic<'_>) -> bool {
+/// Whether a word names something other than the way, a number, a storey or the topic of the text.
+fn is_content(word: &str, topic: TextTopic<'_>) -> bool {
     let is_of_way = STOCK.contains(&word) || WALKING.contains(&word) || TURNING.contains(&word);
     let is_of_storey = matches!(word, "level" | "floor" | "storey" | "story" | "upstairs" | "downstairs");
     let is_part = |name: &str| normalise_name(name).split(' ').any(|part| part == normalise_name(word));
-    let is_target = || matter.target.is_some_and(|target| is_part(target) || names_agree(target, word));
+    let is_target = || topic.target.is_some_and(|target| is_part(target) || names_agree(target, word));
     let is_room = || {
         let is_word_of = |room: &String| is_part(room) || room_name(word).is_some() && same_room(room, word);
-        word == "room" || matter.rooms.iter().any(is_word_of)
+        word == "room" || topic.rooms.iter().any(is_word_of)
     };
     !(is_of_way || is_of_storey || ordinal_or_number(word) || is_target() || is_room())
 }
 
+/// The finding about copied words: a failure at the first copy.
 pub(super) fn check_leak(text: &str, subject: CheckSubject<'_>) -> CheckFinding {
     let rooms = subject.evidence.frames.last().map_or(&[][..], |frame| &frame.rooms);
-    let matter = TextTopic { target: subject.target.map(|target| target.name.as_str()), rooms };
+    let topic = TextTopic { target: subject.target.map(|target| target.name.as_str()), rooms };
     let copied = match subject.copies {
-        Some(copies) => copies.find_copy(text, matter),
-        None => ReferenceRuns::from_references(&subject.style.references).find_copy(text, matter),
+        Some(copies) => copies.find_copy(text, topic),
+        None => ReferenceRuns::from_references(&subject.style.references).find_copy(text, topic),
     };
     match copied {
         None => pass_finding(CheckKind::Leak),
@@ -125,9 +128,9 @@ pub(super) fn check_leak(text: &str, subject: CheckSubject<'_>) -> CheckFinding 
 mod tests {
     use super::*;
 
-    fn copied<'a>(text: &'a str, references: &[&str], matter: TextTopic<'_>) -> Option<&'a str> {
+    fn copied<'a>(text: &'a str, references: &[&str], topic: TextTopic<'_>) -> Option<&'a str> {
         let references: Vec<String> = references.iter().map(|text| (*text).to_owned()).collect();
-        ReferenceRuns::from_references(&references).find_copy(text, matter).map(|[from, to]| &text[from..to])
+        ReferenceRuns::from_references(&references).find_copy(text, topic).map(|[from, to]| &text[from..to])
     }
 
     #[test]
@@ -224,7 +227,7 @@ mod tests {
         let empty = ReferenceRuns::default();
         assert_eq!(check_leak(text, subject.with_copies(&empty)), pass_finding(CheckKind::Leak));
         assert_eq!(check_leak("Walk past the bed", subject), pass_finding(CheckKind::Leak));
-        // The rooms of the last frame are the text's own matter.
+        // The rooms of the last frame are the text's own topic.
         let rooms = vec!["Go on and go into the bedroom.".to_owned(), "Go on and go into the hallway.".to_owned()];
         let style = wayword_core::InstructionStyle { references: rooms, ..style };
         let subject = CheckSubject::closed_world(&evidence, &style, None);

@@ -16,9 +16,9 @@
 //! - `align`: which frames the statements of a text are about.
 //! - `goal`: where a text ends the walk. `coverage`: what was not understood. `leak`: what was copied from a style's references.
 //! - `world`: whether a text is held against a closed or an open world.
-//! - `open/claims.rs`, `relation.rs`: what a text of another author claims; `features.rs` and `claim_sight.rs`: what the labels mean for that.
-//! - `open/weights.toml`: the weights and thresholds of that, fitted by `wayword-measure fit-evidence`.
-//! - `open/climbs.rs`, `repeats.rs`, `motions.rs`, `distances.rs`: fixed rules.
+//! - `open/claims.rs`, `relation.rs`: what a text of another author claims; `features.rs` and `claim_sight.rs`: how far the labels confirm it.
+//! - `open/weights.toml`: the weights and thresholds of those features, fitted by `wayword-measure fit-evidence`.
+//! - `open/climbs.rs`, `repeats.rs`, `motions.rs`, `distances.rs`: fixed rules, without weights.
 
 mod align;
 mod coverage;
@@ -135,7 +135,7 @@ impl TextFindings {
     }
 }
 
-/// Checks a text.
+/// Runs all checks on a text, in the style and the world of `subject`.
 #[must_use]
 pub fn check_text(text: &str, subject: CheckSubject<'_>) -> TextFindings {
     check_against(text, subject, false)
@@ -183,7 +183,9 @@ pub fn check_own(text: &str, subject: CheckSubject<'_>) -> TextFindings {
         return checked;
     }
     let made_up = unknown_motion::find_made_up(text, &known_names(subject.evidence));
-    let replaced: BTreeSet<_> = made_up.iter().flat_map(|by| [(by.check, None), (by.check, by.span)]).collect();
+    // These findings replace milder ones of the same check, on the same words or on no words at all.
+    let replaced: BTreeSet<_> =
+        made_up.iter().flat_map(|finding| [(finding.check, None), (finding.check, finding.span)]).collect();
     checked
         .findings
         .retain(|finding| finding.verdict == Verdict::Fail || !replaced.contains(&(finding.check, finding.span)));
@@ -204,7 +206,8 @@ pub fn objects_meant(text: &str, evidence: &Evidence) -> usize {
     let is_meant = |thing: &&&SeenThing| {
         let is_on_side = |side| thing.turn_rad.is_none_or(|turn_rad| sides::lies_on(side, turn_rad));
         let colours = || thing.colour.iter().chain(&thing.more_colours);
-        let has_colour = |told: &String| thing.colour.is_none() || colours().any(|colour| same_colour(colour, told));
+        let has_colour =
+            |claimed: &String| thing.colour.is_none() || colours().any(|colour| same_colour(colour, claimed));
         place.side.is_none_or(is_on_side) && place.colour.as_ref().is_none_or(has_colour)
     };
     let meant = alike.iter().filter(is_meant).count();
@@ -217,7 +220,8 @@ pub fn objects_meant(text: &str, evidence: &Evidence) -> usize {
     if has_neighbour { meant.min(1) } else { meant.max(usize::from(!alike.is_empty())) }
 }
 
-/// Most bytes between an object and the neighbour that identifies it: " that is closest to the ".
+/// An object and the neighbour that identifies it have at most this many bytes between them, as in " that is closest to
+/// the ". Farther apart, they are two statements.
 const MOST_BETWEEN: usize = 24;
 
 /// The names of all objects that are known along a path. The reader has to recognise them.
@@ -226,6 +230,7 @@ fn known_names(evidence: &Evidence) -> BTreeSet<String> {
     things.filter(|name| !name.is_empty()).collect()
 }
 
+/// The mentions of a text: each event of a kind that counts and that has a frame in `frames`.
 fn collect_mentions(reading: &TextReading, frames: &[Option<usize>]) -> Vec<TextMention> {
     let object = reading.task.as_ref().and_then(|task| task.object);
     let kind = |at: usize, event: &TextEvent| match &event.what {
@@ -241,11 +246,12 @@ fn collect_mentions(reading: &TextReading, frames: &[Option<usize>]) -> Vec<Text
         | EventContent::Compass { .. }
         | EventContent::Distance { .. } => None,
     };
-    let told = reading.events.iter().zip(frames).enumerate();
-    told.filter_map(|(at, (event, frame))| {
-        Some(TextMention { span: event.span, kind: kind(at, event)?, frame: (*frame)? })
-    })
-    .collect()
+    let found = reading.events.iter().zip(frames).enumerate();
+    found
+        .filter_map(|(at, (event, frame))| {
+            Some(TextMention { span: event.span, kind: kind(at, event)?, frame: (*frame)? })
+        })
+        .collect()
 }
 
 impl TextFindings {

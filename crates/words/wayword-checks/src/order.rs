@@ -21,12 +21,13 @@ pub(super) fn check_order(reading: &TextReading, evidence: &Evidence, shown: &[S
     let sequence = in_order_of_walk(&reading.events);
     let asides = find_asides(reading);
     let steps_with = |frames: &dyn Fn(&ShownFrames) -> Vec<usize>| -> Vec<AlignmentStep> {
-        let step_of = |at: &usize| match asides[*at] {
+        let step_at = |at: &usize| match asides[*at] {
             true => AlignmentStep::Free,
             false => step_for(&reading.events[*at], frames(&shown[*at]), evidence),
         };
-        sequence.iter().map(step_of).collect()
+        sequence.iter().map(step_at).collect()
     };
+    // The steps with the frames that show their places, and with those that may show them where no frame does.
     let certain = steps_with(&|shown| shown.frames.clone());
     let possible = steps_with(&|shown| {
         let mut frames = [shown.frames.as_slice(), if shown.frames.is_empty() { &[] } else { &shown.unknown }].concat();
@@ -75,6 +76,7 @@ fn lay_steps(
     (verdict, laid)
 }
 
+/// The steps without their turns.
 fn places_alone(steps: &[AlignmentStep]) -> Vec<AlignmentStep> {
     steps
         .iter()
@@ -111,6 +113,7 @@ fn find_asides(reading: &TextReading) -> Vec<bool> {
     reading.events.iter().enumerate().map(is_aside).collect()
 }
 
+/// Why the walk of a text ends at a step: the reason of a finding about turns.
 fn turn_reason(steps: &[AlignmentStep], at: usize) -> &'static str {
     match &steps[at] {
         AlignmentStep::Turn(Side::Left) => "no move of the path turns left here",
@@ -121,7 +124,7 @@ fn turn_reason(steps: &[AlignmentStep], at: usize) -> &'static str {
     }
 }
 
-/// The turns alone, where the places are out of order anyway.
+/// The finding on the turns alone, where the places are out of order anyway.
 fn turns_alone(reading: &TextReading, evidence: &Evidence) -> CheckFinding {
     let turns: Vec<&TextEvent> = reading
         .events
@@ -147,6 +150,7 @@ fn no_wrong_turn(reading: &TextReading, evidence: &Evidence) -> CheckFinding {
     }
 }
 
+/// The step that an event of the text asks for. `shown`: the frames that show its place.
 fn step_for(event: &TextEvent, shown: Vec<usize>, evidence: &Evidence) -> AlignmentStep {
     match &event.what {
         EventContent::Turn(_) if !evidence.motion.is_known() => AlignmentStep::Free,

@@ -27,8 +27,8 @@ pub(super) fn side_word(side: Side) -> &'static str {
     }
 }
 
-/// The side that the text gives a place, if it is wrong: the place is on that side in none of the given frames. `None` also where no
-/// frame has the place's direction.
+/// The side that the text gives a place, if it is wrong: the place is on that side in none of the given frames. `None`
+/// also where no frame has the place's direction.
 pub(super) fn wrong_side(place: &PlaceMention, frames: &[usize], evidence: &Evidence) -> Option<Side> {
     let side = place.side?;
     let turns: Vec<f64> = frames.iter().flat_map(|at| turns_to(place, *at, evidence)).collect();

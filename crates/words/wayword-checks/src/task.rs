@@ -10,6 +10,7 @@ use wayword_language::{
     reading::{EventContent, TextReading},
 };
 
+/// The finding on the task at the end of a text.
 pub(super) fn check_task(reading: &TextReading, subject: CheckSubject<'_>) -> CheckFinding {
     let CheckSubject { evidence, target, world, .. } = subject;
     let fail = |reason: String, span| new_finding(CheckKind::Task, Verdict::Fail, reason, span);

@@ -23,7 +23,7 @@ impl Testimony {
         Self { events: read_instruction(text, &known_names(evidence)).into_claims().events, words: split_words(text) }
     }
 
-    /// The sides of its turns, in their order.
+    /// Its turns, each with its side, in their order.
     fn turn_events(&self) -> impl Iterator<Item = (&TextEvent, Side)> {
         self.events.iter().filter_map(|event| match event.what {
             EventContent::Turn(side) => Some((event, side)),
@@ -31,7 +31,8 @@ impl Testimony {
         })
     }
 
-    /// Whether it makes the same statement as an event of another text.
+    /// Whether this testimony makes the same statement as `event`, an event of the text `own`. Turns are compared by
+    /// their number: the second turn with the second turn.
     fn confirms_event(&self, event: &TextEvent, own: &Self) -> bool {
         match &event.what {
             EventContent::Place(place) => self.events.iter().any(|other| names_same(other, place)),
@@ -43,20 +44,22 @@ impl Testimony {
                 _ => false,
             }),
             EventContent::Turn(side) => {
-                let place = own.turn_events().position(|(other, _)| other.span == event.span);
-                place.and_then(|place| self.turn_events().nth(place)).is_some_and(|(_, other)| other == *side)
+                let number = own.turn_events().position(|(other, _)| other.span == event.span);
+                number.and_then(|number| self.turn_events().nth(number)).is_some_and(|(_, other)| other == *side)
             }
             _ => false,
         }
     }
 }
 
+/// Whether an event names a place as another text does.
 fn names_same(event: &TextEvent, place: &PlaceMention) -> bool {
     let EventContent::Place(other) = &event.what else { return false };
     (place.is_thing && other.is_thing && names_agree(&place.name, &other.name))
         || (place.is_room && other.is_room && same_room(&place.name, &other.name))
 }
 
+/// The direction of a climb, if the event is one.
 fn climb_in(event: &TextEvent) -> Option<ClimbDirection> {
     match event.what {
         EventContent::Climb(climb) | EventContent::Steps(climb) | EventContent::Storey(climb) => Some(climb),

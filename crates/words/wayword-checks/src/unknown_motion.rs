@@ -17,18 +17,18 @@ const DISTANCE_UNIT_WORDS: &[&str] = &[
     "m", "metre", "metres", "meter", "meters", "ft", "foot", "feet", "yard", "yards", "pace", "paces", "step", "steps",
 ];
 
-/// Turns, sides, stairs, storeys and distances, even where the text denies them: "do not turn left" claims to know of a
-/// turn.
+/// Failures for turns, sides, stairs, storeys and distances, even where the text denies them: "do not turn left" claims
+/// to know of a turn. `known`: the names of the objects along the path.
 pub(super) fn find_made_up(text: &str, known: &BTreeSet<String>) -> Vec<CheckFinding> {
     let events = read_instruction(text, known).events;
     let tokens = split_tokens(text);
-    let told = events.iter().filter_map(|event| Some((unknown_motion_fact(event)?, event.span)));
-    let on = tokens
+    let stated = events.iter().filter_map(|event| Some((unknown_motion_fact(event)?, event.span)));
+    let straight = tokens
         .iter()
         .filter(|token| token.word == "straight")
         .map(|token| ((CheckKind::Turns, "which way the path goes"), token.span));
     let distances = distance_spans(&tokens).map(|span| ((CheckKind::Turns, "how far the path goes"), span));
-    let all = told.chain(on).chain(distances);
+    let all = stated.chain(straight).chain(distances);
     all.map(|((check, what), span)| {
         let words = text.get(span[0]..span[1]).unwrap_or_default();
         let reason = format!("{words:?}: it is not known {what}; describe the way by rooms and objects alone");
@@ -60,11 +60,11 @@ fn distance_spans(tokens: &[TextToken]) -> impl Iterator<Item = [usize; 2]> {
     let is_number = move |word: &str| word.chars().all(is_digit) || DISTANCE_COUNT_WORDS.contains(&word);
     let pairs =
         tokens.windows(2).filter(move |pair| is_number(&pair[0].word) && DISTANCE_UNIT_WORDS.contains(&&*pair[1].word));
-    let one = tokens.iter().filter(move |token| {
+    let joined = tokens.iter().filter(move |token| {
         let unit = token.word.trim_start_matches(is_digit);
         unit.len() < token.word.len() && DISTANCE_UNIT_WORDS.contains(&unit)
     });
-    pairs.map(|pair| [pair[0].span[0], pair[1].span[1]]).chain(one.map(|token| token.span))
+    pairs.map(|pair| [pair[0].span[0], pair[1].span[1]]).chain(joined.map(|token| token.span))
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ impl CheckWorld {
 
     /// The world of a record's text. It is closed only where the text was written and checked on this platform,
     /// against the evidence that is at hand now, and the questions about it were answered from the source of that
-    /// evidence.
+    /// evidence. `made_on`: the platform that the record names.
     #[must_use]
     pub fn of_record(
         provenance: &TextProvenance,

@@ -19,6 +19,7 @@ pub struct KnownBuilding {
     pub(crate) things: Vec<BuildingThing>,
     /// Number of storeys, where the platform knows them; else 0.
     pub(crate) levels: u32,
+    /// The distances from named places that were computed so far.
     near: Mutex<BTreeMap<PlaceQuery, Arc<PlaceNearness>>>,
 }
 
@@ -37,7 +38,7 @@ pub struct PathPlace {
 const NEARBY_M: f64 = 1.5;
 /// Shorter hops count as staying at the place, metres: some graphs have two viewpoints at one place.
 const SHORT_M: f64 = 0.3;
-/// The least slope of a hop that is stairs.
+/// The least slope (rise over run) of a hop that counts as stairs.
 const STAIRS_SLOPE: f64 = 0.25;
 
 impl KnownBuilding {
@@ -114,7 +115,7 @@ impl KnownBuilding {
         }
     }
 
-    /// Discards the computed distances, because the building has changed.
+    /// Discards the computed distances and finds the stairs anew, because the building has changed.
     pub(crate) fn forget_nearness(&mut self) {
         self.near.get_mut().unwrap_or_else(PoisonError::into_inner).clear();
         self.find_stairs();
@@ -148,15 +149,15 @@ impl KnownBuilding {
     #[must_use]
     pub fn told_apart_by(&self, viewpoint: usize, others: &[usize]) -> Option<&str> {
         let room = |at: usize| self.viewpoints[at].room.as_deref();
-        let own_room = room(viewpoint).filter(|own| others.iter().all(|other| room(*other) != Some(*own)));
+        let own_room = room(viewpoint).filter(|room_here| others.iter().all(|other| room(*other) != Some(*room_here)));
         let sees =
             |at: usize, name: &str| self.things.iter().any(|thing| thing.name == name && thing.seen_from.contains(&at));
         let here = self.things.iter().filter(|thing| thing.seen_from.contains(&viewpoint));
         own_room.or_else(|| {
-            let apart = here.map(|thing| thing.name.as_str());
-            let mut apart: Vec<&str> = apart.filter(|name| others.iter().all(|other| !sees(*other, name))).collect();
-            apart.sort_by_key(|name| (Reverse(find_thing(name).map_or(0, |thing| thing.salience)), *name));
-            apart.first().copied()
+            let names = here.map(|thing| thing.name.as_str());
+            let mut unique: Vec<&str> = names.filter(|name| others.iter().all(|other| !sees(*other, name))).collect();
+            unique.sort_by_key(|name| (Reverse(find_thing(name).map_or(0, |thing| thing.salience)), *name));
+            unique.first().copied()
         })
     }
 
@@ -166,7 +167,8 @@ impl KnownBuilding {
         self.hop_between(a, b).1
     }
 
-    /// How many viewpoints lie in rooms of the name that a viewpoint's room has: 0 few, 2 many.
+    /// How many viewpoints lie in rooms of the name that a viewpoint's room has: 0 few (below 5 %), 1 some,
+    /// 2 many (15 % and more).
     pub(crate) fn commonness_of_room(&self, viewpoint: usize) -> usize {
         let room = &self.viewpoints[viewpoint].room;
         let alike = self.viewpoints.iter().filter(|other| other.room == *room).count();
@@ -184,7 +186,7 @@ impl KnownBuilding {
         self.viewpoints[viewpoint].neighbours.iter().filter_map(turn).collect()
     }
 
-    /// The direction of a hop, radians from +y clockwise, and its length over ground and in space, metres.
+    /// The direction of a hop (radians from +y, clockwise; `None` straight up or down), and its length in space, metres.
     pub(crate) fn hop_between(&self, from: usize, to: usize) -> (Option<f64>, f64) {
         let off = self.viewpoints[to].position - self.viewpoints[from].position;
         (offset_bearing(off), off.length())

@@ -5,8 +5,11 @@ use wayword_core::DVec3;
 /// A viewpoint.
 #[derive(Debug, Clone)]
 pub(crate) struct BuildingViewpoint {
+    /// Metres, z up.
     pub(crate) position: DVec3,
+    /// The viewpoints to which one can go from here, by their numbers in the building.
     pub(crate) neighbours: Vec<usize>,
+    /// The name of its room, where it is known.
     pub(crate) room: Option<String>,
     /// Its storey, the lowest being 1, where the platform knows it.
     pub(crate) level: Option<u32>,
@@ -19,7 +22,9 @@ pub(crate) struct BuildingViewpoint {
 /// An object.
 #[derive(Debug, Clone)]
 pub(crate) struct BuildingThing {
+    /// Its name, normalised as the lexicon does it.
     pub(crate) name: String,
+    /// Metres, z up.
     pub(crate) position: DVec3,
     /// The viewpoints from which it is seen.
     pub(crate) seen_from: Vec<usize>,

@@ -48,14 +48,14 @@ pub fn rank_changes(
     weights: &FeatureWeights,
 ) -> Vec<StepChange> {
     let known = OneWalk::new(building, walk, heading_rad, weights);
-    let as_told = known.score(guide);
+    let base_score = known.score(guide);
     let mut changes: Vec<StepChange> = single_changes(guide)
         .into_iter()
         .map(|(kind, step, changed)| {
-            let gain = known.score(&changed) - as_told;
-            let told = &guide.steps[step].step;
-            let turns = matches!(kind, StepChangeKind::Turn | StepChangeKind::NoTurn);
-            let span = told.turn_span.filter(|_| turns).unwrap_or(told.span);
+            let gain = known.score(&changed) - base_score;
+            let described = &guide.steps[step].step;
+            let is_turn = matches!(kind, StepChangeKind::Turn | StepChangeKind::NoTurn);
+            let span = described.turn_span.filter(|_| is_turn).unwrap_or(described.span);
             StepChange { kind, step, span, gain: if gain.is_nan() { 0.0 } else { gain } }
         })
         .collect();
@@ -63,7 +63,7 @@ pub fn rank_changes(
     changes
 }
 
-/// The texts that differ from one by a turn to the other side.
+/// The texts that differ from a text by one turn to the other side.
 #[must_use]
 pub fn flip_turns(guide: &Guide) -> Vec<Guide> {
     single_changes(guide)
@@ -73,25 +73,27 @@ pub fn flip_turns(guide: &Guide) -> Vec<Guide> {
         .collect()
 }
 
-/// The texts that differ from one by a single change.
+/// All texts that differ from a text by a single change of one step, with the kind of change and the step's number.
 fn single_changes(guide: &Guide) -> Vec<(StepChangeKind, usize, Guide)> {
     let mut variants = Vec::new();
-    for (step, told) in guide.steps.iter().enumerate() {
+    for (step, guide_step) in guide.steps.iter().enumerate() {
         let mut add = |kind, change: &dyn Fn(&mut Guide)| {
             let mut changed = guide.clone();
             change(&mut changed);
             variants.push((kind, step, changed));
         };
-        if let Some(side @ (Side::Left | Side::Right)) = told.step.turn {
+        if let Some(side @ (Side::Left | Side::Right)) = guide_step.step.turn {
             add(StepChangeKind::Turn, &|guide| guide.steps[step].step.turn = Some(other_side(side)));
         }
-        if told.step.turn.is_some() {
+        if guide_step.step.turn.is_some() {
             add(StepChangeKind::NoTurn, &|guide| guide.steps[step].leave_out_turn());
         }
-        if told.step.turn.is_none() && (told.step.side.is_some() || told.mentions.iter().any(|at| at.side.is_some())) {
+        if guide_step.step.turn.is_none()
+            && (guide_step.step.side.is_some() || guide_step.mentions.iter().any(|mention| mention.side.is_some()))
+        {
             add(StepChangeKind::Side, &|guide| guide.steps[step].change_sides(other_side));
         }
-        if let Some(climb @ (ClimbDirection::Up | ClimbDirection::Down)) = told.step.climb {
+        if let Some(climb @ (ClimbDirection::Up | ClimbDirection::Down)) = guide_step.step.climb {
             let opposite = if climb == ClimbDirection::Up { ClimbDirection::Down } else { ClimbDirection::Up };
             add(StepChangeKind::Climb, &|guide| guide.steps[step].step.climb = Some(opposite));
         }
@@ -104,6 +106,7 @@ fn single_changes(guide: &Guide) -> Vec<(StepChangeKind, usize, Guide)> {
     variants
 }
 
+/// Right for left, and left for right; other sides stay.
 fn other_side(side: Side) -> Side {
     match side {
         Side::Left => Side::Right,

@@ -9,7 +9,7 @@ use crate::{
     weights::FeatureWeights,
 };
 
-/// Largest product of a text's steps and the number of walks. Beyond it the text should not be followed, because the
+/// Largest product of the number of a text's steps and the number of walks. Beyond it the text should not be followed, because the
 /// tables would fill the memory.
 pub const MOST_WORK: usize = 2_000_000;
 
@@ -47,9 +47,9 @@ impl WalkFit {
                 for (hops, from) in reached {
                     found.clear();
                     stretch_features(trial, step, &WalkStretch::to_node(tree, end, hops), &mut found);
-                    let speaks = weights.sum_of(&found);
-                    stretches[stretch_index(nodes, step, end, hops)] = speaks;
-                    after[end] = log_sum(after[end], before[from] + speaks);
+                    let weight = weights.sum_of(&found);
+                    stretches[stretch_index(nodes, step, end, hops)] = weight;
+                    after[end] = log_sum(after[end], before[from] + weight);
                 }
             }
         }
@@ -97,11 +97,11 @@ impl WalkFit {
             let mut by_sum_before = vec![0.0; nodes];
             for (end, by_sum) in by_sum.iter().enumerate().filter(|(_, by_sum)| by_sum.abs() > NEGLIGIBLE_SHARE) {
                 for (hops, from) in tree.nodes_back(end).take(MOST_HOPS + 1).enumerate() {
-                    let speaks = self.stretches[stretch_index(nodes, step, end, hops)];
-                    if speaks == f64::NEG_INFINITY {
+                    let weight = self.stretches[stretch_index(nodes, step, end, hops)];
+                    if weight == f64::NEG_INFINITY {
                         continue;
                     }
-                    let share = by_sum * (self.sums[step][from] + speaks - self.sums[step + 1][end]).exp();
+                    let share = by_sum * (self.sums[step][from] + weight - self.sums[step + 1][end]).exp();
                     by_sum_before[from] += share;
                     if share.abs() > NEGLIGIBLE_SHARE {
                         found.clear();
@@ -121,6 +121,7 @@ impl WalkFit {
 /// Shares below this are ignored.
 const NEGLIGIBLE_SHARE: f64 = 1e-6;
 
+/// The index in [`WalkFit::stretches`] of a step over the stretch of `hops` hops that ends at the node `end`.
 fn stretch_index(nodes: usize, step: usize, end: usize, hops: usize) -> usize {
     (step * nodes + end) * (MOST_HOPS + 1) + hops
 }

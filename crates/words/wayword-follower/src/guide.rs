@@ -26,6 +26,7 @@ pub struct Guide {
 /// A step with the places that it names.
 #[derive(Debug, Clone)]
 pub(crate) struct GuideStep {
+    /// The step as it was read from the text.
     pub(crate) step: InstructionStep,
     pub(crate) kind: GuideStepKind,
     pub(crate) mentions: Vec<GuideMention>,
@@ -36,7 +37,9 @@ pub(crate) struct GuideStep {
 pub(crate) struct GuideMention {
     /// The byte range of its name in the text; `None` if the step only implies that it leads outdoors.
     pub(crate) span: Option<[usize; 2]>,
+    /// How the step relates to the place: to it, past it, out of it.
     pub(crate) relation: StepRelation,
+    /// The side of the walker on which the text locates the place.
     pub(crate) side: Option<Side>,
     /// Whether a turn happens at it.
     pub(crate) tells_turn: bool,
@@ -47,17 +50,23 @@ pub(crate) struct GuideMention {
 /// The kinds of steps, by their most important content.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum GuideStepKind {
+    /// A turn to the left or to the right.
     Turn,
     SlightTurn,
     TurnAround,
+    /// Up or down stairs.
     Climb,
+    /// A command to stop or to wait.
     Stop,
+    /// Only the time of something: "until you reach the sofa".
     Condition,
+    /// A command to go straight on.
     Straight,
     /// Into, out of or through something.
     Cross,
     /// To, past or along something.
     Go,
+    /// None of these, and without a place.
     Other,
     /// The first step of a text that describes no way, but only a place to go to.
     Goal,
@@ -69,6 +78,7 @@ impl GuideStepKind {
     /// Number of kinds.
     pub(crate) const COUNT: usize = 12;
 
+    /// The kind of a step of a text that describes the way.
     fn for_step(step: &InstructionStep) -> Self {
         let crosses = |relation| matches!(relation, StepRelation::OutOf | StepRelation::Into | StepRelation::Through);
         match step.turn {
@@ -110,8 +120,8 @@ impl GuideStep {
         if let Some(mention) = self.mentions.get_mut(place) {
             mention.relation = relation;
         }
-        if let Some(told) = self.step.places.get_mut(place) {
-            told.relation = relation;
+        if let Some(mention) = self.step.places.get_mut(place) {
+            mention.relation = relation;
         }
         self.kind = GuideStepKind::for_step(&self.step);
     }
@@ -136,7 +146,7 @@ impl Guide {
     #[must_use]
     pub fn from_reading(text: &str, reading: &TextReading) -> Self {
         let mut rooms = Vec::new();
-        let told = |step: InstructionStep| {
+        let to_guide_step = |step: InstructionStep| {
             let mut mentions: Vec<GuideMention> = Vec::new();
             for place in &step.places {
                 let EventContent::Place(named) = &reading.events[place.event].what else { continue };
@@ -159,10 +169,10 @@ impl Guide {
             }
             GuideStep { kind: GuideStepKind::for_step(&step), step, mentions }
         };
-        let mut steps: Vec<GuideStep> = read_steps(text, reading).into_iter().map(told).collect();
-        let is_goal = !steps.is_empty() && !steps.iter().any(|told| told.tells_way());
+        let mut steps: Vec<GuideStep> = read_steps(text, reading).into_iter().map(to_guide_step).collect();
+        let is_goal = !steps.is_empty() && !steps.iter().any(|step| step.tells_way());
         if is_goal {
-            steps.iter_mut().for_each(|told| told.kind = GuideStepKind::Task);
+            steps.iter_mut().for_each(|step| step.kind = GuideStepKind::Task);
             steps[0].kind = GuideStepKind::Goal;
         }
         Self { steps, rooms, is_goal }
@@ -182,37 +192,39 @@ impl Guide {
 
     /// Whether it names a room.
     pub(crate) fn tells_room(&self, room: &str) -> bool {
-        self.rooms.iter().any(|told| same_room(room, told))
+        self.rooms.iter().any(|named| same_room(room, named))
     }
 
     /// The places that it names, each as the number of the step and the position in the step's list.
     pub(crate) fn named_places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let of_step = |(step, told): (usize, &GuideStep)| (0..told.mentions.len()).map(move |place| (step, place));
-        self.steps.iter().enumerate().flat_map(of_step)
+        let step_places =
+            |(step, content): (usize, &GuideStep)| (0..content.mentions.len()).map(move |place| (step, place));
+        self.steps.iter().enumerate().flat_map(step_places)
     }
 
-    /// Whether it has a turn or a place within a byte range of its text, and still has a step without that.
+    /// Whether the guide has a turn or a place within a byte range of its text, and still has a step without the words there.
     pub(crate) fn stands_without(&self, [from, to]: [usize; 2]) -> bool {
         let is_within = |span: [usize; 2]| from <= span[0] && span[1] <= to;
-        let loses_turn = |told: &GuideStep| told.step.turn_span.is_some_and(is_within);
+        let loses_turn = |step: &GuideStep| step.step.turn_span.is_some_and(is_within);
         let loses = |mention: &GuideMention| mention.span.is_some_and(is_within);
-        let is_changed = self.steps.iter().any(|told| loses_turn(told) || told.mentions.iter().any(loses));
-        let overlaps = |told: &GuideStep| told.step.span[0] < to && from < told.step.span[1];
-        let tells_no_more =
-            |told: &GuideStep| told.mentions.iter().all(loses) && (told.step.turn.is_none() || loses_turn(told));
+        let is_changed = self.steps.iter().any(|step| loses_turn(step) || step.mentions.iter().any(loses));
+        let overlaps = |step: &GuideStep| step.step.span[0] < to && from < step.step.span[1];
+        let is_emptied =
+            |step: &GuideStep| step.mentions.iter().all(loses) && (step.step.turn.is_none() || loses_turn(step));
         let is_gone =
-            |told: &&GuideStep| is_within(told.step.span) || (is_changed && overlaps(told) && tells_no_more(told));
+            |step: &&GuideStep| is_within(step.step.span) || (is_changed && overlaps(step) && is_emptied(step));
         let gone = self.steps.iter().filter(is_gone).count();
         (is_changed || gone > 0) && gone < self.len()
     }
 
     /// Number of its turns.
     pub(crate) fn count_turns(&self) -> usize {
-        self.steps.iter().filter(|told| told.step.turn.is_some()).count()
+        self.steps.iter().filter(|step| step.step.turn.is_some()).count()
     }
 }
 
-/// The possible meanings of a name. If a building lacks the full name, the last word of it may be known there.
+/// The possible meanings of a name, the likeliest first. If a building lacks the full name ("coffee table"), it may have the last
+/// word ("table").
 fn name_meanings(name: &str, is_room: bool, is_thing: bool) -> Vec<PlaceQuery> {
     let meaning = |is_room: bool, name: &str| PlaceQuery { is_room, name: name.to_owned() };
     let last = name.rsplit_once(' ').map(|(_, last)| last);
@@ -238,6 +250,7 @@ pub struct GuideTrial<'a> {
 #[derive(Debug)]
 pub(crate) struct LocatedMention<'a> {
     pub(crate) mention: &'a GuideMention,
+    /// Whether the meaning that the building has is a room, and not a thing.
     pub(crate) is_room: bool,
     pub(crate) near: Arc<PlaceNearness>,
 }
@@ -250,12 +263,14 @@ impl<'a> GuideTrial<'a> {
         Self::find_mentions(guide, building, false)
     }
 
-    /// Locates them in the visited part of a building. Unseen places may be anywhere else.
+    /// Locates the places of an instruction in the visited part of a building. A place that is not in it may be anywhere else.
     #[must_use]
     pub(crate) fn new_partial(guide: &'a Guide, building: &'a KnownBuilding) -> Self {
         Self::find_mentions(guide, building, true)
     }
 
+    /// Locates the mentions of each step, by the first of their meanings that the building has. If the building is known in part
+    /// only, a mention without such a meaning is kept with its first meaning.
     fn find_mentions(guide: &'a Guide, building: &'a KnownBuilding, is_partial: bool) -> Self {
         let find = |mention: &'a GuideMention| {
             let mut meanings = mention.meanings.iter().map(|what| (what.is_room, building.find_nearness(what)));
@@ -265,7 +280,7 @@ impl<'a> GuideTrial<'a> {
             let (is_room, near) = found.or(is_partial.then_some(first))?;
             Some(LocatedMention { mention, is_room, near })
         };
-        let found = guide.steps.iter().map(|told| told.mentions.iter().filter_map(find).collect()).collect();
+        let found = guide.steps.iter().map(|step| step.mentions.iter().filter_map(find).collect()).collect();
         let room = |at: usize| building.viewpoints[at].room.as_deref();
         let tells_room = (0..building.len()).map(|at| Some(guide.tells_room(room(at)?))).collect();
         Self { guide, building, found, tells_room }

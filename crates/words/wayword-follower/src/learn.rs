@@ -31,9 +31,11 @@ impl Default for FitPlan {
 /// The gradient of the loss over texts, and the loss.
 #[derive(Debug, Clone)]
 pub struct FitSlope {
+    /// The gradient, one value for each weight.
     values: Vec<f64>,
-    /// Sum of the losses.
+    /// Sum of the losses of all texts: the negative log of the known walk's share.
     pub loss: f64,
+    /// Number of texts.
     texts: usize,
 }
 
@@ -59,16 +61,16 @@ impl FitSlope {
         self.texts += 1;
     }
 
-    /// Adds an empty text for a walk, which teaches the follower a default for texts without information. It does not
+    /// Adds an empty text (`nothing`) for a walk, which teaches the follower a default for texts without information. It does not
     /// count in the number of texts.
     pub fn add_floor(&mut self, nothing: &GuideTrial<'_>, tree: &WalkTree, goal: usize, weights: &FeatureWeights) {
-        let mut floor = Self::default();
-        floor.add_text(nothing, tree, goal, weights);
-        self.values.iter_mut().zip(&floor.values).for_each(|(a, b)| *a += b);
+        let mut empty_text = Self::default();
+        empty_text.add_text(nothing, tree, goal, weights);
+        self.values.iter_mut().zip(&empty_text.values).for_each(|(a, b)| *a += b);
     }
 
     /// Adds a pair of texts for a walk: the right one, and one that a single change made wrong. The right one should
-    /// score higher. `walk` is a tree of that walk alone.
+    /// score higher. `walk` is a tree of that walk alone. `strength` is the weight of the pair; a text has weight 1.
     pub fn add_contrast(
         &mut self,
         right: &GuideTrial<'_>,
@@ -146,12 +148,17 @@ pub(crate) fn hold_strengths(plan: FitPlan) -> Vec<f64> {
 #[derive(Debug)]
 pub(crate) struct AdamDescent {
     plan: FitPlan,
+    /// The values at the start, towards which `holds` pull.
     start: Vec<f64>,
+    /// The values as they are.
     pub(crate) values: Vec<f64>,
     holds: Vec<f64>,
+    /// Running means of the gradient and of its square.
     mean: Vec<f64>,
     square: Vec<f64>,
+    /// Number of steps so far.
     steps: i32,
+    /// Sum of the values over the steps of the last round, and their number.
     sum: Vec<f64>,
     summed: usize,
 }
@@ -167,7 +174,8 @@ impl AdamDescent {
     pub(crate) fn step_down(&mut self, round: usize, slope: &[f64], examples: usize) {
         /// Adam's usual decay rates.
         const ADAM_DECAY: [f64; 2] = [0.9, 0.999];
-        let left = 1.0 - round as f64 / self.plan.rounds.max(1) as f64;
+        // The steps get shorter from round to round.
+        let remaining = 1.0 - round as f64 / self.plan.rounds.max(1) as f64;
         self.steps += 1;
         let [bias, bias_square] = ADAM_DECAY.map(|past| 1.0 - past.powi(self.steps));
         let is_last = round + 1 == self.plan.rounds;
@@ -175,7 +183,8 @@ impl AdamDescent {
             let down = slope[at] / examples.max(1) as f64 + self.holds[at] * (*value - self.start[at]);
             self.mean[at] = ADAM_DECAY[0] * self.mean[at] + (1.0 - ADAM_DECAY[0]) * down;
             self.square[at] = ADAM_DECAY[1] * self.square[at] + (1.0 - ADAM_DECAY[1]) * down * down;
-            *value -= self.plan.rate * left * (self.mean[at] / bias) / ((self.square[at] / bias_square).sqrt() + 1e-6);
+            *value -=
+                self.plan.rate * remaining * (self.mean[at] / bias) / ((self.square[at] / bias_square).sqrt() + 1e-6);
             self.sum[at] += if is_last { *value } else { 0.0 };
         }
         self.summed += usize::from(is_last);

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use wayword_core::DVec3;
 use wayword_language::lexicon::{names_agree, room_name, same_room};
 
-/// The place that is searched: a room of a name, or a thing.
+/// A place to search for: a room or a thing of a name.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct PlaceQuery {
     pub(crate) is_room: bool,
@@ -18,15 +18,15 @@ pub(crate) struct PlaceNearness {
     /// For each viewpoint, the class of its distance: 0 there, then farther and farther up to [`FAR_CLASS`]; [`UNKNOWN_CLASS`] where
     /// the walker was not.
     pub(crate) class: Vec<usize>,
-    /// For each viewpoint, the position of the nearest one.
+    /// For each viewpoint, the position of the nearest such room or object.
     pub(crate) nearest: Vec<Option<DVec3>>,
-    /// How many viewpoints are near one: 0 few, 1 some, 2 many.
+    /// How many of the known viewpoints are near such a place: 0 few, 1 some (8 % and more), 2 many (25 % and more).
     pub(crate) commonness: usize,
-    /// Whether the building has one.
+    /// Whether the building has such a place.
     pub(crate) exists: bool,
 }
 
-/// The class of viewpoints that are far from it.
+/// The class of viewpoints that are far from the place.
 pub(crate) const FAR_CLASS: usize = 5;
 /// The class of viewpoints where the walker was not and the distance is unknown.
 pub(crate) const UNKNOWN_CLASS: usize = 6;
@@ -37,6 +37,7 @@ pub(crate) const CLASSES: usize = 7;
 const STOREY_M: f64 = 6.0;
 
 impl PlaceNearness {
+    /// The nearness of each viewpoint to the place that `what` describes.
     pub(crate) fn for_query(viewpoints: &[BuildingViewpoint], things: &[BuildingThing], what: &PlaceQuery) -> Self {
         match what.is_room {
             true => Self::for_room(viewpoints, &what.name),
@@ -52,6 +53,7 @@ impl PlaceNearness {
         for at in things.iter().flat_map(|thing| &thing.seen_from) {
             seen[*at] = true;
         }
+        // Classes 0 and 1 see the thing; classes 2 to 4 are within 3, 5 and 8 m of it.
         let class = |at: usize, far_m: f64| match far_m {
             far_m if seen[at] && far_m < 1.3 => 0,
             _ if seen[at] => 1,
@@ -82,6 +84,7 @@ impl PlaceNearness {
             .map(|at| {
                 let viewpoint = &viewpoints[at];
                 let (far_m, place) = nearest_place(viewpoint.position, places(), [-1.5, 1.5]);
+                // Classes 0 and 1 are in the room; classes 2 to 4 are within 2.2, 4 and 7 m of it.
                 let class = match far_m {
                     _ if is_stairs && viewpoint.climbs.contains(&true) || is_exact(at) => 0,
                     _ if is_same[at] => 1,
@@ -97,7 +100,8 @@ impl PlaceNearness {
         Self::from_classes(viewpoints, found, exists, 1)
     }
 
-    /// Viewpoints where the walker was not have an unknown distance if their class would be `least` or more.
+    /// Makes a nearness of the class and the nearest position for each viewpoint. Viewpoints where the walker was not have an
+    /// unknown distance if their class would be `least` or more.
     fn from_classes(
         viewpoints: &[BuildingViewpoint],
         found: Vec<(usize, Option<DVec3>)>,
@@ -117,7 +121,7 @@ impl PlaceNearness {
 }
 
 /// The distance over ground to the nearest of these places, metres, and its position. A place that is seen from here,
-/// or at a height between the limits, is on this storey.
+/// or at a height above `from` between the limits, is on this storey. Other places are farther by [`STOREY_M`].
 fn nearest_place(
     from: DVec3,
     places: impl Iterator<Item = (DVec3, bool)>,

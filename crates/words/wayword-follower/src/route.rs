@@ -25,6 +25,7 @@ pub struct KnownWalk<'a> {
 }
 
 impl KnownWalk<'_> {
+    /// The gains of all single changes of a text for this walk.
     fn walk_changes(&self, guide: &Guide, weights: &FeatureWeights) -> Vec<StepChange> {
         rank_changes(guide, self.building, self.walk, self.heading_rad, weights)
     }
@@ -70,7 +71,7 @@ pub enum UnfollowedReason {
     NoGraph,
     /// The work grows with the square of the steps.
     TooManySteps,
-    /// A step leads a few hops at most.
+    /// The walk has more hops than all steps together can lead, because a step leads a few hops at most.
     TooFewSteps,
 }
 
@@ -86,7 +87,7 @@ impl UnfollowedReason {
     }
 }
 
-/// Most steps of a text that is followed. People's texts have 20 at most.
+/// Most steps of a text that is followed; a longer text is not judged. People's texts have 20 at most.
 pub(crate) const MOST_STEPS: usize = 60;
 
 /// The comparison of an instruction with all walks from the same start.
@@ -105,9 +106,9 @@ pub struct RouteVerdict {
 
 /// Ends that are at least this far apart count as different, metres: success on R2R is to stop nearer than this.
 const APART_M: f64 = 3.0;
-/// Another walk fits about as well from this fraction of the known walk's share on. Of people's texts in R2R's train
-/// split that the follower takes to the right place, 5 % have a second place that near to the best (15 % at a half); of
-/// those that it takes to a wrong one, 21 % (50 %): `wayword-measure reader-figures`.
+/// Another walk fits about as well as the known one if its share is at least this fraction of the known walk's share. Of
+/// people's texts in R2R's train split that the follower takes to the right place, 5 % have a second place that near to the
+/// best (15 % at a half); of those that it takes to a wrong one, 21 % (50 %): `wayword-measure reader-figures`.
 const AS_WELL: f64 = 0.8;
 
 /// Judges an instruction by the walk that it was written for.
@@ -156,6 +157,7 @@ fn wrong_steps(guide: &Guide, changes: &[StepChange], thresholds: GainThresholds
     found.into_iter().map(|(_, finding)| finding).collect()
 }
 
+/// The finding for two places that the text names in the wrong order.
 fn wrong_order(swap: PlaceSwap) -> CheckFinding {
     let PlaceSwap { names: [first, second], spans, .. } = swap;
     let reason = format!(
@@ -167,8 +169,9 @@ fn wrong_order(swap: PlaceSwap) -> CheckFinding {
 /// The walks from one start, and how likely an instruction means each.
 struct WalkPosterior {
     tree: WalkTree,
-    /// The known walk.
+    /// The known walk's number in the tree.
     own: usize,
+    /// For each walk, the probability that the text means it.
     shares: Vec<f64>,
 }
 

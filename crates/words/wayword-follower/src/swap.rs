@@ -20,7 +20,7 @@ pub struct PlaceSwap {
     pub gain: f64,
 }
 
-/// Most places of a text that are examined. The work grows with their square.
+/// Most places of a text that are examined, because the work grows with their square. Later places are ignored.
 const MOST_PLACES: usize = 14;
 
 /// The two places with the highest gain; `None` if the building has fewer than two of the named places.
@@ -37,7 +37,7 @@ pub fn best_swap(
 ) -> Option<PlaceSwap> {
     let known = OneWalk::new(building, walk, heading_rad, weights);
     let places = met_places(guide, building);
-    let as_told = known.score(guide);
+    let base_score = known.score(guide);
     let mut best: Option<PlaceSwap> = None;
     for (number, a) in places.iter().enumerate() {
         for b in &places[number + 1..] {
@@ -48,7 +48,7 @@ pub fn best_swap(
             let mut changed = guide.clone();
             changed.steps[a.step].mentions[a.place].meanings = second.meanings.clone();
             changed.steps[b.step].mentions[b.place].meanings = first.meanings.clone();
-            let gain = known.score(&changed) - as_told;
+            let gain = known.score(&changed) - base_score;
             if gain.is_finite() && best.as_ref().is_none_or(|best| gain > best.gain) {
                 let name =
                     |mention: &GuideMention| mention.meanings.first().map(|what| what.name.clone()).unwrap_or_default();
@@ -59,10 +59,12 @@ pub fn best_swap(
     best
 }
 
-/// A place in a guide, with its words.
+/// A place in a guide.
 struct GuidePlace {
+    /// The number of the step, and of the place among the step's mentions.
     step: usize,
     place: usize,
+    /// The byte range of the place's name in the text.
     span: [usize; 2],
 }
 
@@ -84,8 +86,8 @@ fn is_met(relation: StepRelation) -> bool {
 fn met_places(guide: &Guide, building: &KnownBuilding) -> Vec<GuidePlace> {
     let trial = GuideTrial::new(guide, building);
     let mut places = Vec::new();
-    for (step, told) in guide.steps.iter().enumerate() {
-        for (place, mention) in told.mentions.iter().enumerate() {
+    for (step, content) in guide.steps.iter().enumerate() {
+        for (place, mention) in content.mentions.iter().enumerate() {
             let is_found = trial.found[step].iter().any(|found| std::ptr::eq(found.mention, mention));
             let is_met = is_found && is_met(mention.relation);
             places.extend(mention.span.filter(|_| is_met).map(|span| GuidePlace { step, place, span }));

@@ -3,7 +3,7 @@
 use crate::building::{KnownBuilding, wrap_angle};
 use std::collections::BTreeMap;
 
-/// Walks from one viewpoint. The first node is the start; each node comes after the one before it on its walk.
+/// Walks from one viewpoint. Each node is the end of one walk, and its `before` is the node one hop earlier. Node 0 is the start.
 #[derive(Debug, Clone)]
 pub struct WalkTree {
     pub(crate) nodes: Vec<WalkNode>,
@@ -13,7 +13,7 @@ pub struct WalkTree {
 #[derive(Debug, Clone)]
 pub(crate) struct WalkNode {
     pub(crate) viewpoint: usize,
-    /// The node before it; the start's is itself.
+    /// The node before it on the walk; node 0 for the start itself.
     pub(crate) before: usize,
     /// Hops from the start.
     pub(crate) hops: usize,
@@ -63,7 +63,7 @@ impl Default for WalkPrior {
     }
 }
 
-/// Most nodes of a tree. A large building has very many walks of two pieces; the shortest paths come first.
+/// Most nodes of a tree, because a large building has very many walks of two pieces. Beyond it no more of these are added.
 const MOST_NODES: usize = 20_000;
 
 impl NodeWays {
@@ -103,6 +103,7 @@ impl WalkTree {
         tree
     }
 
+    /// A tree with the start alone.
     fn begin_at(building: &KnownBuilding, viewpoint: usize, heading_rad: f64) -> Self {
         let mut ways = NodeWays::default();
         if viewpoint < building.len() {
@@ -153,8 +154,10 @@ impl WalkTree {
         }
     }
 
+    /// Walks of two shortest paths, one after the other, that pass no viewpoint twice.
     fn two_pieces(building: &KnownBuilding, start: usize, heading_rad: f64, most_hops: usize) -> Self {
         let mut tree = Self::shortest_paths(building, start, heading_rad, most_hops);
+        // The node of each hop, by the node before and the viewpoint: walks with the same beginning share nodes.
         let mut onward: BTreeMap<(usize, usize), usize> =
             tree.nodes.iter().enumerate().skip(1).map(|(at, node)| ((node.before, node.viewpoint), at)).collect();
         let first = tree.clone();

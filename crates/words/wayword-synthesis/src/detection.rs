@@ -33,10 +33,11 @@ pub struct CaptionDetector<'a> {
     pub nouns: &'a [String],
 }
 
-/// Probability that a thing is there before the detector looks: where a caption names it for sure, where a caption
-/// guesses it or a text claims it, and where it is only a proposal from a list.
+/// Probability that a thing is there before the detector looks, where a caption names it for sure.
 const NAMED_PRIOR: f64 = 0.7;
+/// The same where a caption guesses it, or where a text claims it.
 const CLAIMED_PRIOR: f64 = 0.5;
+/// The same where it is only a proposal from a list.
 const PROPOSED_PRIOR: f64 = 0.01;
 
 /// The names to look for, each with the probability that the thing is there before the detector looks.
@@ -60,7 +61,7 @@ pub fn seek_along_path(
 /// Like [`seek_along_path`], for the caption of a single view.
 ///
 /// # Errors
-/// When it has no picture, or the detector fails.
+/// When the view has no picture, or the detector fails.
 pub fn seek_in(view: &View, caption: Caption, seeker: CaptionDetector<'_>) -> Result<Caption, ObserveError> {
     let gaze = ViewGaze { heading: view.pose.heading, horizontal_fov_rad: view.horizontal_fov_rad };
     let mut observation =
@@ -70,6 +71,8 @@ pub fn seek_in(view: &View, caption: Caption, seeker: CaptionDetector<'_>) -> Re
     Ok(observation.looks.pop().map(|look| look.caption).unwrap_or_default())
 }
 
+/// Gathers the names to look for, and corrects the captions by the finds and misses for them. Returns the number of
+/// views that the detector looked at. `walk` is `None` for a single view without a path.
 fn correct_captions(
     seen: &[LookPicture],
     walk: Option<PlatformPath<'_>>,
@@ -109,9 +112,9 @@ pub fn seek_claims(
 /// The detector's own evidence: captions without words, with only the sightings that it found, denied or left unsure.
 #[must_use]
 pub fn detector_only(observations: &[FrameObservation], detector: &str) -> Vec<FrameObservation> {
-    let is_its = |sighting: &&ObjectSighting| sighting.spot.is_some() || sighting.by == detector;
+    let is_from_detector = |sighting: &&ObjectSighting| sighting.spot.is_some() || sighting.by == detector;
     let look = |look: &CaptionedView| {
-        let sightings = look.caption.sightings.iter().filter(is_its).cloned().collect();
+        let sightings = look.caption.sightings.iter().filter(is_from_detector).cloned().collect();
         CaptionedView { gaze: look.gaze, caption: Caption { sightings, ..Caption::default() } }
     };
     let observation = |seen: &FrameObservation| FrameObservation {
@@ -126,14 +129,14 @@ fn caption_name_priors(observations: &[FrameObservation]) -> NamePriors {
     let mut wanted = NamePriors::new();
     let captions = observations.iter().flat_map(|seen| &seen.looks).map(|look| &look.caption);
     for sighting in captions.flat_map(|caption| &caption.sightings) {
-        let before = match sighting.witness {
+        let prior = match sighting.witness {
             WitnessAnswer::Seen => NAMED_PRIOR,
             WitnessAnswer::Unsure => CLAIMED_PRIOR,
             WitnessAnswer::Denied => continue,
         };
         if find_thing(&sighting.name).is_some() {
-            let known = wanted.entry(normalise_name(&sighting.name)).or_insert(before);
-            *known = known.max(before);
+            let highest = wanted.entry(normalise_name(&sighting.name)).or_insert(prior);
+            *highest = highest.max(prior);
         }
     }
     wanted

@@ -23,7 +23,7 @@ pub enum ObserveError {
     Model(#[from] ModelError),
 }
 
-/// A panorama's description has fewer words than this (arXiv 2403.11487).
+/// Limit for the description of a panorama, words: it has fewer than this (arXiv 2403.11487).
 pub(crate) const CONDENSED_WORDS: usize = 20;
 
 /// A view that still needs its caption.
@@ -67,14 +67,14 @@ pub fn observe_with(
     path: &Path,
     selection: FrameSelection,
     observers: ObservationRoles<'_>,
-    talk: &ViewCaptioner<'_>,
+    captioner: &ViewCaptioner<'_>,
 ) -> Result<Vec<FrameObservation>, ObserveError> {
     let mut looks: Vec<Vec<CaptionedView>> = vec![Vec::new(); path.frames.len()];
     let planned = plan_views(platform, path, selection)?;
-    assign_captions(talk(&planned)?, planned, &mut looks);
+    assign_captions(captioner(&planned)?, planned, &mut looks);
     if let Some(planned) = plan_at_end(platform, path, selection, &looks)? {
         looks.last_mut().into_iter().for_each(Vec::clear);
-        assign_captions(talk(&planned)?, planned, &mut looks);
+        assign_captions(captioner(&planned)?, planned, &mut looks);
     }
     let frames = path.frames.iter().zip(looks);
     Ok(frames.map(|(frame, looks)| join_looks(frame, looks, observers)).collect::<Result<_, _>>()?)
@@ -96,7 +96,8 @@ pub fn plan_views(
     Ok(planned)
 }
 
-/// The views all around the end of a central path, where the view ahead shows no object.
+/// The views all around the last frame of a central run. `None` where the view ahead shows an object, or where the
+/// walker cannot look around.
 fn plan_at_end(
     platform: &dyn Platform,
     path: &Path,
@@ -126,6 +127,7 @@ pub fn join_looks(
     Ok(FrameObservation { summary: text, by, looks })
 }
 
+/// Adds each caption to the looks of its frame. `captions` and `planned` belong together one by one.
 fn assign_captions(captions: Vec<Caption>, planned: Vec<PlannedView>, looks: &mut [Vec<CaptionedView>]) {
     for (PlannedView { frame, gaze, .. }, caption) in planned.into_iter().zip(captions) {
         looks[frame].push(CaptionedView { gaze, caption });
@@ -151,6 +153,7 @@ pub fn gazes_around(path: &Path, frame: &Frame) -> Vec<ViewGaze> {
     }
 }
 
+/// The views from frame number `at` of a path in the given directions. Blank views are left out, unless all are blank.
 fn planned_views(
     platform: &dyn Platform,
     path: &Path,
@@ -215,6 +218,7 @@ fn caption_of_dialogue(
     }
 }
 
+/// One description of all looks of a frame. A single look needs none of its own: its caption is the description.
 fn summarise_looks(
     frame: &Frame,
     looks: &[CaptionedView],
@@ -224,9 +228,9 @@ fn summarise_looks(
         return Ok(CondensedCaption { text: only.caption.text.clone(), by: None });
     }
     let directed = |look| (look_direction(frame, look), &look.caption);
-    // A structured answer costs one call, and its caption none.
-    let rules = matches!(observers.mode, DialogueMode::Structured { .. });
-    let summariser: &dyn CaptionSummariser = if rules { &RulesSummariser } else { observers.summariser };
+    // A structured answer costs one call of a model, and its caption none: so the summary has to cost none either.
+    let uses_rules = matches!(observers.mode, DialogueMode::Structured { .. });
+    let summariser: &dyn CaptionSummariser = if uses_rules { &RulesSummariser } else { observers.summariser };
     summariser.condense(&looks.iter().map(directed).collect::<Vec<_>>(), CONDENSED_WORDS)
 }
 

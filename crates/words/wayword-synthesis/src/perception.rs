@@ -12,7 +12,7 @@ use wayword_language::lexicon::{ThingClass, find_thing, names_agree};
 /// How the objects of a caption agree with the labels of its view.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct CaptionScore {
-    /// How many different objects it names, of those that labels can judge.
+    /// How many different objects the caption names, of those that labels can judge.
     pub named: usize,
     /// The named objects that no label of the view agrees with.
     pub hallucinated: Vec<String>,
@@ -28,12 +28,13 @@ pub struct CaptionScore {
 /// find nor invent them.
 #[must_use]
 pub fn score_caption(caption: &str, labels: &[SeenThing]) -> CaptionScore {
-    let judged =
+    let is_judged =
         |name: &str| !matches!(find_thing(name).map(|thing| thing.class), Some(ThingClass::Fabric | ThingClass::Door));
-    let told = dialogue_sightings(&[DialogueExchange::new(OPENING_REQUEST, caption)], "");
-    let seen = told.iter().filter(|sighting| sighting.witness == WitnessAnswer::Seen);
-    let named = distinct_names(seen.map(|sighting| sighting.name.as_str()).filter(|name| judged(name)));
-    let labelled = distinct_names(labels.iter().map(|label| label.name.as_str()).filter(|name| judged(name)));
+    // The caption is read as if it were the answer to the opening request of a dialogue.
+    let sightings = dialogue_sightings(&[DialogueExchange::new(OPENING_REQUEST, caption)], "");
+    let seen = sightings.iter().filter(|sighting| sighting.witness == WitnessAnswer::Seen);
+    let named = distinct_names(seen.map(|sighting| sighting.name.as_str()).filter(|name| is_judged(name)));
+    let labelled = distinct_names(labels.iter().map(|label| label.name.as_str()).filter(|name| is_judged(name)));
     let in_list = |list: &[&str], name: &str| list.iter().any(|other| names_agree(other, name));
     let hallucinated = named.iter().filter(|name| !in_list(&labelled, name)).map(|name| (*name).to_owned());
     CaptionScore {
@@ -44,6 +45,7 @@ pub fn score_caption(caption: &str, labels: &[SeenThing]) -> CaptionScore {
     }
 }
 
+/// The names, without those that mean the same as an earlier one.
 fn distinct_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut kept: Vec<&str> = Vec::new();
     for name in names {

@@ -73,12 +73,12 @@ impl ObservedWalk {
         })
     }
 
-    /// Whether the target was seen from the last frame; also where there is no target.
+    /// Whether the target was seen from the last frame; `true` where the path has no target.
     #[must_use]
     pub fn describes_target(&self) -> bool {
         let last = self.path.frames.len().saturating_sub(1);
-        let is_it = |name: &str| self.seen_from(last).any(|seen| names_agree(&seen.sighting.name, name));
-        self.path.target.as_ref().is_none_or(|target| is_it(&target.name))
+        let is_seen = |name: &str| self.seen_from(last).any(|seen| names_agree(&seen.sighting.name, name));
+        self.path.target.as_ref().is_none_or(|target| is_seen(&target.name))
     }
 
     /// The room of a frame, as its captions name it.
@@ -87,13 +87,13 @@ impl ObservedWalk {
         self.observations.get(frame)?.looks.iter().find_map(|look| look.caption.room.as_deref())
     }
 
-    /// The evidence that its captions give.
+    /// The evidence that the captions of the walk give; `None` where no caption names a room or an object.
     #[must_use]
     pub fn evidence(&self) -> Option<Evidence> {
         Evidence::from_captions(&self.path, &self.observations)
     }
 
-    /// The length of the way between two frames, metres along the hops.
+    /// The length of the way from one frame to a later one, metres along the hops.
     pub(crate) fn walked_m(&self, from: usize, to: usize) -> f64 {
         self.moves.get(from..to).unwrap_or_default().iter().map(|step| step.distance_m).sum()
     }

@@ -6,9 +6,10 @@ use rand_chacha::ChaCha8Rng;
 /// Draws an index with a probability proportional to its weight; `None` if the list is empty.
 pub(crate) fn draw_weighted(weights: &[f64], rng: &mut ChaCha8Rng) -> Option<usize> {
     let mut rest = rng.random_range(0.0..1.0) * weights.iter().sum::<f64>();
-    let found = weights.iter().position(|weight| {
+    let drawn = weights.iter().position(|weight| {
         rest -= weight;
         rest < 0.0
     });
-    found.or(weights.len().checked_sub(1))
+    // Rounding may leave a rest beyond the last weight: the last index is drawn then.
+    drawn.or(weights.len().checked_sub(1))
 }

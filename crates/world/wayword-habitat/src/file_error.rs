@@ -1,5 +1,15 @@
 //! Reads whole files up to a size limit. The errors name the file, the reason and a way out.
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 use std::path::{Path, PathBuf};
 use wayword_core::PlatformError;
 

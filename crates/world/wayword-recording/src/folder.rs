@@ -76,11 +76,9 @@ impl PictureFolder {
             });
         }
         let times_in_names: Option<Vec<f64>> = self.names.iter().map(|name| time_of(name)).collect();
-        let timed = |(at, name): (usize, &String)| {
-            let time_s = times_in_names.as_ref().map_or(at as f64 / pictures_per_s, |times| times[at]);
-            (time_s, self.pictures.join(name))
-        };
-        Ok(self.names.iter().enumerate().map(timed).collect())
+        let times = times_in_names
+            .unwrap_or_else(|| (0..self.names.len()).map(|number| number as f64 / pictures_per_s).collect());
+        Ok(times.into_iter().zip(self.names.iter().map(|name| self.pictures.join(name))).collect())
     }
 }
 

@@ -13,6 +13,16 @@
 //! - `choose/`: which pictures become frames.
 //! - `mcap/topics.rs`, `lerobot/camera.rs`, `lerobot/pose_feature.rs`: which camera and which poses are taken.
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 mod axes;
 mod choose;
 mod describe;

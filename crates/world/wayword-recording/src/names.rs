@@ -63,15 +63,14 @@ pub(crate) fn unknown_scene(scene: &SceneId, known_scenes: &[SceneId]) -> Platfo
 /// Compares names, with numbers in them compared as numbers.
 fn in_order(a: &str, b: &str) -> Ordering {
     let (mut left, mut right) = (a.as_bytes(), b.as_bytes());
-    while let (Some(x), Some(y)) = (left.first(), right.first()) {
+    while let (Some((x, left_rest)), Some((y, right_rest))) = (left.split_first(), right.split_first()) {
         let order = if x.is_ascii_digit() && y.is_ascii_digit() {
             let (x, y) = (leading_number(&mut left), leading_number(&mut right));
             // Without leading zeros, the longer number is the greater one.
             x.len().cmp(&y.len()).then_with(|| x.cmp(y))
         } else {
-            let order = x.cmp(y);
-            (left, right) = (&left[1..], &right[1..]);
-            order
+            (left, right) = (left_rest, right_rest);
+            x.cmp(y)
         };
         if order != Ordering::Equal {
             return order;
@@ -86,7 +85,7 @@ fn leading_number<'a>(text: &mut &'a [u8]) -> &'a [u8] {
     let (number, rest) = text.split_at(end);
     *text = rest;
     let zeros = number.iter().position(|digit| *digit != b'0').unwrap_or(number.len());
-    &number[zeros..]
+    number.get(zeros..).unwrap_or_default()
 }
 
 #[cfg(test)]

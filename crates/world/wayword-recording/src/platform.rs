@@ -1,5 +1,7 @@
 //! Recordings as a [`Platform`]: a scene is one recording, and paths run along its chosen frames.
 
+#![allow(clippy::indexing_slicing, reason = "all indices are counted here, and none is read from a file")]
+
 use crate::{
     choose::{FrameChoice, candidate_pictures, choose_frames},
     open,
@@ -375,7 +377,10 @@ fn scale_down(image: &Image) -> Image {
     if longest <= LONGEST_PX {
         return image.clone();
     }
-    let scaled = |side: u32| (u64::from(side) * u64::from(LONGEST_PX) / u64::from(longest)).max(1) as u32;
+    let scaled = |side: u32| {
+        let scaled = u64::from(side) * u64::from(LONGEST_PX) / u64::from(longest);
+        u32::try_from(scaled.max(1)).unwrap_or(LONGEST_PX)
+    };
     let (wide, high) = (scaled(width), scaled(height));
     let pixels = image::ImageBuffer::<image::Rgb<u8>, &[u8]>::from_raw(width, height, image.rgb_bytes());
     let small = pixels.map(|pixels| resize(&pixels, wide, high, FilterType::Triangle));

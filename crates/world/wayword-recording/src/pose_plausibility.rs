@@ -155,13 +155,13 @@ impl RecordedWalk {
         if (orientations.len() as f64) < LEAST_ORIENTED_SHARE * places.len() as f64 {
             orientations.clear();
         }
-        let length_m = places.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        let length_m = places.array_windows().map(|[from, to]| from.distance(*to)).sum();
         (!places.is_empty()).then_some(Self { places, length_m, held: orientations })
     }
 
     /// The way from each place to the next.
     fn steps(&self) -> impl Iterator<Item = DVec3> {
-        self.places.windows(2).map(|pair| pair[1] - pair[0])
+        self.places.array_windows().map(|[from, to]| *to - *from)
     }
 
     /// The vertical component of the camera's up direction, pose by pose; empty if too few poses have an orientation.

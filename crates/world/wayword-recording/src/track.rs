@@ -62,7 +62,8 @@ impl CameraTrack {
     /// fix if it is at most [`MAX_BEYOND_S`] away; `None` otherwise.
     pub(crate) fn fix_at(&self, time_s: f64) -> Option<TrackFix> {
         let next = self.fixes.partition_point(|fix| fix.time_s < time_s);
-        let (before, after) = (next.checked_sub(1).map(|at| self.fixes[at]), self.fixes.get(next).copied());
+        let before = next.checked_sub(1).and_then(|at| self.fixes.get(at)).copied();
+        let after = self.fixes.get(next).copied();
         if let (Some(before), Some(after)) = (before, after)
             && after.time_s - before.time_s <= MAX_GAP_S
         {

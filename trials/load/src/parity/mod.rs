@@ -46,10 +46,11 @@ enum ParityDetector {
 #[derive(Debug, Clone, Copy, Default)]
 struct NumberDifference {
     logits: f32,
+    /// Of the edges of boxes, pixels.
     boxes_px: f32,
 }
 
-/// The differences that count as equal.
+/// The largest differences with which numbers count as equal.
 const MAX_DIFFERENCE: NumberDifference = NumberDifference { logits: 1e-4, boxes_px: 1e-3 };
 
 /// The number of threads of each side.
@@ -58,6 +59,7 @@ const THREAD_COUNT: usize = 2;
 /// Width and height of the pictures of which the time is measured, pixels.
 const TIMED_SIZE_PX: (u32, u32) = (640, 480);
 
+/// Compares all cases, and the times if the flags ask for them. Prints one line for each.
 pub(super) fn measure_parity(flags: &ParityArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let threads = rayon::ThreadPoolBuilder::new().num_threads(THREAD_COUNT).build_global();
     threads.map_err(|error| CommandError::usage(format!("cannot use {THREAD_COUNT} threads: {error}"), "try again"))?;
@@ -70,7 +72,7 @@ pub(super) fn measure_parity(flags: &ParityArgs, output: &CommandOutput) -> Resu
     lines.push("picture    phrases   logits     boxes".to_owned());
     let mut loaded: Option<(Option<usize>, ParitySubject)> = None;
     for (at, case) in oracle.cases.iter().enumerate() {
-        // GLIP's pictures are shown at several sizes.
+        // GLIP's pictures are shown at several sizes, so it is loaded again when the size changes.
         let subject = match loaded.take() {
             Some((short_px, subject)) if short_px == case.short_px => subject,
             _ => ParitySubject::load_detector(flags.detector, &folder, case.short_px)?,
@@ -83,6 +85,7 @@ pub(super) fn measure_parity(flags: &ParityArgs, output: &CommandOutput) -> Resu
     Ok(())
 }
 
+/// The line of a case: its picture, its phrases and the differences.
 fn case_line(case: &ParityCase, off: NumberDifference) -> String {
     let (width, height) = case.size;
     let reached = if off.logits <= MAX_DIFFERENCE.logits && off.boxes_px <= MAX_DIFFERENCE.boxes_px {
@@ -97,32 +100,35 @@ fn case_line(case: &ParityCase, off: NumberDifference) -> String {
 /// The times of both sides, in turns.
 fn compare_times(flags: &ParityArgs, folder: &Path, oracle: &PytorchOracle) -> Result<Vec<String>, CommandError> {
     let subject = ParitySubject::load_detector(flags.detector, &flags.detector.timed_folder(folder), Some(480))?;
-    let mut theirs = oracle.start_clock(&flags.python)?;
-    let (mut ours, mut other, mut many) = (Vec::new(), Vec::new(), Vec::new());
-    // The first of each warms up.
+    let mut clock = oracle.start_clock(&flags.python)?;
+    let (mut ours, mut theirs, mut twenty_costs) = (Vec::new(), Vec::new(), Vec::new());
+    // The first round warms up and does not count.
     for round in 0..=flags.times {
-        let one = time_picture(&subject, round, &flags.detector.round_phrases(round))?;
-        let their = theirs.time_picture()?;
+        let our_cost = time_picture(&subject, round, &flags.detector.round_phrases(round))?;
+        let their_cost = clock.time_picture()?;
         if flags.detector == ParityDetector::Owlv2Base {
-            many.push(time_picture(&subject, round + 100, &twenty_phrases(round))?);
+            twenty_costs.push(time_picture(&subject, round + 100, &twenty_phrases(round))?);
         }
         if round > 0 {
-            ours.push(one);
-            other.push(their);
+            ours.push(our_cost);
+            theirs.push(their_cost);
         } else {
-            many.clear();
+            twenty_costs.clear();
         }
     }
-    let (ours, other) = (PictureCost::median_cost(&ours), PictureCost::median_cost(&other));
+    let (ours, theirs) = (PictureCost::median_cost(&ours), PictureCost::median_cost(&theirs));
     let mut lines = vec![
         "side       seconds  of both threads   at most".to_owned(),
         format!("Wayword    {ours}"),
-        format!("PyTorch    {other}"),
-        format!("ratio      {:>7.2} {:>16.2}", ours.wall_s / other.wall_s, ours.cpu_s / other.cpu_s),
+        format!("PyTorch    {theirs}"),
+        format!("ratio      {:>7.2} {:>16.2}", ours.wall_s / theirs.wall_s, ours.cpu_s / theirs.cpu_s),
     ];
-    if !many.is_empty() {
-        let many = PictureCost::median_cost(&many);
-        lines.push(format!("20 phrases {many}, {:.3} of the time of 3 phrases", many.cpu_s / ours.cpu_s));
+    if !twenty_costs.is_empty() {
+        let twenty_costs = PictureCost::median_cost(&twenty_costs);
+        lines.push(format!(
+            "20 phrases {twenty_costs}, {:.3} of the time of 3 phrases",
+            twenty_costs.cpu_s / ours.cpu_s
+        ));
     }
     Ok(lines)
 }
@@ -137,12 +143,12 @@ fn time_picture(subject: &ParitySubject, number: usize, phrases: &[String]) -> R
     Ok(PictureCost { wall_s: wall.as_secs_f64(), cpu_s: busy.as_secs_f64(), peak_mib: resources::peak_mib() })
 }
 
-/// Phrases that no earlier round had.
+/// Twenty phrases that no earlier round had, so that no cache has them.
 fn twenty_phrases(round: usize) -> Vec<String> {
     (0..20).map(|at| format!("{} door {round}", char::from(b'a' + at))).collect()
 }
 
-/// The same formula as in the scripts that make PyTorch's numbers. `number` changes one byte.
+/// A picture by the formula that the scripts for PyTorch's numbers use too. `number` changes one byte.
 fn test_picture((width, height): (u32, u32), number: u8) -> Result<Image, CommandError> {
     let byte = |at: u32| {
         let (x, y, colour) = (at / 3 % width, at / 3 / width, at % 3);
@@ -169,7 +175,7 @@ impl ParityDetector {
         }
     }
 
-    /// The folder of the model that is timed. A model's processor settings contain the size of pictures.
+    /// The folder of the model that is timed. Grounding DINO's settings contain the size of pictures, so it has a copy for smaller ones.
     fn timed_folder(self, folder: &Path) -> PathBuf {
         match self {
             Self::GlipT | Self::Owlv2Base => folder.to_owned(),
@@ -177,7 +183,7 @@ impl ParityDetector {
         }
     }
 
-    /// Phrases of 12 tokens with those at both ends; OWLv2 keeps texts, so it gets others each time.
+    /// Phrases of 12 tokens, the tokens at both ends included. OWLv2 keeps the texts that it has encoded, so it gets others each round.
     fn round_phrases(self, round: usize) -> Vec<String> {
         let all = |phrases: &[&str]| phrases.iter().map(|&phrase| phrase.to_owned()).collect();
         match self {

@@ -18,10 +18,11 @@ pub(super) struct PytorchOracle {
     folder: PathBuf,
     /// The pictures and phrases of the computation.
     pub(super) cases: Vec<ParityCase>,
+    /// The contents of the safetensors file with the numbers of all cases.
     tensors: Vec<u8>,
 }
 
-/// A picture and phrases.
+/// One comparison: a picture and the phrases that the detector looks for in it.
 #[derive(Debug, Deserialize)]
 pub(super) struct ParityCase {
     /// Width and height, pixels.
@@ -39,15 +40,16 @@ pub(super) struct ParityCase {
 impl ParityCase {
     /// The finds of each phrase.
     pub(super) fn expected_finds(&self) -> Vec<Vec<DetectedBox>> {
-        let one =
+        let to_box =
             |&[left, top, right, bottom, score]: &[f32; 5]| DetectedBox { box_px: [left, top, right, bottom], score };
-        self.boxes.iter().map(|found| found.iter().map(one).collect()).collect()
+        self.boxes.iter().map(|finds| finds.iter().map(to_box).collect()).collect()
     }
 }
 
 /// The numbers of a case.
 pub(super) struct CaseNumbers<'a> {
     tensors: &'a [u8],
+    /// The number of the case.
     at: usize,
 }
 
@@ -70,17 +72,17 @@ impl PytorchOracle {
     pub(super) fn open_or_make(kind: ParityDetector, folder: &Path, python: &Path) -> Result<Self, CommandError> {
         let (script, name) = kind.script_and_name();
         let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/wayword-local/fixtures");
-        let (script, told) = (fixtures.join(script), folder.join("expected.json"));
-        if !told.is_file() {
+        let (script, cases_file) = (fixtures.join(script), folder.join("expected.json"));
+        if !cases_file.is_file() {
             let mut command = Command::new(python);
             let made = command.arg(&script).arg("--true").arg(folder).arg(name).stdout(Stdio::null()).status();
             if !made.map_err(|source| io_error(python, "run", source))?.success() {
                 return Err(script_error(&script));
             }
         }
-        let text = fs::read_to_string(&told).map_err(|source| io_error(&told, "read", source))?;
+        let text = fs::read_to_string(&cases_file).map_err(|source| io_error(&cases_file, "read", source))?;
         let cases = serde_json::from_str(&text).map_err(|error| {
-            CommandError::usage(format!("{}: {error}", told.display()), "take the folder away and make it again")
+            CommandError::usage(format!("{}: {error}", cases_file.display()), "take the folder away and make it again")
         })?;
         let file = folder.join("expected.safetensors");
         let tensors = fs::read(&file).map_err(|source| io_error(&file, "read", source))?;
@@ -107,7 +109,9 @@ impl PytorchOracle {
 /// A process that computes one picture each time that it is asked.
 pub(super) struct PytorchClock {
     child: Child,
+    /// A line asks for one picture.
     asks: ChildStdin,
+    /// A line has the numbers of one picture.
     says: BufReader<ChildStdout>,
     script: PathBuf,
 }
@@ -137,17 +141,19 @@ impl Drop for PytorchClock {
 /// The time that a picture took, and the most memory of the process so far.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PictureCost {
+    /// Time on the clock, seconds.
     pub(super) wall_s: f64,
-    /// Of all threads.
+    /// Processor time of all threads, seconds.
     pub(super) cpu_s: f64,
+    /// The most memory, MiB.
     pub(super) peak_mib: f64,
 }
 
 impl PictureCost {
     /// The median times, and the most memory.
     pub(super) fn median_cost(all: &[Self]) -> Self {
-        let middle = |of: fn(&Self) -> f64| {
-            let mut all: Vec<f64> = all.iter().map(of).collect();
+        let middle = |figure: fn(&Self) -> f64| {
+            let mut all: Vec<f64> = all.iter().map(figure).collect();
             all.sort_by(f64::total_cmp);
             all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
         };

@@ -12,12 +12,15 @@ use wayword_run::error::CommandError;
 
 /// A detector of one kind.
 pub(super) enum ParitySubject {
+    /// GLIP.
     Glip(Box<GlipDetector>),
+    /// Grounding DINO or MM Grounding DINO.
     Dino(Box<GroundingDino>),
+    /// OWLv2.
     Owl(Box<OwlDetector>),
 }
 
-/// Boxes of two implementations that lie further apart than this are different finds.
+/// Boxes of two implementations with edges further apart than this, pixels, are different finds.
 const SAME_PX: f32 = 1.0;
 
 impl ParitySubject {
@@ -49,7 +52,7 @@ impl ParitySubject {
         })
     }
 
-    /// How far its numbers for a case are from the other implementation's.
+    /// How far this detector's numbers for a case are from PyTorch's.
     pub(super) fn compare_case(
         &self,
         case: &ParityCase,
@@ -102,11 +105,12 @@ fn largest_difference(ours: &[f32], theirs: &[f32]) -> f32 {
     differences.map(|off| if off.is_nan() { f32::INFINITY } else { off }).fold(0.0, f32::max)
 }
 
-/// Shares of a picture in pixels.
+/// Converts coordinates that are shares of a picture's edges, x and y in turn, to pixels.
 fn scale_to_pixels(shares: &[f32], edges: [f32; 2]) -> Vec<f32> {
     shares.iter().zip(edges.iter().cycle()).map(|(share, edge)| share * edge).collect()
 }
 
+/// Whether two lists contain the same numbers, in any order.
 fn same_set(ours: &[u32], theirs: &[u32]) -> bool {
     let sorted = |picked: &[u32]| {
         let mut picked = picked.to_vec();
@@ -122,12 +126,12 @@ fn finds_off(ours: &[Vec<DetectedBox>], theirs: &[Vec<DetectedBox>]) -> f32 {
     if ours.len() != theirs.len() {
         return f32::INFINITY;
     }
-    let of_phrase = |(ours, theirs): (&Vec<DetectedBox>, &Vec<DetectedBox>)| {
+    let phrase_difference = |(ours, theirs): (&Vec<DetectedBox>, &Vec<DetectedBox>)| {
         let nearest = |find: &DetectedBox| {
             ours.iter().map(|our| largest_difference(&our.box_px, &find.box_px)).fold(f32::INFINITY, f32::min)
         };
-        let most = theirs.iter().map(nearest).fold(0.0, f32::max);
-        if ours.len() == theirs.len() && most <= SAME_PX { most } else { f32::INFINITY }
+        let largest = theirs.iter().map(nearest).fold(0.0, f32::max);
+        if ours.len() == theirs.len() && largest <= SAME_PX { largest } else { f32::INFINITY }
     };
-    ours.iter().zip(theirs).map(of_phrase).fold(0.0, f32::max)
+    ours.iter().zip(theirs).map(phrase_difference).fold(0.0, f32::max)
 }

@@ -2,14 +2,17 @@
 
 use std::collections::BTreeMap;
 
-/// One observation: features, whether the claim is wrong, and how much it counts.
+/// One observation: a claim with its features.
 pub(crate) struct WeighedClaimSample {
+    /// The names and values of the features that are not zero.
     pub(crate) features: Vec<(String, f64)>,
+    /// Whether the claim is wrong: the outcome that the regression predicts.
     pub(crate) wrong: bool,
+    /// How many observations this one counts as.
     pub(crate) weight: f64,
 }
 
-/// Most Newton steps. Most fits converge earlier.
+/// Newton steps of a fit at most. A fit that has not converged by then keeps the weights it has; most converge earlier.
 const MAX_NEWTON_STEPS: usize = 25;
 
 /// Fits a weight for each feature. The sum of a claim's weights is the natural logarithm of the odds that it is wrong. `ridge` pulls all
@@ -28,6 +31,7 @@ pub(crate) fn fit_weights(samples: &[WeighedClaimSample], ridge: f64) -> BTreeMa
     let bias = places.get("bias").copied();
     let mut weights = vec![0.0; size];
     for _ in 0..MAX_NEWTON_STEPS {
+        // The bias has a tiny penalty, so that the system stays solvable.
         let penalty = |at: usize| if Some(at) == bias { 1e-6 } else { ridge };
         let mut gradient: Vec<f64> = (0..size).map(|at| -penalty(at) * weights[at]).collect();
         let mut curvature = vec![vec![0.0; size]; size];
@@ -38,16 +42,17 @@ pub(crate) fn fit_weights(samples: &[WeighedClaimSample], ridge: f64) -> BTreeMa
             let score: f64 = row.iter().map(|(at, value)| weights[*at] * value).sum();
             let chance = 1.0 / (1.0 + (-score).exp());
             let error = (f64::from(u8::from(sample.wrong)) - chance) * sample.weight;
-            let bend = (chance * (1.0 - chance)).max(1e-9) * sample.weight;
+            let sample_curvature = (chance * (1.0 - chance)).max(1e-9) * sample.weight;
             for (at, value) in row {
                 gradient[*at] += error * value;
                 for (other, factor) in row {
-                    curvature[*at][*other] += bend * value * factor;
+                    curvature[*at][*other] += sample_curvature * value * factor;
                 }
             }
         }
         let step = solve_cholesky(curvature, gradient);
-        let longest = step.iter().fold(0.0_f64, |most, one| most.max(one.abs()));
+        let longest = step.iter().fold(0.0_f64, |longest, part| longest.max(part.abs()));
+        // No weight moves by more than 2 in one step, so that a step cannot overshoot far.
         let scale = if longest > 2.0 { 2.0 / longest } else { 1.0 };
         weights.iter_mut().zip(&step).for_each(|(weight, step)| *weight += step * scale);
         if longest < 1e-6 {
@@ -57,7 +62,7 @@ pub(crate) fn fit_weights(samples: &[WeighedClaimSample], ridge: f64) -> BTreeMa
     places.into_iter().map(|(name, at)| (name.to_owned(), weights[at])).collect()
 }
 
-/// Solves a linear system with a positive definite matrix by Cholesky decomposition.
+/// Solves `matrix` x = `right` for a positive definite matrix, by Cholesky decomposition. The solution replaces `right`.
 fn solve_cholesky(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
     let size = right.len();
     for at in 0..size {

@@ -1,4 +1,5 @@
-//! Fits the weights that ship with the checks: how much it counts against a claim that no label confirms it.
+//! Fits the weights that ship with the checks of an open world: if no label confirms a claim of a text, how much does that count
+//! against the claim?
 //!
 //! True claims are those of people's texts. Wrong claims replace their rooms and objects by those of other texts and labels. Ten buildings
 //! are left out of the fit, and the results on them are printed.
@@ -81,6 +82,7 @@ pub fn fit_evidence_weights(
     Ok(())
 }
 
+/// [`ROOM_GROUPS`] in the form of the weights file.
 fn room_groups() -> BTreeMap<String, BTreeSet<String>> {
     let group =
         |(name, rooms): (&str, &[&str])| (name.to_owned(), rooms.iter().map(|room| (*room).to_owned()).collect());
@@ -91,7 +93,9 @@ fn count_texts(walks: &[&PeopleWalk]) -> usize {
     walks.iter().map(|walk| walk.texts.len()).sum()
 }
 
-/// Per case and part: the share of texts with a true claim that fails, and the shares of wrong claims that do.
+/// A table with a row for each case and part of the buildings (`parts`: name, walks, samples). A row has the share of texts with a
+/// true claim that fails, then the shares of wrong claims that fail: where the thing is nowhere in the building (lacking), at
+/// least 8 m away, and 3 to 8 m away.
 fn report_fit(parts: &[(&str, &Vec<&PeopleWalk>, &Vec<ClaimSample>)], weights: &SilenceWeights) -> String {
     let mut lines = vec![format!(
         "{:<14} {:<9} {:>8} {:>12} {:>18} {:>18} {:>18}",
@@ -100,34 +104,40 @@ fn report_fit(parts: &[(&str, &Vec<&PeopleWalk>, &Vec<ClaimSample>)], weights: &
     for case in ClaimCase::ALL {
         let Some(WeightTable { fails_at, .. }) = weights.table_for(case) else { continue };
         for (name, walks, samples) in parts {
-            let fails = |held: &&&ClaimSample| {
-                let ratio = failing_miss(held, case).and_then(|missed| weights.log_ratio(missed));
+            let fails = |sample: &&&ClaimSample| {
+                let ratio = failing_miss(sample, case).and_then(|missed| weights.log_ratio(missed));
                 ratio.is_some_and(|ratio| ratio >= fails_at.ln())
             };
-            let of_case = claims_for_case(samples, case);
-            let true_ones = of_case.iter().filter(|held| !held.wrong).filter(fails);
-            let failing: BTreeSet<(usize, usize)> = true_ones.map(|held| (held.walk, held.text)).collect();
-            let share = |least_m: f64, most_m: f64| {
-                let within = |held: &&&ClaimSample| {
-                    failing_miss(held, case)
+            let case_samples = claims_for_case(samples, case);
+            let failing_true = case_samples.iter().filter(|sample| !sample.wrong).filter(fails);
+            let failing_texts: BTreeSet<(usize, usize)> =
+                failing_true.map(|sample| (sample.walk, sample.text)).collect();
+            // The share of wrong claims that fail, where the nearest such thing is `least_m` to `most_m` away; with an infinite
+            // `least_m`, where there is no such thing.
+            let failing_share = |least_m: f64, most_m: f64| {
+                let within = |sample: &&&ClaimSample| {
+                    failing_miss(sample, case)
                         .is_some_and(|missed| missed.nearest_m >= least_m && missed.nearest_m < most_m)
                 };
-                let nowhere = |held: &&&ClaimSample| {
-                    failing_miss(held, case).is_some_and(|missed| missed.nearest_m.is_infinite())
+                let nowhere = |sample: &&&ClaimSample| {
+                    failing_miss(sample, case).is_some_and(|missed| missed.nearest_m.is_infinite())
                 };
-                let all = of_case.iter().filter(|held| held.wrong);
-                let all: Vec<&&ClaimSample> =
-                    if least_m.is_infinite() { all.filter(nowhere).collect() } else { all.filter(within).collect() };
-                let found = all.iter().copied().filter(|held| fails(held)).count();
-                format!("{:.1} of {}", 100.0 * found as f64 / all.len().max(1) as f64, all.len())
+                let wrong = case_samples.iter().filter(|sample| sample.wrong);
+                let wrong: Vec<&&ClaimSample> = if least_m.is_infinite() {
+                    wrong.filter(nowhere).collect()
+                } else {
+                    wrong.filter(within).collect()
+                };
+                let failing = wrong.iter().copied().filter(|sample| fails(sample)).count();
+                format!("{:.1} of {}", 100.0 * failing as f64 / wrong.len().max(1) as f64, wrong.len())
             };
             lines.push(format!(
                 "{:<14} {name:<9} {fails_at:>8.1} {:>12.2} {:>18} {:>18} {:>18}",
                 case.name(),
-                100.0 * failing.len() as f64 / count_texts(walks).max(1) as f64,
-                share(f64::INFINITY, f64::INFINITY),
-                share(8.0, f64::INFINITY),
-                share(3.0, 8.0),
+                100.0 * failing_texts.len() as f64 / count_texts(walks).max(1) as f64,
+                failing_share(f64::INFINITY, f64::INFINITY),
+                failing_share(8.0, f64::INFINITY),
+                failing_share(3.0, 8.0),
             ));
         }
     }

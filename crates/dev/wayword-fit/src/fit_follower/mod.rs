@@ -64,23 +64,23 @@ pub fn fit_follower_weights(flags: &FitFollowerArgs, output: &CommandOutput) -> 
     // The texts about the buildings that are left out, file by file, and all other texts together.
     let (mut apart, mut fitted) = (Vec::new(), Vec::new());
     for (number, (file, texts)) in flags.episodes.iter().zip(files).enumerate() {
-        let (out, kept): (Vec<WalkedText>, Vec<WalkedText>) =
+        let (out_texts, fit_texts): (Vec<WalkedText>, Vec<WalkedText>) =
             texts.into_iter().partition(|text| left_out.contains(&scenes[text.scene].name));
-        apart.push((file_name(file), out));
-        fitted.extend(kept.into_iter().map(|text| WalkedText { file: number, ..text }));
+        apart.push((file_name(file), out_texts));
+        fitted.extend(fit_texts.into_iter().map(|text| WalkedText { file: number, ..text }));
     }
     fitted.shuffle(&mut seeded_rng(flags.seed, &["fit-follower"]));
     fitted.truncate(flags.texts.unwrap_or(usize::MAX));
     let names = left_out.iter().map(SceneId::as_str).collect::<Vec<_>>().join(" ");
     output.say(format!("{} texts; left out: {names}", fitted.len()));
-    let say = |what: &str, score: &dyn Fn(&[WalkedText]) -> String| {
+    let print_scores = |follower: &str, score: &dyn Fn(&[WalkedText]) -> String| {
         for (file, texts) in &apart {
-            output.say(format!("{what}, on the buildings left out of {file}: {}", score(texts)));
+            output.say(format!("{follower}, on the buildings left out of {file}: {}", score(texts)));
         }
     };
-    say("by hand", &|texts| with_map(&scenes, texts, &FeatureWeights::by_hand()));
+    print_scores("by hand", &|texts| with_map(&scenes, texts, &FeatureWeights::by_hand()));
     let map = fit_map(flags, &scenes, &fitted, output);
-    say("with the map", &|texts| with_map(&scenes, texts, &map));
+    print_scores("with the map", &|texts| with_map(&scenes, texts, &map));
     for (number, file) in flags.episodes.iter().enumerate() {
         let texts: Vec<&WalkedText> = fitted.iter().filter(|text| text.file == number).collect();
         output.say(format!("shares of the texts of {} that a change gains more for:", file_name(file)));
@@ -88,14 +88,14 @@ pub fn fit_follower_weights(flags: &FitFollowerArgs, output: &CommandOutput) -> 
     }
     let start = OnwardWeights { done: map.clone(), going: map.clone(), ..OnwardWeights::by_hand() };
     let walking = fit_walker(flags, &scenes, &fitted, &start, output);
-    say("walking", &|texts| walker::score_walker(&scenes, texts, &walking));
+    print_scores("walking", &|texts| walker::score_walker(&scenes, texts, &walking));
     if let Some(out) = &flags.out {
         let files: Vec<String> = flags.episodes.iter().map(|file| file_name(file)).collect();
         let origin = format!("people's texts of {}, without the last ten buildings by name", files.join(" and "));
-        let given: String = files.iter().map(|file| format!(" --episodes {file}")).collect();
+        let episode_flags: String = files.iter().map(|file| format!(" --episodes {file}")).collect();
         let FitFollowerArgs { seed, rounds, walker_rounds, .. } = flags;
         let command = format!(
-            "wayword-measure fit-follower --data DATA{given} --seed {seed} --rounds {rounds} --walker-rounds \
+            "wayword-measure fit-follower --data DATA{episode_flags} --seed {seed} --rounds {rounds} --walker-rounds \
              {walker_rounds} --out DIR"
         );
         std::fs::create_dir_all(out).map_err(CommandError::io(out, "make"))?;
@@ -113,6 +113,8 @@ fn file_name(file: &Path) -> String {
     file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
+/// Fits the follower that knows the map: in each round, over all texts in batches, it moves the weights so that people's walks become
+/// likelier than other walks from the same start.
 fn fit_map(
     flags: &FitFollowerArgs,
     scenes: &[FollowerScene],
@@ -141,7 +143,7 @@ fn fit_map(
     learner.finish()
 }
 
-/// Adds a text: its walk against the other walks, and its turns against flipped ones.
+/// Adds what one text teaches to the slope of a batch: its walk against the other walks, and its turns against flipped ones.
 fn add_text_slope(
     slope: &mut FitSlope,
     scenes: &[FollowerScene],
@@ -150,19 +152,20 @@ fn add_text_slope(
     weights: &FeatureWeights,
 ) {
     let building = &scenes[text.scene].building;
-    let right = GuideTrial::new(&text.guide, building);
+    let true_trial = GuideTrial::new(&text.guide, building);
     if let Some(goal) = tree.find_walk(&text.walk) {
-        slope.add_text(&right, tree, goal, weights);
-        // The same walk by an empty text teaches how long people's walks are. A text without readable words then has this to go by.
-        let nothing = Guide::read_text("");
-        slope.add_floor(&GuideTrial::new(&nothing, building), tree, goal, weights);
+        slope.add_text(&true_trial, tree, goal, weights);
+        // The same walk by an empty text teaches how long people's walks are, for texts of which no word is understood.
+        let empty_guide = Guide::read_text("");
+        slope.add_floor(&GuideTrial::new(&empty_guide, building), tree, goal, weights);
     }
     let walk = WalkTree::single_walk(building, &text.walk, text.heading_rad);
-    for wrong in flip_turns(&text.guide) {
-        slope.add_contrast(&right, &GuideTrial::new(&wrong, building), &walk, weights, CONTRAST_WEIGHT);
+    for flipped in flip_turns(&text.guide) {
+        slope.add_contrast(&true_trial, &GuideTrial::new(&flipped, building), &walk, weights, CONTRAST_WEIGHT);
     }
 }
 
+/// Fits the follower without a map, which decides at each viewpoint. It begins with the weights `start`.
 fn fit_walker(
     flags: &FitFollowerArgs,
     scenes: &[FollowerScene],
@@ -178,7 +181,7 @@ fn fit_walker(
             let weights = learner.current_weights();
             let slopes = batch.par_iter().enumerate().map(|(at, text)| {
                 let mut slope = OnwardSlope::default();
-                // Half of the walks keep to the right way, the others are the walker's own.
+                // Half of the texts are walked along the shortest way, the other half by the walker's own decisions.
                 let is_own = (round + number + at) % 2 == 0;
                 walker::teach_walker(&scenes[text.scene], text, &weights, is_own, &mut slope);
                 slope
@@ -193,11 +196,12 @@ fn fit_walker(
     learner.finish()
 }
 
+/// The walks that are possible from the start of a text's walk. The follower compares people's walk with them.
 fn walk_tree(scenes: &[FollowerScene], text: &WalkedText) -> WalkTree {
     WalkTree::from_prior(&scenes[text.scene].building, text.walk[0], text.heading_rad, WalkPrior::default())
 }
 
-/// Success rate and SPL of the best walk.
+/// Success rate and SPL (success weighted by path length) of the likeliest walk of each text, for the follower that knows the map.
 fn with_map(scenes: &[FollowerScene], texts: &[WalkedText], weights: &FeatureWeights) -> String {
     let scores = texts.par_iter().map(|text| {
         let scene = &scenes[text.scene];

@@ -21,17 +21,19 @@ use wayword_world::{path_of, survey_scene};
 pub struct FollowerScene {
     /// Its name.
     pub name: SceneId,
+    /// The labels and positions of its viewpoints.
     pub(super) survey: ViewpointSurvey,
     /// The building as the follower knows it.
     pub building: KnownBuilding,
+    /// Gives the distances to a goal.
     graph: Arc<ViewpointGraph>,
 }
 
 /// A text with its walk.
 pub struct WalkedText {
-    /// Its building's place in the list.
+    /// The index of its building in the list of scenes.
     pub scene: usize,
-    /// Its file's place in the list.
+    /// The index of its file in the list of files.
     pub(super) file: usize,
     /// Its words.
     pub words: String,
@@ -43,8 +45,8 @@ pub struct WalkedText {
     pub heading_rad: f64,
     /// For each viewpoint, its distance over the graph from the goal, metres.
     pub to_goal_m: Vec<f64>,
-    /// For each viewpoint, whether a walk that ends there succeeds: with an object, if the viewpoint sees it (REVERIE's rule), else if it
-    /// is near the goal (R2R's rule).
+    /// For each viewpoint, whether a walk that ends there succeeds. If the text has a target object, the object must be visible from
+    /// the viewpoint (REVERIE's rule). Otherwise the viewpoint must be near the goal (R2R's rule).
     pub(super) succeeds: Vec<bool>,
 }
 
@@ -74,7 +76,7 @@ pub fn read_texts(data: &Path, files: &[PathBuf]) -> Result<(Vec<FollowerScene>,
     };
     let scenes = names.into_par_iter().map(scene).collect::<Result<Vec<FollowerScene>, CommandError>>()?;
     let numbers: BTreeMap<&SceneId, usize> = scenes.iter().map(|scene| &scene.name).zip(0..).collect();
-    let of_episode = |episode: &Episode| {
+    let texts_of_episode = |episode: &Episode| {
         let number = numbers[&episode.scene];
         let object = episode.target_object.as_ref();
         let heading = episode.start_heading;
@@ -82,17 +84,18 @@ pub fn read_texts(data: &Path, files: &[PathBuf]) -> Result<(Vec<FollowerScene>,
         let heading_rad = path.frames.first().map_or(0.0, |frame| frame.pose.heading.rad());
         Ok(scenes[number].episode_texts(number, episode, heading_rad, object))
     };
-    let of_file = |episodes: &Vec<Episode>| {
-        let texts = episodes.par_iter().map(of_episode).collect::<Result<Vec<Vec<WalkedText>>, CommandError>>()?;
+    let texts_of_file = |episodes: &Vec<Episode>| {
+        let texts =
+            episodes.par_iter().map(texts_of_episode).collect::<Result<Vec<Vec<WalkedText>>, CommandError>>()?;
         Ok(texts.into_iter().flatten().collect())
     };
-    let texts = episodes.iter().map(of_file).collect::<Result<Vec<Vec<WalkedText>>, CommandError>>()?;
+    let texts = episodes.iter().map(texts_of_file).collect::<Result<Vec<Vec<WalkedText>>, CommandError>>()?;
     drop(numbers);
     Ok((scenes, texts))
 }
 
 impl FollowerScene {
-    /// The texts of an episode; none where its walk has no hop.
+    /// The texts of an episode; none if its walk has no hop or a viewpoint is unknown. `number` is the index of this scene.
     fn episode_texts(
         &self,
         number: usize,
@@ -105,8 +108,8 @@ impl FollowerScene {
         let (Some(walk), Some(goal)) = (walk.filter(|walk| walk.len() > 1), episode.viewpoints.last()) else {
             return Vec::new();
         };
-        let far_m = self.graph.distances_from(goal).unwrap_or_default();
-        let far_m = |viewpoint: &SurveyedViewpoint| far_m.get(&viewpoint.id).copied().unwrap_or(f64::INFINITY);
+        let distances_m = self.graph.distances_from(goal).unwrap_or_default();
+        let far_m = |viewpoint: &SurveyedViewpoint| distances_m.get(&viewpoint.id).copied().unwrap_or(f64::INFINITY);
         let to_goal_m: Vec<f64> = viewpoints.iter().map(far_m).collect();
         let sees = |viewpoint: &SurveyedViewpoint, object: &ObjectId| {
             viewpoint.known.things.iter().flatten().any(|label| label.object == *object)
@@ -130,7 +133,7 @@ impl FollowerScene {
 }
 
 impl WalkedText {
-    /// Success, and success weighted by path length, of a walk.
+    /// Success (0 or 1) and SPL, success weighted by path length, of a walk. `walked` are viewpoints by number.
     pub(super) fn score_walk(&self, scene: &FollowerScene, walked: &[usize]) -> [f64; 2] {
         let end = walked.last().copied().unwrap_or(self.walk[0]);
         if !self.succeeds[end] {
@@ -142,7 +145,7 @@ impl WalkedText {
     }
 }
 
-/// The means of success and SPL, in words.
+/// The means of success and SPL over all scores, as `SR 50.0 %, SPL 40.0 %`.
 pub(super) fn mean_scores(scores: impl IndexedParallelIterator<Item = [f64; 2]>) -> String {
     let count = scores.len().max(1) as f64;
     let [success, spl] = scores.reduce(|| [0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);

@@ -7,24 +7,27 @@ use wayword_follower::online::{
     OnwardSlope, OnwardWeights, WalkerDecision, WalkerHop, WalkerSighting, WalkingFollower,
 };
 
-/// Most hops of a walk in training.
+/// Hops of a walk in training at most; then the walk is cut off.
 const MOST_HOPS: usize = 16;
-/// Most hops of a walk that is scored.
+/// Hops of a walk that is scored at most; then it counts as ending where it is.
 const MOST_WALKED: usize = 60;
 
 /// The walker's viewpoint and heading.
 struct WalkerBody<'a> {
     scene: &'a FollowerScene,
+    /// The number of the viewpoint in the survey of the scene.
     here: usize,
     heading: Heading,
 }
 
 impl<'a> WalkerBody<'a> {
+    /// At the first viewpoint of a text's walk, with the heading of its start.
     fn at_start(scene: &'a FollowerScene, text: &WalkedText) -> Self {
         let heading = Heading::new(text.heading_rad).unwrap_or(Heading::NORTH);
         Self { scene, here: text.walk[0], heading }
     }
 
+    /// The hops from the walker's viewpoint, the room, and by which hop each thing lies.
     fn current_sighting(&self) -> WalkerSighting {
         let viewpoints = self.scene.survey.viewpoints();
         let here = &viewpoints[self.here];
@@ -37,6 +40,7 @@ impl<'a> WalkerBody<'a> {
         WalkerSighting { hops, room: here.known.room.clone(), things }
     }
 
+    /// Moves to the neighbour number `hop`, and turns in the direction of the move.
     fn take_hop(&mut self, hop: usize) {
         let viewpoints = self.scene.survey.viewpoints();
         let to = viewpoints[self.here].neighbours[hop];
@@ -45,7 +49,7 @@ impl<'a> WalkerBody<'a> {
         self.here = to;
     }
 
-    /// The hops of the shortest way to the goal.
+    /// The hops of the shortest way to the goal of a text, each as a number of a neighbour.
     fn shortest_way(&self, text: &WalkedText) -> Vec<usize> {
         let viewpoints = self.scene.survey.viewpoints();
         let (mut here, mut way) = (self.here, Vec::new());
@@ -76,13 +80,13 @@ pub(super) fn teach_walker(
     let mut reader = WalkingFollower::new(&text.guide, weights);
     let mut body = WalkerBody::at_start(scene, text);
     for _ in 0..MOST_HOPS {
-        let seen = body.current_sighting();
-        reader.look_around(&seen);
+        let sighting = body.current_sighting();
+        reader.look_around(&sighting);
         let way = body.shortest_way(text);
-        let right = way.first().copied();
+        let right_hop = way.first().copied();
         reader.learn_decision(way, slope);
-        let own = if is_own { Some(reader.decide_next(&seen)) } else { None };
-        match (own, right) {
+        let own_decision = if is_own { Some(reader.decide_next(&sighting)) } else { None };
+        match (own_decision, right_hop) {
             (Some(WalkerDecision::Go(hop)), _) => body.take_hop(hop),
             (_, Some(hop)) => {
                 reader.take_hop(hop);
@@ -93,7 +97,7 @@ pub(super) fn teach_walker(
     }
 }
 
-/// Success rate and SPL.
+/// Success rate and SPL (success weighted by path length) of the walks that the follower without a map takes.
 pub(super) fn score_walker(scenes: &[FollowerScene], texts: &[WalkedText], weights: &OnwardWeights) -> String {
     mean_scores(texts.par_iter().map(|text| {
         let scene = &scenes[text.scene];

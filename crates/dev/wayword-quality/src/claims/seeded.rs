@@ -12,8 +12,11 @@ use wayword_synthesis::walk::ObservedWalk;
 
 /// A path with the evidence from its labels and the evidence from its captions.
 pub(super) struct ClaimedPath {
+    /// The path, with the views that the eye looked at.
     pub(super) walk: ObservedWalk,
+    /// The evidence from the labels, which is the truth.
     pub(super) labels: Evidence,
+    /// The evidence from the captions of the eye.
     pub(super) captions: Evidence,
 }
 
@@ -35,10 +38,12 @@ pub(super) enum SeededClaimKind {
 }
 
 impl SeededClaimKind {
+    /// Whether claims of this kind are true.
     pub(super) fn is_true(self) -> bool {
         matches!(self, Self::True | Self::TrueGoal)
     }
 
+    /// Its name in the table.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::True => "true",
@@ -65,7 +70,7 @@ pub(super) struct ClaimNamePool {
 
 impl ClaimNamePool {
     pub(super) fn from_paths(known: &[ClaimedPath]) -> Self {
-        let frames = || known.iter().flat_map(|one| &one.labels.frames);
+        let frames = || known.iter().flat_map(|path| &path.labels.frames);
         let things: BTreeSet<&str> = frames().flat_map(thing_names).filter(|name| is_landmark(name)).collect();
         let rooms: BTreeSet<&str> = frames()
             .flat_map(|frame| &frame.rooms)
@@ -127,7 +132,7 @@ pub(super) fn make_claims(
     goals.extend(last.rooms.iter().filter(|room| room_name(room).is_some()).map(|room| stop_in(room)));
     add(SeededClaimKind::TrueGoal, goals, rng);
 
-    let stands =
+    let is_there =
         |name: &str| known.labels.frames.iter().flat_map(self::thing_names).any(|other| names_agree(other, name));
     let named = |frame: &FrameEvidence, name: &str| {
         self::thing_names(frame)
@@ -135,14 +140,14 @@ pub(super) fn make_claims(
             .any(|other| names_agree(other, name))
     };
     let was_named = |name: &str| known.captions.frames.iter().any(|frame| named(frame, name));
-    let elsewhere = names.things.iter().filter(|name| !stands(name) && !was_named(name)).map(|name| past(name));
+    let elsewhere = names.things.iter().filter(|name| !is_there(name) && !was_named(name)).map(|name| past(name));
     add(SeededClaimKind::False, elsewhere.collect(), rng);
 
     let sightings =
         known.walk.observations.iter().flat_map(|seen| &seen.looks).flat_map(|look| &look.caption.sightings);
-    let dreamt = sightings
-        .filter(|seen| seen.witness != WitnessAnswer::Denied && is_landmark(&seen.name) && !stands(&seen.name));
-    add(SeededClaimKind::Hallucinated, dreamt.map(|seen| past(&seen.name)).collect(), rng);
+    let hallucinated = sightings
+        .filter(|seen| seen.witness != WitnessAnswer::Denied && is_landmark(&seen.name) && !is_there(&seen.name));
+    add(SeededClaimKind::Hallucinated, hallucinated.map(|seen| past(&seen.name)).collect(), rng);
 
     let at_end = |name: &str| self::thing_names(last).any(|other| names_agree(other, name)) || named(last_seen, name);
     let wrong = names.things.iter().filter(|name| !at_end(name)).map(|name| stop(name));
@@ -167,6 +172,7 @@ fn looked_at(known: &ClaimedPath) -> Vec<(usize, &str, Option<Side>)> {
                 off_rad.abs() < look.gaze.horizontal_fov_rad / 2.0
             });
             let side = if turn_rad < 0.0 { Side::Left } else { Side::Right };
+            // Within 0.4 radians of the heading, the thing counts as ahead.
             let side = (turn_rad.abs() > 0.4).then_some(side);
             if is_in_view {
                 found.push((at, thing.name.as_str(), side));
@@ -176,6 +182,7 @@ fn looked_at(known: &ClaimedPath) -> Vec<(usize, &str, Option<Side>)> {
     found
 }
 
+/// The text with a side added to its end.
 fn with_side(text: String, side: Option<Side>) -> String {
     let side = match side {
         Some(Side::Left) => " on your left.",

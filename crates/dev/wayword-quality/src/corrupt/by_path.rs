@@ -6,7 +6,7 @@ use wayword_checks::Evidence;
 use wayword_core::{InstructionStyle, Path};
 use wayword_language::lexicon::names_agree;
 
-/// A path has no stairs if its heights differ by less than this, metres.
+/// A path has no stairs if its highest and its lowest eye differ by less than this, metres.
 const FLAT_M: f64 = 0.4;
 /// A thing is surely on one side if the angle from straight ahead to it is within this range, degrees.
 const SURE_OF_SIDE_DEG: std::ops::Range<f64> = 30.0..150.0;
@@ -37,8 +37,8 @@ pub(super) fn add_stairs(text: &str, path: &Path, style: &InstructionStyle, rng:
 pub(super) fn add_wrong_floor(text: &str, path: &Path, style: &InstructionStyle, rng: &mut impl Rng) -> Option<String> {
     let last = path.frames.last()?.level?;
     let others: Vec<u32> = (1..=4).filter(|level| *level != last).collect();
-    let says_floor = ["floor", "level", "stairs"].iter().any(|word| text.contains(word));
-    let level = others.choose(rng).filter(|_| !says_floor)?;
+    let names_floor = ["floor", "level", "stairs"].iter().any(|word| text.contains(word));
+    let level = others.choose(rng).filter(|_| !names_floor)?;
     at_end(text, &format!("on level {level}"), style)
 }
 
@@ -51,8 +51,8 @@ pub(super) fn replace_room(
 ) -> Option<String> {
     let rooms: Vec<&String> = evidence.frames.iter().flat_map(|frame| &frame.rooms).collect();
     let all_known = evidence.frames.iter().all(|frame| !frame.rooms.is_empty());
-    let told: Vec<&&String> = rooms.iter().filter(|room| find_word(text, room).is_some()).collect();
-    let name = told.choose(rng).filter(|_| all_known)?;
+    let named: Vec<&&String> = rooms.iter().filter(|room| find_word(text, room).is_some()).collect();
+    let name = named.choose(rng).filter(|_| all_known)?;
     let absent: Vec<&str> = ROOMS_WITH_ALIKE_NAMES
         .iter()
         .filter(|(_, alike)| !alike.iter().any(|part| rooms.iter().any(|room| room.contains(part))))
@@ -76,25 +76,25 @@ pub(super) fn put_on_wrong_side(
 ) -> Option<String> {
     let things =
         || evidence.frames.iter().enumerate().flat_map(|(at, frame)| frame.things.iter().map(move |thing| (at, thing)));
-    let side_of = |name: &str| {
+    let wrong_side = |name: &str| {
         let turns = things().filter(|(_, thing)| names_agree(&thing.name, name)).flat_map(|(at, thing)| {
             let leaving_rad = evidence.moves.get(at).map_or(0.0, |step| step.turn_rad);
             let deg = thing.turn_rad.map_or(0.0, f64::to_degrees);
             [deg, (deg - leaving_rad.to_degrees() + 180.0).rem_euclid(360.0) - 180.0]
         });
         let turns: Vec<f64> = turns.collect();
-        let all = |sign: f64| turns.iter().all(|deg| SURE_OF_SIDE_DEG.contains(&(deg * sign)));
-        if all(1.0) { Some("left") } else { all(-1.0).then_some("right") }
+        let all_on = |sign: f64| turns.iter().all(|deg| SURE_OF_SIDE_DEG.contains(&(deg * sign)));
+        if all_on(1.0) { Some("left") } else { all_on(-1.0).then_some("right") }
     };
-    let mut told: Vec<(usize, &str)> = things()
+    let mut named: Vec<(usize, &str)> = things()
         .filter_map(|(_, thing)| {
             find_word(text, &thing.name).map(|from| (from + thing.name.len(), thing.name.as_str()))
         })
         .filter(|(end, _)| text[*end..].is_empty() || text[*end..].starts_with(['.', ',']))
         .collect();
-    told.dedup();
-    let (end, name) = *told.choose(rng)?;
-    let wrong = side_of(name)?;
+    named.dedup();
+    let (end, name) = *named.choose(rng)?;
+    let wrong = wrong_side(name)?;
     in_form(format!("{} on your {wrong}{}", &text[..end], &text[end..]), style)
 }
 
@@ -111,6 +111,7 @@ pub(super) fn unasked_task(
     at_end(text, &format!("and clean the {object}"), style)
 }
 
+/// The text with words added before its last full stop.
 fn at_end(text: &str, words: &str, style: &InstructionStyle) -> Option<String> {
     let bare = text.trim_end_matches('.');
     in_form(format!("{bare} {words}{}", &text[bare.len()..]), style)

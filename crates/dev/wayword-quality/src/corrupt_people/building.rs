@@ -55,7 +55,7 @@ impl LabelledBuilding {
             .get(name)
             .map_or_else(|| vec![last], |alike| alike.iter().map(|name| singular_words(name)).collect());
         let has = |label: &Vec<String>, part: &Vec<String>| {
-            !part.is_empty() && label.windows(part.len()).any(|some| some == part.as_slice())
+            !part.is_empty() && label.windows(part.len()).any(|run| run == part.as_slice())
         };
         let named = self.things.iter().filter(|(label, _)| alike.iter().any(|part| has(label, part)));
         named.flat_map(|(_, places)| places.iter().copied()).collect()
@@ -80,9 +80,9 @@ pub(super) fn to_singular(word: &str) -> String {
     if word == "shelves" {
         return "shelf".to_owned();
     }
-    let es = ["ches", "shes", "xes", "sses"].iter().any(|end| word.ends_with(end));
-    let s = word.ends_with('s') && !["ss", "us", "is"].iter().any(|end| word.ends_with(end)) && word.len() > 3;
-    match (es, s) {
+    let drops_es = ["ches", "shes", "xes", "sses"].iter().any(|end| word.ends_with(end));
+    let drops_s = word.ends_with('s') && !["ss", "us", "is"].iter().any(|end| word.ends_with(end)) && word.len() > 3;
+    match (drops_es, drops_s) {
         (true, _) => word[..word.len() - 2].to_owned(),
         (_, true) => word[..word.len() - 1].to_owned(),
         _ => word.to_owned(),
@@ -91,10 +91,10 @@ pub(super) fn to_singular(word: &str) -> String {
 
 /// The plural of a noun.
 pub(super) fn to_plural(noun: &str) -> String {
-    let es = ["s", "x", "ch", "sh"].iter().any(|end| noun.ends_with(end));
+    let takes_es = ["s", "x", "ch", "sh"].iter().any(|end| noun.ends_with(end));
     match noun.strip_suffix("lf") {
         Some(stem) => format!("{stem}lves"),
-        None => format!("{noun}{}", if es { "es" } else { "s" }),
+        None => format!("{noun}{}", if takes_es { "es" } else { "s" }),
     }
 }
 

@@ -37,6 +37,7 @@ pub(super) enum PeopleCorruptionKind {
 }
 
 impl PeopleCorruptionKind {
+    /// All kinds.
     pub(super) const ALL: [Self; 11] = [
         Self::TurnFlipped,
         Self::ClimbFlipped,
@@ -69,20 +70,20 @@ impl PeopleCorruptionKind {
     }
 
     /// Draws the edits that corrupt a text; `None` where it has no words that this kind can change.
-    pub(super) fn draw_edits(self, told: &CorruptibleText<'_>, rng: &mut impl Rng) -> Option<Vec<WordEdit>> {
-        let one = |edits: Vec<WordEdit>, rng: &mut _| Some(vec![edits.choose(rng)?.clone()]);
+    pub(super) fn draw_edits(self, text: &CorruptibleText<'_>, rng: &mut impl Rng) -> Option<Vec<WordEdit>> {
+        let choose_one = |edits: Vec<WordEdit>, rng: &mut _| Some(vec![edits.choose(rng)?.clone()]);
         match self {
-            Self::TurnFlipped => one(turns::flipped_turns(told.text, &told.words), rng),
-            Self::ClimbFlipped => one(turns::flipped_climbs(told.text, &told.words), rng),
-            Self::SentenceTwice => repeats_and_swaps::repeat_sentence(told, rng),
-            Self::RoomLacking => replacements::replace_room(told, ReplacementDistance::Lacking, rng),
-            Self::RoomElsewhere => replacements::replace_room(told, ReplacementDistance::Far, rng),
-            Self::ObjectLacking => replacements::replace_object(told, ReplacementDistance::Lacking, rng),
-            Self::ObjectFar => replacements::replace_object(told, ReplacementDistance::Far, rng),
-            Self::ObjectNear => replacements::replace_object(told, ReplacementDistance::Near, rng),
-            Self::LandmarksSwapped => repeats_and_swaps::swap_mentions(told, rng),
-            Self::StopElsewhere => replacements::replace_stop(told, rng),
-            Self::OtherPath => repeats_and_swaps::other_path(told, rng),
+            Self::TurnFlipped => choose_one(turns::flipped_turns(text.text, &text.words), rng),
+            Self::ClimbFlipped => choose_one(turns::flipped_climbs(text.text, &text.words), rng),
+            Self::SentenceTwice => repeats_and_swaps::repeat_sentence(text, rng),
+            Self::RoomLacking => replacements::replace_room(text, ReplacementDistance::Lacking, rng),
+            Self::RoomElsewhere => replacements::replace_room(text, ReplacementDistance::Far, rng),
+            Self::ObjectLacking => replacements::replace_object(text, ReplacementDistance::Lacking, rng),
+            Self::ObjectFar => replacements::replace_object(text, ReplacementDistance::Far, rng),
+            Self::ObjectNear => replacements::replace_object(text, ReplacementDistance::Near, rng),
+            Self::LandmarksSwapped => repeats_and_swaps::swap_mentions(text, rng),
+            Self::StopElsewhere => replacements::replace_stop(text, rng),
+            Self::OtherPath => repeats_and_swaps::other_path(text, rng),
         }
     }
 }

@@ -2,18 +2,23 @@
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
+/// Lists of words, each under a name.
 type NamedWordLists = BTreeMap<&'static str, Vec<&'static str>>;
 
+/// Words of motions, such as "turn verbs" and "stairs".
 pub(super) static MOTION_WORDS: LazyLock<NamedWordLists> =
     LazyLock::new(|| parse_word_lists(include_str!("lists/motions.txt")));
+/// Small words around names, such as "determiners" and "room modifiers".
 pub(super) static SMALL_WORDS: LazyLock<NamedWordLists> =
     LazyLock::new(|| parse_word_lists(include_str!("lists/small_words.txt")));
+/// The names of each kind of room.
 pub(super) static ROOM_WORDS: LazyLock<NamedWordLists> =
     LazyLock::new(|| parse_word_lists(include_str!("lists/rooms.txt")));
+/// The names that can mean each object.
 pub(super) static OBJECT_WORDS: LazyLock<NamedWordLists> =
     LazyLock::new(|| parse_word_lists(include_str!("lists/objects.txt")));
 
-/// The lines of a list: a name, a colon, and its words.
+/// The lists of a file. Each line is a name, a colon, and its words.
 fn parse_word_lists(list: &'static str) -> NamedWordLists {
     let lines = list.lines().filter(|line| !line.starts_with('#'));
     let line = |line: &'static str| {

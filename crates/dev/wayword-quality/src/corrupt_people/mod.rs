@@ -39,7 +39,8 @@ use wayword_world::survey_scene;
 
 pub(crate) use text::clauses_around;
 
-/// Another path's text counts as wrong only if its goal is at least this far from the goal of the own path, metres.
+/// The text of another path counts as wrong only if that path ends at least this far from the goal of the text's own path,
+/// metres.
 const OTHER_GOAL_M: f64 = 3.0;
 
 /// The flags of `corrupt-people`.
@@ -100,6 +101,7 @@ pub fn write_corruptions(flags: &CorruptPeopleArgs, output: &CommandOutput) -> R
     Ok(())
 }
 
+/// The rooms and objects of every building that the episodes are in.
 fn survey_buildings(
     episodes: &[Episode],
     platform: &dyn Platform,
@@ -146,9 +148,9 @@ fn corrupt_texts(
             };
             let text = episode.instructions[place].as_str();
             let path = building.viewpoint_positions(&episode.viewpoints);
-            let told = CorruptibleText { text, words: split_words(text), path, building, others: &others };
+            let original = CorruptibleText { text, words: split_words(text), path, building, others: &others };
             let purpose = ["corrupt people", kind.name(), &episode.id, &place.to_string()];
-            let edits = kind.draw_edits(&told, &mut seeded_rng(seed, &purpose));
+            let edits = kind.draw_edits(&original, &mut seeded_rng(seed, &purpose));
             let Some((text, changes)) = edits.and_then(|edits| apply_edits(text, edits)) else { continue };
             let item = text_item(items.len(), episode, &text);
             corruptions.push(TextCorruption {
@@ -166,14 +168,14 @@ fn corrupt_texts(
     (items, corruptions)
 }
 
-/// The texts of all paths of the same building with another goal.
-fn texts_of_other_paths<'e>(of: &Episode, episodes: &'e [Episode], building: &LabelledBuilding) -> Vec<&'e str> {
+/// The texts of all paths in the building of `episode` with another goal.
+fn texts_of_other_paths<'e>(episode: &Episode, episodes: &'e [Episode], building: &LabelledBuilding) -> Vec<&'e str> {
     let goal = |episode: &Episode| {
         building.viewpoint_positions(&episode.viewpoints[episode.viewpoints.len().saturating_sub(1)..])
     };
-    let own = goal(of);
-    let is_other = |episode: &&Episode| {
-        episode.scene == of.scene && nearest_m(&own, &goal(episode)).is_some_and(|off_m| off_m >= OTHER_GOAL_M)
+    let own_goal = goal(episode);
+    let is_other = |other: &&Episode| {
+        other.scene == episode.scene && nearest_m(&own_goal, &goal(other)).is_some_and(|off_m| off_m >= OTHER_GOAL_M)
     };
     let others = episodes.iter().filter(is_other);
     others.flat_map(|episode| episode.instructions.iter().map(String::as_str)).collect()

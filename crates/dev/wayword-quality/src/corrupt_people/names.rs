@@ -7,7 +7,7 @@ use super::{
 };
 use wayword_core::DVec3;
 
-/// Most words of a name.
+/// The most words that a name has; a longer one is not found.
 const LONGEST_NAME: usize = 3;
 
 /// A room or an object that a text names.
@@ -32,8 +32,8 @@ pub(super) fn find_mentions(words: &[PlainWord], building: &LabelledBuilding) ->
     while at < words.len() {
         let longest = (1..=LONGEST_NAME).rev().find_map(|count| {
             let part = words.get(at..at + count)?;
-            let is_one = part[1..].iter().all(|word| word.is_joined) && ends_name(words, at + count);
-            let named = if is_one {
+            let is_whole_name = part[1..].iter().all(|word| word.is_joined) && ends_name(words, at + count);
+            let named = if is_whole_name {
                 room_mention(words, at, count).or_else(|| object_mention(words, at, count, building))
             } else {
                 None
@@ -51,6 +51,7 @@ fn ends_name(words: &[PlainWord], next: usize) -> bool {
     words.get(next).is_none_or(|word| !word.is_joined || has_word(&SMALL_WORDS, "after a name", &word.low))
 }
 
+/// Words in lower case with a space between them.
 fn joined_name(words: &[PlainWord]) -> String {
     words.iter().map(|word| word.low.as_str()).collect::<Vec<_>>().join(" ")
 }
@@ -62,6 +63,7 @@ fn kind_of(name: &str) -> Option<&'static str> {
     kinds.find(|(_, names)| name != "toilet" && names.contains(&name)).map(|(kind, _)| *kind)
 }
 
+/// A room that `count` words from `at` on name, with the modifiers before them.
 fn room_mention(words: &[PlainWord], at: usize, count: usize) -> Option<BuildingMention> {
     let kind = kind_of(&joined_name(&words[at..at + count]))?;
     let mut first = at;
@@ -78,6 +80,7 @@ fn room_mention(words: &[PlainWord], at: usize, count: usize) -> Option<Building
     })
 }
 
+/// An object that `count` words from `at` on name, where a determiner comes before it.
 fn object_mention(
     words: &[PlainWord],
     at: usize,
@@ -85,10 +88,10 @@ fn object_mention(
     building: &LabelledBuilding,
 ) -> Option<BuildingMention> {
     let name = joined_name(&words[at..at + count]);
-    let one = singular_words(&name);
-    let named = one.join(" ");
+    let singular = singular_words(&name);
+    let named = singular.join(" ");
     let in_list = OBJECT_WORDS.keys().find(|object| **object == named).map(|object| (*object).to_owned());
-    let is_known = in_list.is_some() || building.has_label(&one);
+    let is_known = in_list.is_some() || building.has_label(&singular);
     let is_ignored = has_word(&SMALL_WORDS, "ignored", &named) || has_word(&SMALL_WORDS, "ignored", &name);
     if !is_known || is_ignored || kind_of(&named).is_some() || !is_determined(words, at) {
         return None;
@@ -125,6 +128,7 @@ fn is_determined(words: &[PlainWord], at: usize) -> bool {
     false
 }
 
+/// The article "a" or "an" right before a word.
 fn article_before(words: &[PlainWord], at: usize) -> Option<[usize; 2]> {
     let before = words.get(at.checked_sub(1)?).filter(|_| words[at].is_joined)?;
     matches!(before.low.as_str(), "a" | "an").then_some(before.span)

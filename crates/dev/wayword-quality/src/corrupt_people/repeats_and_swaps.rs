@@ -10,32 +10,32 @@ use super::{
 use crate::key::WordEdit;
 use rand::{Rng, seq::IndexedRandom};
 
-/// A sentence needs this many words to be repeated.
+/// A sentence needs at least this many words to be repeated.
 const SENTENCE_WORDS: usize = 4;
-/// A thing is at a viewpoint if it is nearer than this, metres.
+/// A room or an object is at a viewpoint if it is at most this far away, metres.
 const AT_M: f64 = 3.0;
 
 /// Repeats a sentence that commands a motion.
-pub(super) fn repeat_sentence(told: &CorruptibleText<'_>, rng: &mut impl Rng) -> Option<Vec<WordEdit>> {
+pub(super) fn repeat_sentence(original: &CorruptibleText<'_>, rng: &mut impl Rng) -> Option<Vec<WordEdit>> {
     let moves = |sentence: &&[usize; 2]| {
-        let words = split_words(&told.text[sentence[0]..sentence[1]]);
+        let words = split_words(&original.text[sentence[0]..sentence[1]]);
         words.len() >= SENTENCE_WORDS && words.iter().any(|word| has_word(&MOTION_WORDS, "motion", &word.low))
     };
-    let all = split_sentences(told.text);
+    let all = split_sentences(original.text);
     let span = **all.iter().filter(moves).collect::<Vec<_>>().choose(rng)?;
-    let sentence = &told.text[span[0]..span[1]];
+    let sentence = &original.text[span[0]..span[1]];
     let stop = if sentence.ends_with(['.', '!', '?']) { "" } else { "." };
     Some(vec![WordEdit { span, now: format!("{sentence}{stop} {sentence}") }])
 }
 
 /// Swaps two rooms or two objects that are in different clauses. Both must be on the path, and no viewpoint may have both, because
 /// the swapped text would be true there.
-pub(super) fn swap_mentions(told: &CorruptibleText<'_>, rng: &mut impl Rng) -> Option<Vec<WordEdit>> {
-    let clauses = split_clauses(told.text);
+pub(super) fn swap_mentions(original: &CorruptibleText<'_>, rng: &mut impl Rng) -> Option<Vec<WordEdit>> {
+    let clauses = split_clauses(original.text);
     let clause = |named: &BuildingMention| clauses.iter().position(|clause| named.span[0] < clause[1]);
-    let names = find_mentions(&told.words, told.building);
+    let names = find_mentions(&original.words, original.building);
     let known: Vec<(&BuildingMention, Vec<usize>)> =
-        names.iter().map(|named| (named, places_on_path(told, named))).collect();
+        names.iter().map(|named| (named, places_on_path(original, named))).collect();
     let mut pairs = Vec::new();
     for (first, (a, at_a)) in known.iter().enumerate() {
         for (b, at_b) in &known[first + 1..] {
@@ -48,21 +48,21 @@ pub(super) fn swap_mentions(told: &CorruptibleText<'_>, rng: &mut impl Rng) -> O
         }
     }
     let (a, b) = *pairs.choose(rng)?;
-    let words = |named: &BuildingMention| told.text[named.span[0]..named.span[1]].to_owned();
+    let words = |named: &BuildingMention| original.text[named.span[0]..named.span[1]].to_owned();
     Some(vec![WordEdit { span: a.span, now: words(b) }, WordEdit { span: b.span, now: words(a) }])
 }
 
-/// The places of the path's viewpoints at which the named room or object is.
-fn places_on_path(told: &CorruptibleText<'_>, named: &BuildingMention) -> Vec<usize> {
-    let places = named.possible_positions(told.building);
-    let is_at = |at: &usize| nearest_m(&told.path[*at..=*at], &places).is_some_and(|off_m| off_m <= AT_M);
-    (0..told.path.len()).filter(is_at).collect()
+/// The indices of the path's viewpoints at which the named room or object is.
+fn places_on_path(original: &CorruptibleText<'_>, named: &BuildingMention) -> Vec<usize> {
+    let places = named.possible_positions(original.building);
+    let is_at = |at: &usize| nearest_m(&original.path[*at..=*at], &places).is_some_and(|off_m| off_m <= AT_M);
+    (0..original.path.len()).filter(is_at).collect()
 }
 
 /// Replaces the whole text by that of another path.
-pub(super) fn other_path(told: &CorruptibleText<'_>, rng: &mut impl Rng) -> Option<Vec<WordEdit>> {
-    let other = told.others.choose(rng).filter(|other| **other != told.text)?;
-    Some(vec![WordEdit { span: [0, told.text.len()], now: (*other).to_owned() }])
+pub(super) fn other_path(original: &CorruptibleText<'_>, rng: &mut impl Rng) -> Option<Vec<WordEdit>> {
+    let other = original.others.choose(rng).filter(|other| **other != original.text)?;
+    Some(vec![WordEdit { span: [0, original.text.len()], now: (*other).to_owned() }])
 }
 
 #[cfg(test)]
@@ -78,13 +78,15 @@ mod tests {
     fn all(text: &str, change: impl Fn(&CorruptibleText<'_>, u64) -> Option<Vec<WordEdit>>) -> BTreeSet<String> {
         let building = made_up_building();
         let path = building.viewpoint_positions(&path(&[0, 2, 3]));
-        let told = CorruptibleText { text, words: split_words(text), path, building: &building, others: &["Go home."] };
-        (0..40).filter_map(|seed| Some(apply_edits(text, change(&told, seed)?)?.0)).collect()
+        let original =
+            CorruptibleText { text, words: split_words(text), path, building: &building, others: &["Go home."] };
+        (0..40).filter_map(|seed| Some(apply_edits(text, change(&original, seed)?)?.0)).collect()
     }
 
     #[test]
     fn twice_repeats_only_a_sentence_that_moves() {
-        let twice = |text: &str| all(text, |told, seed| repeat_sentence(told, &mut seeded_rng(seed, &["test"])));
+        let twice =
+            |text: &str| all(text, |original, seed| repeat_sentence(original, &mut seeded_rng(seed, &["test"])));
         let of_two = twice("Walk past the couch. The tv is on the left. Stop.");
         assert_eq!(
             of_two,
@@ -96,7 +98,8 @@ mod tests {
     /// The bench is at the first viewpoint, the couch at the second, and the coffee table at the second and third.
     #[test]
     fn swapped_exchanges_names_only_if_the_text_becomes_wrong() {
-        let swapped = |text: &str| all(text, |told, seed| swap_mentions(told, &mut seeded_rng(seed, &["test"])));
+        let swapped =
+            |text: &str| all(text, |original, seed| swap_mentions(original, &mut seeded_rng(seed, &["test"])));
         assert_eq!(swapped("Pass the bench, then the couch."), ["Pass the couch, then the bench.".to_owned()].into());
         for text in
             ["Pass the bench to the couch.", "Pass the couch, then the coffee table.", "Pass the bench, then the sink."]
@@ -107,7 +110,7 @@ mod tests {
 
     #[test]
     fn other_path_replaces_the_whole_text_by_a_different_one() {
-        let other = |text: &str| all(text, |told, seed| other_path(told, &mut seeded_rng(seed, &["test"])));
+        let other = |text: &str| all(text, |original, seed| other_path(original, &mut seeded_rng(seed, &["test"])));
         assert_eq!(other("Walk past the couch."), ["Go home.".to_owned()].into());
         assert_eq!(other("Go home."), BTreeSet::new());
     }

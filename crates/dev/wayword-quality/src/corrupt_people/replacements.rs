@@ -30,6 +30,7 @@ pub(super) enum ReplacementDistance {
 }
 
 impl ReplacementDistance {
+    /// Whether a new room may be this far from the path; `None` means that the building has no such room.
     fn has_room(self, off_m: Option<f64>) -> bool {
         match self {
             Self::Lacking => off_m.is_none(),
@@ -38,6 +39,7 @@ impl ReplacementDistance {
         }
     }
 
+    /// Whether a new object may be this far from the path; `None` means that the building has no such object.
     fn has_object(self, off_m: Option<f64>) -> bool {
         match self {
             Self::Lacking => off_m.is_none(),
@@ -49,57 +51,64 @@ impl ReplacementDistance {
 
 /// Replaces one room of the text by another.
 pub(super) fn replace_room(
-    told: &CorruptibleText<'_>,
-    whereabouts: ReplacementDistance,
-    rng: &mut impl Rng,
-) -> Option<Vec<WordEdit>> {
-    let named = find_mentions(&told.words, told.building).into_iter().filter(|named| named.is_room).collect::<Vec<_>>();
-    let old = named.choose(rng)?;
-    Some(vec![replacement_edit(told.text, old, other_room(told, old, whereabouts, &told.path, rng)?)])
-}
-
-/// Replaces one object of the text by another.
-pub(super) fn replace_object(
-    told: &CorruptibleText<'_>,
+    original: &CorruptibleText<'_>,
     whereabouts: ReplacementDistance,
     rng: &mut impl Rng,
 ) -> Option<Vec<WordEdit>> {
     let named =
-        find_mentions(&told.words, told.building).into_iter().filter(|named| !named.is_room).collect::<Vec<_>>();
+        find_mentions(&original.words, original.building).into_iter().filter(|named| named.is_room).collect::<Vec<_>>();
     let old = named.choose(rng)?;
-    Some(vec![replacement_edit(told.text, old, other_object(told, old, whereabouts, &told.path, rng)?)])
+    Some(vec![replacement_edit(original.text, old, other_room(original, old, whereabouts, &original.path, rng)?)])
+}
+
+/// Replaces one object of the text by another.
+pub(super) fn replace_object(
+    original: &CorruptibleText<'_>,
+    whereabouts: ReplacementDistance,
+    rng: &mut impl Rng,
+) -> Option<Vec<WordEdit>> {
+    let named = find_mentions(&original.words, original.building)
+        .into_iter()
+        .filter(|named| !named.is_room)
+        .collect::<Vec<_>>();
+    let old = named.choose(rng)?;
+    Some(vec![replacement_edit(original.text, old, other_object(original, old, whereabouts, &original.path, rng)?)])
 }
 
 /// Replaces the place at which the text's last sentence commands to stop by one that is far from the last viewpoint.
-pub(super) fn replace_stop(told: &CorruptibleText<'_>, rng: &mut impl Rng) -> Option<Vec<WordEdit>> {
-    let last = split_sentences(told.text).pop()?;
+pub(super) fn replace_stop(original: &CorruptibleText<'_>, rng: &mut impl Rng) -> Option<Vec<WordEdit>> {
+    let last = split_sentences(original.text).pop()?;
     let stops = |low: &str| has_word(&MOTION_WORDS, "stop", low);
-    let verb = told.words.iter().rfind(|word| word.span[0] >= last[0] && stops(&word.low))?;
-    let old = find_mentions(&told.words, told.building).into_iter().find(|named| named.span[0] > verb.span[1])?;
-    let end = told.path.last().map(std::slice::from_ref)?;
+    let verb = original.words.iter().rfind(|word| word.span[0] >= last[0] && stops(&word.low))?;
+    let old =
+        find_mentions(&original.words, original.building).into_iter().find(|named| named.span[0] > verb.span[1])?;
+    let end = original.path.last().map(std::slice::from_ref)?;
     let new = if old.is_room {
-        other_room(told, &old, ReplacementDistance::Far, end, rng)?
+        other_room(original, &old, ReplacementDistance::Far, end, rng)?
     } else {
-        other_object(told, &old, ReplacementDistance::Far, end, rng)?
+        other_object(original, &old, ReplacementDistance::Far, end, rng)?
     };
-    Some(vec![replacement_edit(told.text, &old, new)])
+    Some(vec![replacement_edit(original.text, &old, new)])
 }
 
+/// Another room than `old`, at the asked distance from the positions `from`.
 fn other_room(
-    told: &CorruptibleText<'_>,
+    original: &CorruptibleText<'_>,
     old: &BuildingMention,
     whereabouts: ReplacementDistance,
     from: &[DVec3],
     rng: &mut impl Rng,
 ) -> Option<&'static str> {
-    let fits =
-        |kind: &&&str| **kind != old.name && whereabouts.has_room(nearest_m(from, &told.building.room_positions(kind)));
+    let fits = |kind: &&&str| {
+        **kind != old.name && whereabouts.has_room(nearest_m(from, &original.building.room_positions(kind)))
+    };
     let others: Vec<_> = words_under(&SMALL_WORDS, "rooms to say").iter().filter(fits).collect();
     others.choose(rng).map(|kind| **kind)
 }
 
+/// Another object than `old`, at the asked distance from the positions `from`.
 fn other_object(
-    told: &CorruptibleText<'_>,
+    original: &CorruptibleText<'_>,
     old: &BuildingMention,
     whereabouts: ReplacementDistance,
     from: &[DVec3],
@@ -108,7 +117,7 @@ fn other_object(
     let last_of_old = old.name.split(' ').next_back()?;
     let fits = |(name, alike): &(&&'static str, &Vec<&'static str>)| {
         let is_same = **name == old.name || alike.contains(&old.name.as_str()) || alike.contains(&last_of_old);
-        !is_same && whereabouts.has_object(nearest_m(from, &told.building.object_positions(name)))
+        !is_same && whereabouts.has_object(nearest_m(from, &original.building.object_positions(name)))
     };
     let others: Vec<&str> = OBJECT_WORDS.iter().filter(fits).map(|(name, _)| *name).collect();
     others.choose(rng).copied()
@@ -152,17 +161,17 @@ mod tests {
     ) -> BTreeSet<String> {
         let building: LabelledBuilding = made_up_building();
         let path = building.viewpoint_positions(&path(places));
-        let told = CorruptibleText { text, words: split_words(text), path, building: &building, others: &[] };
-        let texts = (0..300).filter_map(|seed| Some(apply_edits(text, replace(&told, seed)?)?.0));
+        let original = CorruptibleText { text, words: split_words(text), path, building: &building, others: &[] };
+        let texts = (0..300).filter_map(|seed| Some(apply_edits(text, replace(&original, seed)?)?.0));
         texts.collect()
     }
 
     fn rooms(text: &str, places: &[usize], whereabouts: ReplacementDistance) -> BTreeSet<String> {
-        all(text, places, |told, seed| replace_room(told, whereabouts, &mut seeded_rng(seed, &["test"])))
+        all(text, places, |original, seed| replace_room(original, whereabouts, &mut seeded_rng(seed, &["test"])))
     }
 
     fn objects(text: &str, places: &[usize], whereabouts: ReplacementDistance) -> BTreeSet<String> {
-        all(text, places, |told, seed| replace_object(told, whereabouts, &mut seeded_rng(seed, &["test"])))
+        all(text, places, |original, seed| replace_object(original, whereabouts, &mut seeded_rng(seed, &["test"])))
     }
 
     #[test]
@@ -191,8 +200,9 @@ mod tests {
 
     #[test]
     fn only_the_place_where_the_text_stops_is_replaced_by_one_far_from_the_last_viewpoint() {
-        let stops =
-            |text: &str| all(text, &[0, 2, 3], |told, seed| replace_stop(told, &mut seeded_rng(seed, &["test"])));
+        let stops = |text: &str| {
+            all(text, &[0, 2, 3], |original, seed| replace_stop(original, &mut seeded_rng(seed, &["test"])))
+        };
         let objects = stops("Pass the bench. Stop next to the couch.");
         // Of all listed objects, only the vase is 8 m off.
         assert_eq!(objects, ["Pass the bench. Stop next to the vase.".to_owned()].into());

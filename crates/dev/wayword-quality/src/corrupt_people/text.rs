@@ -12,7 +12,7 @@ const CLAUSE_STARTS: [&str; 2] = ["then", "and"];
 pub(super) struct PlainWord {
     /// Byte range in the text.
     pub(super) span: [usize; 2],
-    /// In lower case.
+    /// The word in lower case.
     pub(super) low: String,
     /// Whether only spaces separate it from the word before it. A mark between them breaks a phrase.
     pub(super) is_joined: bool,
@@ -45,8 +45,8 @@ pub(crate) fn split_clauses(text: &str) -> Vec<[usize; 2]> {
     let mut from = 0;
     for to in cuts.into_iter().chain([text.len()]) {
         // A part without a word of its own (", and then") belongs to the next one.
-        let says = split_words(&text[from..to]).iter().any(|word| !CLAUSE_STARTS.contains(&word.low.as_str()));
-        if says {
+        let has_own_word = split_words(&text[from..to]).iter().any(|word| !CLAUSE_STARTS.contains(&word.low.as_str()));
+        if has_own_word {
             clauses.push([from, to]);
             from = to;
         }

@@ -15,6 +15,7 @@ pub(super) fn flipped_turns(text: &str, words: &[PlainWord]) -> Vec<WordEdit> {
     sides.filter_map(|(_, word)| flip_word(text, word, &[("left", "right")])).collect()
 }
 
+/// Whether the word at `at` is the side of a turn, by the verb before it and the word behind it.
 fn is_turn(words: &[PlainWord], at: usize) -> bool {
     let word = &words[at];
     if !matches!(word.low.as_str(), "left" | "right") {
@@ -23,11 +24,11 @@ fn is_turn(words: &[PlainWord], at: usize) -> bool {
     let next = words.get(at + 1).filter(|next| next.is_joined).map(|next| next.low.as_str());
     let may_follow = |list: &str| next.is_none_or(|next| has_word(&MOTION_WORDS, list, next));
     let verb = word_before(words, at, "between", MAX_WORDS_BEFORE_SIDE);
-    let is = |list: &str| verb.is_some_and(|verb| has_word(&MOTION_WORDS, list, verb));
+    let verb_is_in = |list: &str| verb.is_some_and(|verb| has_word(&MOTION_WORDS, list, verb));
     // "Left at the sofa."
     let is_bare = || starts_clause(words, at) && next.is_some_and(|next| has_word(&MOTION_WORDS, "after turn", next));
-    let turns = is("turn verbs") || is("take verbs");
-    turns && may_follow("after turn") || is("walk verbs") && may_follow("after walk") || is_bare()
+    let turns = verb_is_in("turn verbs") || verb_is_in("take verbs");
+    turns && may_follow("after turn") || verb_is_in("walk verbs") && may_follow("after walk") || is_bare()
 }
 
 /// The nearest word before `at` that is not in `list`, at most `most` words of the list further back. A mark ends the search.
@@ -60,6 +61,7 @@ pub(super) fn flipped_climbs(text: &str, words: &[PlainWord]) -> Vec<WordEdit> {
     climbing.filter_map(|word| flip_word(text, word, &pairs)).collect()
 }
 
+/// Whether the word at `at` is the direction of a climb, by the verb before it and the stairs around it.
 fn is_climb(words: &[PlainWord], at: usize) -> bool {
     let is_verb = |before: Option<&str>| before.is_some_and(|word| has_word(&MOTION_WORDS, "climb verbs", word));
     match words[at].low.as_str() {

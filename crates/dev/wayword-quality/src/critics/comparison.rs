@@ -9,7 +9,7 @@ use wayword_run::{error::CommandError, run_folder::read_lines};
 /// The file with the success of every walk.
 pub(super) const FOLLOWED_FILE: &str = "followed.jsonl";
 
-/// The fields of a walk that are read.
+/// The fields of a walk in `walks.jsonl` that are read.
 #[derive(Debug, Deserialize)]
 struct ComparedWalk {
     set: String,
@@ -26,25 +26,25 @@ pub(super) fn read_comparison(folder: &Path) -> Result<CriticMaterial, CommandEr
         let problem = format!("{}: no agent walked by a text there", folder.display());
         return Err(CommandError::usage(problem, "give a folder that `wayword compare` has finished"));
     }
-    let said: BTreeMap<(&str, &str, usize), &str> =
-        walked.iter().map(|one| ((&*one.set, &*one.item, one.text_index), &*one.text)).collect();
+    let text_by_key: BTreeMap<(&str, &str, usize), &str> =
+        walked.iter().map(|walk| ((&*walk.set, &*walk.item, walk.text_index), &*walk.text)).collect();
     let mut numbers: BTreeMap<(&str, &str, usize), usize> = BTreeMap::new();
     let mut texts = Vec::new();
     let mut agents: BTreeMap<&str, Vec<(usize, f64)>> = BTreeMap::new();
-    for one in &followed {
-        let key = (&*one.set, &*one.item, one.text_index);
-        let Some(text) = said.get(&key) else { continue };
+    for result in &followed {
+        let key = (&*result.set, &*result.item, result.text_index);
+        let Some(text) = text_by_key.get(&key) else { continue };
         // Every agent walks by the same text: it counts once.
         let number = *numbers.entry(key).or_insert_with(|| {
             texts.push(OutcomeText {
-                item: Some(one.item.clone()),
-                path: one.path.clone(),
-                scene: one.scene.clone(),
+                item: Some(result.item.clone()),
+                path: result.path.clone(),
+                scene: result.scene.clone(),
                 text: (*text).to_owned(),
             });
             texts.len() - 1
         });
-        agents.entry(&one.agent).or_default().push((number, one.success));
+        agents.entry(&result.agent).or_default().push((number, result.success));
     }
     let outcomes = agents.into_iter().map(|(agent, of_texts)| TextOutcomes {
         who: agent.to_owned(),

@@ -49,12 +49,13 @@ pub(super) fn correlate_critic(
     let drawn: Vec<Vec<usize>> = (0..flags.resamples).map(draw).collect();
     let whole: Vec<usize> = (0..scenes.len()).collect();
     let with_interval = |correlation: fn(&[f64], &[f64]) -> Option<f64>| {
-        let of = |drawn: &Vec<usize>| {
-            let (figures, came): (Vec<f64>, Vec<f64>) = drawn.iter().flat_map(|at| scenes[*at].iter().copied()).unzip();
-            correlation(&figures, &came)
+        let correlate_scenes = |drawn: &Vec<usize>| {
+            let (figures, outcomes): (Vec<f64>, Vec<f64>) =
+                drawn.iter().flat_map(|at| scenes[*at].iter().copied()).unzip();
+            correlation(&figures, &outcomes)
         };
-        let value = of(&whole)?;
-        let [low, high] = percentile_interval(drawn.iter().filter_map(of).collect(), CONFIDENCE_LEVEL)?;
+        let value = correlate_scenes(&whole)?;
+        let [low, high] = percentile_interval(drawn.iter().filter_map(correlate_scenes).collect(), CONFIDENCE_LEVEL)?;
         Some([value, low, high])
     };
     CriticCorrelation {
@@ -71,7 +72,7 @@ pub(super) fn correlate_critic(
 
 /// The lines of the table that is printed.
 pub(super) fn table_lines(found: &[CriticCorrelation]) -> Vec<String> {
-    let cell = |of: Option<[f64; 3]>| match of {
+    let cell = |correlation: Option<[f64; 3]>| match correlation {
         Some([value, low, high]) => format!("{value:+.2} [{low:+.2}, {high:+.2}]"),
         None => "- (it never varies)".to_owned(),
     };
@@ -79,9 +80,9 @@ pub(super) fn table_lines(found: &[CriticCorrelation]) -> Vec<String> {
         "{:<20} {:<11} {:<15} {:>22} {:>22} {:>6} {:>7} {:>6}",
         "who", "outcome", "critic", "Kendall's tau-b", "Spearman", "texts", "answers", "scenes"
     );
-    let row = |one: &CriticCorrelation| {
-        let CriticCorrelation { who, outcome, critic, texts, answers, scenes, .. } = one;
-        let (tau_b, spearman) = (cell(one.tau_b), cell(one.spearman));
+    let row = |correlation: &CriticCorrelation| {
+        let CriticCorrelation { who, outcome, critic, texts, answers, scenes, .. } = correlation;
+        let (tau_b, spearman) = (cell(correlation.tau_b), cell(correlation.spearman));
         format!("{who:<20} {outcome:<11} {critic:<15} {tau_b:>22} {spearman:>22} {texts:>6} {answers:>7} {scenes:>6}")
     };
     [heading].into_iter().chain(found.iter().map(row)).collect()

@@ -11,21 +11,25 @@ use wayword_run::{error::CommandError, interrupt, output::CommandOutput};
 /// A critic with a figure for each text; `None` for a text that it cannot judge.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct CriticFigures {
+    /// The critic's name in the table.
     pub(super) name: &'static str,
+    /// One figure for each text, in the order of the texts.
     pub(super) figures: Vec<Option<f64>>,
 }
 
 /// The length of the texts in words. A critic that correlates with success no better than the length is of little use.
 pub(super) fn word_counts(texts: &[OutcomeText]) -> CriticFigures {
-    CriticFigures { name: "words", figures: texts.iter().map(|told| Some(word_count(&told.text) as f64)).collect() }
+    CriticFigures { name: "words", figures: texts.iter().map(|text| Some(word_count(&text.text) as f64)).collect() }
 }
 
 /// BLEU-4, ROUGE-L and CIDEr-D of each text, with other people's texts about its item or path as references.
 pub(super) fn by_people(texts: &[OutcomeText], people: &PeopleTexts) -> [CriticFigures; 3] {
     let mut vocabulary = CaptionVocabulary::default();
-    let mut text = |said: &str| vocabulary.number_text(&ptb_tokens(&collapse_white_space(said)));
-    let tokens: Vec<(NumberedText, Vec<NumberedText>)> =
-        texts.iter().map(|told| (text(&told.text), people.others_about(told).map(&mut text).collect())).collect();
+    let mut number_text = |words: &str| vocabulary.number_text(&ptb_tokens(&collapse_white_space(words)));
+    let tokens: Vec<(NumberedText, Vec<NumberedText>)> = texts
+        .iter()
+        .map(|text| (number_text(&text.text), people.others_about(text).map(&mut number_text).collect()))
+        .collect();
     let judged: Vec<usize> = (0..tokens.len()).filter(|at| !tokens[*at].1.is_empty()).collect();
     let row = |at: &usize| CaptionRow { text: &tokens[*at].0, references: tokens[*at].1.iter().collect() };
     let rows: Vec<CaptionRow<'_>> = judged.iter().map(row).collect();
@@ -51,10 +55,10 @@ pub(super) fn by_pictures(
     let mut found =
         ["CLIP, sentences", "CLIP, whole"].map(|name| CriticFigures { name, figures: Vec::with_capacity(texts.len()) });
     let bar = output.progress_bar(texts.len(), "texts");
-    for told in texts {
+    for text in texts {
         interrupt::check_interrupt()?;
-        let pictures = critic.frames.views_for_item(told.item.as_deref().unwrap_or_default(), &told.path)?;
-        let agreed = critic.score_texts(&pictures, &[&told.text])?.into_iter().next().flatten();
+        let pictures = critic.frames.views_for_item(text.item.as_deref().unwrap_or_default(), &text.path)?;
+        let agreed = critic.score_texts(&pictures, &[&text.text])?.into_iter().next().flatten();
         let [parts, whole] = &mut found;
         parts.figures.push(agreed.map(|agreed| agreed.parts));
         whole.figures.push(agreed.map(|agreed| agreed.whole));

@@ -52,6 +52,7 @@ struct OutcomeText {
     /// The path that it was given for ([`episodes::path_name`]).
     path: String,
     scene: String,
+    /// Its words.
     text: String,
 }
 
@@ -60,11 +61,11 @@ struct OutcomeText {
 struct TextOutcomes {
     /// The agent, or the group of people, that walked or rated.
     who: String,
-    /// The measure.
+    /// The name of the measure, such as "success".
     outcome: String,
-    /// Numbers of texts, each with the mean over the answers to it.
+    /// Indices of texts in [`CriticMaterial::texts`], each with the mean over the answers to the text.
     of_texts: Vec<(usize, f64)>,
-    /// How many answers.
+    /// How many answers the texts have together.
     answers: usize,
 }
 
@@ -94,11 +95,11 @@ impl PeopleTexts {
     }
 
     /// Other people's texts about the same item, or else the same path.
-    fn others_about<'a>(&'a self, told: &'a OutcomeText) -> impl Iterator<Item = &'a str> {
-        let of_item = told.item.as_ref().and_then(|item| self.items.get(item));
-        let said = of_item.or_else(|| self.paths.get(&told.path));
+    fn others_about<'a>(&'a self, text: &'a OutcomeText) -> impl Iterator<Item = &'a str> {
+        let of_item = text.item.as_ref().and_then(|item| self.items.get(item));
+        let texts = of_item.or_else(|| self.paths.get(&text.path));
         // A person's text is not compared with itself.
-        said.into_iter().flatten().map(String::as_str).filter(|said| *said != told.text)
+        texts.into_iter().flatten().map(String::as_str).filter(|other| *other != text.text)
     }
 }
 
@@ -133,8 +134,8 @@ fn find_correlations(flags: &CriticsArgs, output: &CommandOutput) -> Result<Vec<
         critics.extend(figures::by_pictures(&material.texts, &critic, output)?);
     }
     let texts = &material.texts;
-    let of = |outcomes| critics.iter().map(move |critic| correlate_critic(texts, outcomes, critic, flags));
-    Ok(material.outcomes.iter().flat_map(of).collect())
+    let correlations = |outcomes| critics.iter().map(move |critic| correlate_critic(texts, outcomes, critic, flags));
+    Ok(material.outcomes.iter().flat_map(correlations).collect())
 }
 
 fn read_material(flags: &CriticsArgs) -> Result<CriticMaterial, CommandError> {

@@ -11,13 +11,16 @@ use wayword_run::error::CommandError;
 
 /// The file with the format, the mode and the questions of the study.
 pub(super) const RESULTS_FILE: &str = "results.json";
+/// The file with the texts.
 const ITEMS_FILE: &str = "items.csv";
+/// The file with the answers of people.
 const ANSWERS_FILE: &str = "answers.csv";
 /// The format of `results.json` that is read.
 const RESULTS_FORMAT: &str = "wayword-study-results/1";
-/// The figures of walks that are correlated. The ratings are correlated too; `results.json` names their questions and statements.
+/// The columns with figures of walks that are correlated. The ratings are correlated too; `results.json` names their
+/// questions and statements.
 const OF_WALKS: [&str; 3] = ["success", "spl", "ndtw"];
-/// The kind of items with a text that was written for another path.
+/// The kind, in column `kind`, of items with a text that was written for another path.
 const OTHER_PATH: &str = "other-path";
 
 /// The fields of `results.json` that are read.
@@ -54,7 +57,7 @@ pub(super) fn read_results(folder: &Path, finished: bool) -> Result<CriticMateri
                 given.entry(*number).or_default().push(answers.number_cell(row, measure)?);
             }
         }
-        let of = |who: &str, takes: &dyn Fn(usize) -> bool| {
+        let outcomes_for = |who: &str, takes: &dyn Fn(usize) -> bool| {
             let given = given.iter().filter(|(number, _)| takes(**number));
             let mean = |values: &Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
             TextOutcomes {
@@ -64,13 +67,13 @@ pub(super) fn read_results(folder: &Path, finished: bool) -> Result<CriticMateri
                 of_texts: given.map(|(number, values)| (*number, mean(values))).collect(),
             }
         };
-        outcomes.push(of("people", &|_| true));
+        outcomes.push(outcomes_for("people", &|_| true));
         // Texts of another path are wrong on purpose. A critic that detects them agrees with people more than it does on real texts.
         if !elsewhere.is_empty() {
-            outcomes.push(of("people, own path", &|number| !elsewhere.contains(&number)));
+            outcomes.push(outcomes_for("people, own path", &|number| !elsewhere.contains(&number)));
         }
     }
-    if outcomes.iter().all(|one| one.answers == 0) {
+    if outcomes.iter().all(|outcome| outcome.answers == 0) {
         let problem = format!("{}: it has no answer that counts", folder.join(ANSWERS_FILE).display());
         return Err(CommandError::usage(problem, "wait until people have answered, and write the results again"));
     }
@@ -123,6 +126,7 @@ fn read_texts(folder: &Path) -> Result<ResultsTexts, CommandError> {
 /// A CSV file of results.
 struct ResultsTable {
     file: PathBuf,
+    /// The place of each column by its name.
     columns: BTreeMap<String, usize>,
     rows: Vec<csv::StringRecord>,
 }

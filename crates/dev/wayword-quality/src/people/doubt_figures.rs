@@ -28,49 +28,51 @@ pub(super) struct DoubtedSpanRow {
     pub(super) words: Option<ClusteredShare>,
 }
 
-pub(super) fn doubt_rows(held: &[LabelledDoubts<'_>], seed: u64) -> Vec<DoubtedSpanRow> {
-    let of_grade = DoubtGrade::ALL.map(|grade| doubt_row(grade.name(), held, &|doubt| doubt.grade == grade, seed));
-    let of_cause = DoubtCause::ALL.map(|cause| doubt_row(cause.name(), held, &|doubt| doubt.cause == cause, seed));
-    of_grade.into_iter().chain([doubt_row("both", held, &|_| true, seed)]).chain(of_cause).collect()
+/// A row for each grade, one for both grades, and one for each cause.
+pub(super) fn doubt_rows(texts: &[LabelledDoubts<'_>], seed: u64) -> Vec<DoubtedSpanRow> {
+    let of_grade = DoubtGrade::ALL.map(|grade| doubt_row(grade.name(), texts, &|doubt| doubt.grade == grade, seed));
+    let of_cause = DoubtCause::ALL.map(|cause| doubt_row(cause.name(), texts, &|doubt| doubt.cause == cause, seed));
+    of_grade.into_iter().chain([doubt_row("both", texts, &|_| true, seed)]).chain(of_cause).collect()
 }
 
+/// The figures of the doubts that `counts` accepts.
 fn doubt_row(
     name: &'static str,
-    held: &[LabelledDoubts<'_>],
-    is: &dyn Fn(&TextDoubt) -> bool,
+    texts: &[LabelledDoubts<'_>],
+    counts: &dyn Fn(&TextDoubt) -> bool,
     seed: u64,
 ) -> DoubtedSpanRow {
-    let about = |held: &LabelledDoubts<'_>, span: [usize; 2]| -> Vec<TextDoubt> {
-        held.doubts.iter().filter(|doubt| is(doubt) && spans_overlap(doubt.span, span)).cloned().collect()
+    let about = |labelled: &LabelledDoubts<'_>, span: [usize; 2]| -> Vec<TextDoubt> {
+        labelled.doubts.iter().filter(|doubt| counts(doubt) && spans_overlap(doubt.span, span)).cloned().collect()
     };
     let spans = |right: bool| {
-        let of_text = move |held: &LabelledDoubts<'_>| -> Vec<(String, bool)> {
-            let spans = held.text.spans.iter().filter(move |span| span.is_right == right);
-            spans.map(|span| (held.text.name.clone(), !about(held, span.span).is_empty())).collect()
+        let of_text = move |labelled: &LabelledDoubts<'_>| -> Vec<(String, bool)> {
+            let spans = labelled.text.spans.iter().filter(move |span| span.is_right == right);
+            spans.map(|span| (labelled.text.name.clone(), !about(labelled, span.span).is_empty())).collect()
         };
-        ClusteredShare::from_cases(held.iter().flat_map(of_text), seed)
+        ClusteredShare::from_cases(texts.iter().flat_map(of_text), seed)
     };
-    let corrected = held.iter().flat_map(|held| {
-        let wrong = held.text.spans.iter().filter(|span| !span.is_right);
-        let doubted = wrong.map(|span| (span, about(held, span.span))).filter(|(_, doubts)| !doubts.is_empty());
+    let corrected = texts.iter().flat_map(|labelled| {
+        let wrong = labelled.text.spans.iter().filter(|span| !span.is_right);
+        let doubted = wrong.map(|span| (span, about(labelled, span.span))).filter(|(_, doubts)| !doubts.is_empty());
         let offered = |doubts: &[TextDoubt], span: &LabelledSpan| {
-            doubts.iter().any(|doubt| offers_correction(held.text, doubt, span))
+            doubts.iter().any(|doubt| offers_correction(labelled.text, doubt, span))
         };
-        doubted.map(|(span, doubts)| (held.text.name.clone(), offered(&doubts, span))).collect::<Vec<_>>()
+        doubted.map(|(span, doubts)| (labelled.text.name.clone(), offered(&doubts, span))).collect::<Vec<_>>()
     });
-    let judged = held.iter().flat_map(|held| {
+    let judged = texts.iter().flat_map(|labelled| {
         let labels = |doubt: &&TextDoubt| -> Vec<bool> {
-            let here = held.text.spans.iter().filter(|span| spans_overlap(span.span, doubt.span));
+            let here = labelled.text.spans.iter().filter(|span| spans_overlap(span.span, doubt.span));
             here.map(|span| span.is_right).collect()
         };
-        let doubts = held.doubts.iter().filter(|doubt| is(doubt));
+        let doubts = labelled.doubts.iter().filter(|doubt| counts(doubt));
         let judged = doubts.map(|doubt| labels(&doubt)).filter(|labels| !labels.is_empty());
-        judged.map(|labels| (held.text.name.clone(), labels.contains(&false))).collect::<Vec<_>>()
+        judged.map(|labels| (labelled.text.name.clone(), labels.contains(&false))).collect::<Vec<_>>()
     });
-    let words = held.iter().flat_map(|held| {
-        let text = held.text.text.as_str();
+    let words = texts.iter().flat_map(|labelled| {
+        let text = labelled.text.text.as_str();
         let words = split_blanks(text).filter(|place| text[place[0]..place[1]].contains(char::is_alphanumeric));
-        words.map(|word| (held.text.name.clone(), !about(held, word).is_empty())).collect::<Vec<_>>()
+        words.map(|word| (labelled.text.name.clone(), !about(labelled, word).is_empty())).collect::<Vec<_>>()
     });
     DoubtedSpanRow {
         name,
@@ -85,15 +87,15 @@ fn doubt_row(
 /// Whether a doubt offers people's correction of a span: a change to the same text, or to leave out the whole span.
 fn offers_correction(text: &LabelledText, doubt: &TextDoubt, span: &LabelledSpan) -> bool {
     let covers = doubt.span[0] <= span.span[0] && span.span[1] <= doubt.span[1];
-    let with = |span: [usize; 2], words: &str| {
+    let text_with = |span: [usize; 2], words: &str| {
         let (before, after) = (text.text.get(..span[0])?, text.text.get(span[1]..)?);
         let changed = format!("{before}{words}{after}").to_lowercase();
         Some(changed.split_whitespace().map(str::to_owned).collect::<Vec<_>>())
     };
-    let is_offered = |told: &Option<String>| {
-        doubt.alternatives.iter().any(|one| match (&one.words, told) {
+    let is_offered = |correction: &Option<String>| {
+        doubt.alternatives.iter().any(|alternative| match (&alternative.words, correction) {
             (None, None) => covers,
-            (Some(words), Some(told)) => with(doubt.span, words) == with(span.span, told),
+            (Some(words), Some(corrected)) => text_with(doubt.span, words) == text_with(span.span, corrected),
             _ => false,
         })
     };

@@ -51,12 +51,18 @@ struct SpanSelection {
     kind: Option<SpanTopic>,
 }
 
-pub(super) fn span_figures(held: &[LabelledFindings<'_>], seed: u64) -> SpanFigures {
-    let used = |check: &CheckKind| held.iter().any(|held| held.findings.iter().any(|finding| finding.check == *check));
-    let row = |name: &str, check, kind| span_row(name, held, SpanSelection { check, kind }, seed);
+/// All figures of some labelled texts.
+pub(super) fn span_figures(texts: &[LabelledFindings<'_>], seed: u64) -> SpanFigures {
+    let used = |check: &CheckKind| {
+        texts.iter().any(|labelled| labelled.findings.iter().any(|finding| finding.check == *check))
+    };
+    let row = |name: &str, check, kind| span_row(name, texts, SpanSelection { check, kind }, seed);
     let fails = |wrong: bool| {
-        let texts = held.iter().filter(|held| held.text.spans.iter().any(|span| !span.is_right) == wrong);
-        ClusteredShare::from_cases(texts.map(|held| (&held.text.name, held.findings.iter().any(is_fail))), seed)
+        let texts = texts.iter().filter(|labelled| labelled.text.spans.iter().any(|span| !span.is_right) == wrong);
+        ClusteredShare::from_cases(
+            texts.map(|labelled| (&labelled.text.name, labelled.findings.iter().any(is_fail))),
+            seed,
+        )
     };
     SpanFigures {
         all: row("all", None, None),
@@ -67,26 +73,27 @@ pub(super) fn span_figures(held: &[LabelledFindings<'_>], seed: u64) -> SpanFigu
     }
 }
 
-fn span_row(name: &str, held: &[LabelledFindings<'_>], part: SpanSelection, seed: u64) -> CheckedSpanRow {
+/// The figures of the findings and spans that `part` selects.
+fn span_row(name: &str, texts: &[LabelledFindings<'_>], part: SpanSelection, seed: u64) -> CheckedSpanRow {
     let spans = |right: bool, verdict: Verdict| {
-        let cases = held.iter().flat_map(|held| {
-            let spans = part.selected_spans(held).filter(move |span| span.is_right == right);
-            spans.map(|span| (&held.text.name, part.worst_verdict(held, span) == Some(verdict)))
+        let cases = texts.iter().flat_map(|labelled| {
+            let spans = part.selected_spans(labelled).filter(move |span| span.is_right == right);
+            spans.map(|span| (&labelled.text.name, part.worst_verdict(labelled, span) == Some(verdict)))
         });
         ClusteredShare::from_cases(cases, seed)
     };
     let fails = || {
-        held.iter().flat_map(|held| {
-            part.selected_findings(held).filter(|found| is_fail(found)).map(move |found| (held, found))
+        texts.iter().flat_map(|labelled| {
+            part.selected_findings(labelled).filter(|found| is_fail(found)).map(move |found| (labelled, found))
         })
     };
-    let labels = |held: &LabelledFindings<'_>, found: &CheckFinding| -> Vec<bool> {
+    let labels = |labelled: &LabelledFindings<'_>, found: &CheckFinding| -> Vec<bool> {
         let overlapped = |span: &&LabelledSpan| is_about(found, span.span);
         // A finding belongs to a kind if it overlaps a span of that kind. All spans that it overlaps then decide whether it is right.
-        let is_here = part.selected_spans(held).any(|span| overlapped(&span));
-        held.text.spans.iter().filter(|_| is_here).filter(overlapped).map(|span| span.is_right).collect()
+        let is_here = part.selected_spans(labelled).any(|span| overlapped(&span));
+        labelled.text.spans.iter().filter(|_| is_here).filter(overlapped).map(|span| span.is_right).collect()
     };
-    let judged = fails().map(|(held, found)| (&held.text.name, labels(held, found)));
+    let judged = fails().map(|(labelled, found)| (&labelled.text.name, labels(labelled, found)));
     let on_labels = judged.filter(|(_, labels)| !labels.is_empty());
     CheckedSpanRow {
         name: name.to_owned(),
@@ -95,26 +102,31 @@ fn span_row(name: &str, held: &[LabelledFindings<'_>], part: SpanSelection, seed
         precision: ClusteredShare::from_cases(on_labels.map(|(text, labels)| (text, labels.contains(&false))), seed),
         unverified_wrong: spans(false, Verdict::Unverified),
         unverified_right: spans(true, Verdict::Unverified),
-        elsewhere: fails().filter(|(held, found)| labels(held, found).is_empty()).count(),
+        elsewhere: fails().filter(|(labelled, found)| labels(labelled, found).is_empty()).count(),
     }
 }
 
 impl SpanSelection {
-    fn selected_spans<'h>(self, held: &'h LabelledFindings<'_>) -> impl Iterator<Item = &'h LabelledSpan> {
-        let is_of = move |span: &&LabelledSpan| {
-            let words = held.text.text.get(span.span[0]..span.span[1]).unwrap_or_default();
+    /// The spans of a text that count.
+    fn selected_spans<'h>(self, labelled: &'h LabelledFindings<'_>) -> impl Iterator<Item = &'h LabelledSpan> {
+        let is_selected = move |span: &&LabelledSpan| {
+            let words = labelled.text.text.get(span.span[0]..span.span[1]).unwrap_or_default();
             self.kind.is_none_or(|kind| kind == SpanTopic::for_span(words))
         };
-        held.text.spans.iter().filter(is_of)
+        labelled.text.spans.iter().filter(is_selected)
     }
 
-    fn selected_findings<'h>(self, held: &'h LabelledFindings<'_>) -> impl Iterator<Item = &'h CheckFinding> {
-        held.findings.iter().filter(move |finding| self.check.is_none_or(|check| check == finding.check))
+    /// The findings in a text that count.
+    fn selected_findings<'h>(self, labelled: &'h LabelledFindings<'_>) -> impl Iterator<Item = &'h CheckFinding> {
+        labelled.findings.iter().filter(move |finding| self.check.is_none_or(|check| check == finding.check))
     }
 
     /// The worst verdict on a span; `None` where no finding is about it.
-    fn worst_verdict(self, held: &LabelledFindings<'_>, span: &LabelledSpan) -> Option<Verdict> {
-        self.selected_findings(held).filter(|finding| is_about(finding, span.span)).map(|finding| finding.verdict).max()
+    fn worst_verdict(self, labelled: &LabelledFindings<'_>, span: &LabelledSpan) -> Option<Verdict> {
+        self.selected_findings(labelled)
+            .filter(|finding| is_about(finding, span.span))
+            .map(|finding| finding.verdict)
+            .max()
     }
 }
 

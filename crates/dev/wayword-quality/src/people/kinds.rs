@@ -3,14 +3,21 @@
 /// The topic of a span.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum SpanTopic {
+    /// A turn or a side.
     Turn,
+    /// Stairs or a storey.
     Floor,
+    /// A room.
     Room,
+    /// A landmark, a verb, or anything else.
     Other,
 }
 
+/// A span with one of these words is about a turn.
 const TURN_WORDS: [&str; 5] = ["left", "right", "straight", "around", "turn"];
+/// A span with one of these words, and without a hall, is about stairs or storeys.
 const FLOOR_WORDS: [&str; 4] = ["up", "down", "stairs", "steps"];
+/// A span with one of these words is about a room.
 const ROOM_WORDS: [&str; 22] = [
     "room", "bedroom", "bathroom", "kitchen", "hall", "hallway", "corridor", "office", "closet", "lounge", "foyer",
     "entryway", "balcony", "patio", "deck", "porch", "outside", "garage", "library", "laundry", "gym", "spa",

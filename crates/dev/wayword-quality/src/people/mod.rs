@@ -24,13 +24,13 @@ use wayword_world::path_of;
 pub fn measure_people(flags: JudgingArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let (show, seed, is_json) = (flags.check.show, flags.seed, flags.json);
     let (texts, CheckedTexts { findings, doubts, report }) = check_labelled_texts(flags, output)?;
-    let held: Vec<LabelledFindings<'_>> =
+    let checked: Vec<LabelledFindings<'_>> =
         texts.iter().zip(&findings).map(|(text, findings)| LabelledFindings { text, findings }).collect();
     let doubted: Vec<LabelledDoubts<'_>> =
         texts.iter().zip(&doubts).map(|(text, doubts)| LabelledDoubts { text, doubts }).collect();
     let doubted = doubt_rows(&doubted, seed);
-    let figures = span_figures(&held, seed);
-    for line in false_alarms(&held).into_iter().take(if is_json { 0 } else { show }) {
+    let figures = span_figures(&checked, seed);
+    for line in false_alarms(&checked).into_iter().take(if is_json { 0 } else { show }) {
         output.say(line);
     }
     let shown = format!(
@@ -74,9 +74,9 @@ fn refuse_unknown_paths(texts: &[LabelledText], file: &Path, platform: &dyn Plat
 }
 
 /// A line for each finding "fail" that overlaps labelled spans, all of which people called right.
-fn false_alarms(held: &[LabelledFindings<'_>]) -> Vec<String> {
+fn false_alarms(checked: &[LabelledFindings<'_>]) -> Vec<String> {
     let mut lines = Vec::new();
-    for LabelledFindings { text, findings } in held {
+    for LabelledFindings { text, findings } in checked {
         for finding in findings.iter().filter(|finding| is_fail(finding)) {
             let spans: Vec<_> = text.spans.iter().filter(|span| is_about(finding, span.span)).collect();
             let words = finding.span.and_then(|[from, to]| text.text.get(from..to)).unwrap_or_default();
@@ -90,7 +90,8 @@ fn false_alarms(held: &[LabelledFindings<'_>]) -> Vec<String> {
     lines
 }
 
-fn figures_table(figures: &SpanFigures, texts: usize, said: &[String]) -> String {
+/// The table that is printed, with the shares of texts that fail, and notes from the report of `check`.
+fn figures_table(figures: &SpanFigures, texts: usize, notes: &[String]) -> String {
     let head = ["", "recall", "false alarms", "precision of fail", "wrong unverified", "right unverified", "elsewhere"];
     let row = |row: &CheckedSpanRow| {
         let shares = [&row.recall, &row.false_alarms, &row.precision, &row.unverified_wrong, &row.unverified_right];
@@ -103,7 +104,7 @@ fn figures_table(figures: &SpanFigures, texts: usize, said: &[String]) -> String
     let fails =
         fails.map(|(with, share)| format!("texts {with} a wrong span that fail: {}", share_cell(share.as_ref())));
     let lines = [aligned_table(&rows), format!("texts: {texts}; intervals of 95 %, clustered by text")];
-    lines.into_iter().chain(fails).chain(said.iter().cloned()).collect::<Vec<_>>().join("\n")
+    lines.into_iter().chain(fails).chain(notes.iter().cloned()).collect::<Vec<_>>().join("\n")
 }
 
 #[cfg(test)]

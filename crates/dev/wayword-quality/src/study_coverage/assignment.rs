@@ -4,13 +4,15 @@ use rand::{Rng, seq::SliceRandom};
 use serde::Serialize;
 use std::fmt;
 
-/// Items of a simulated study.
+/// The number of items of a simulated study.
 pub(super) const STUDY_ITEM_COUNT: usize = 60;
 
 /// How many people give how many answers each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub(super) struct SimulatedDesign {
+    /// The number of persons.
     pub(super) persons: usize,
+    /// The number of answers of each person.
     pub(super) each: usize,
 }
 
@@ -24,8 +26,11 @@ impl fmt::Display for SimulatedDesign {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum EffectSize {
+    /// All persons are alike, and all items.
     None,
+    /// By 0.75 logits, as a standard deviation.
     Middle,
+    /// By 1.5 logits, as a standard deviation.
     Large,
 }
 
@@ -55,7 +60,7 @@ impl EffectSize {
 pub(super) struct AnswerSlot {
     pub(super) person: usize,
     pub(super) item: usize,
-    /// Which condition of a comparison it is about.
+    /// Whether it is about the second condition of a comparison, and not the first.
     pub(super) is_second: bool,
 }
 

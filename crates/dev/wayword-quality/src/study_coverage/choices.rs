@@ -7,13 +7,16 @@ use rand::Rng;
 use std::f64::consts::SQRT_2;
 use wayword_metrics::{BradleyTerry, ConfidenceInterval, FittedTerm, PairPreference, SystemComparison, bradley_terry};
 
-/// The systems' utilities, the advantage of the side, and Davidson's parameter, as logarithms.
+/// How good the texts of each system are, as the logarithm of the odds to be chosen.
 const SYSTEM_UTILITIES: [f64; SYSTEM_COUNT] = [0.6, 0.0, -0.6];
+/// The number of systems.
 const SYSTEM_COUNT: usize = 3;
+/// The advantage of the text that is shown first, on the same scale.
 const SIDE_ADVANTAGE: f64 = 0.2;
+/// How likely a tie is between equal texts, on the same scale: the logarithm of the parameter in Davidson's model of ties.
 const TIE_PARAMETER: f64 = -0.5;
 
-/// Choices of each ordered pair from which the true strengths are computed.
+/// The number of choices of each ordered pair from which the true strengths are computed.
 const CHOICES_PER_ORDERED_PAIR: f64 = 5000.0;
 
 /// The intervals of the strengths that simulated choices give; none where they give no strengths.
@@ -66,7 +69,7 @@ pub(super) fn true_strengths(sd: f64) -> Vec<f64> {
 fn choice_chances(better: f64) -> [f64; 3] {
     let odds = [better + SIDE_ADVANTAGE, 0.0, TIE_PARAMETER + (better + SIDE_ADVANTAGE) / 2.0].map(libm::exp);
     let all: f64 = odds.iter().sum();
-    odds.map(|one| one / all)
+    odds.map(|chosen| chosen / all)
 }
 
 /// The strengths in the order of the systems, where all of them have one.

@@ -19,6 +19,7 @@ pub(super) struct CoverageCell {
     pub(super) figure: SimulatedFigure,
     pub(super) design: SimulatedDesign,
     pub(super) effects: EffectSize,
+    /// The number of simulated studies.
     pub(super) studies: u64,
     /// The number of intervals if every study gave all of them.
     wanted: u64,
@@ -26,6 +27,7 @@ pub(super) struct CoverageCell {
     pub(super) given: u64,
     /// Intervals that cover the truth.
     pub(super) covered: u64,
+    /// The mean width of the intervals, in the unit of the figure.
     mean_width: f64,
 }
 
@@ -49,6 +51,7 @@ pub(super) fn simulate_all(studies: u64, seed: u64) -> Vec<CoverageCell> {
     cells
 }
 
+/// Simulates one figure in one kind of study, and compares its intervals with `truth`, one value for each interval.
 fn simulate_cell(
     figure: SimulatedFigure,
     design: SimulatedDesign,
@@ -58,7 +61,7 @@ fn simulate_cell(
     seed: u64,
 ) -> CoverageCell {
     let kind = format!("{figure} {design} {}", effects.name());
-    let one = |n: u64| {
+    let simulate_study = |n: u64| {
         let mut rng = seeded_rng(seed, &["study coverage", &kind, &n.to_string()]);
         let found = figure.simulate_intervals(design, effects, &mut rng);
         let covers = found.iter().zip(truth).filter(|(interval, truth)| (interval.low..=interval.high).contains(truth));
@@ -66,7 +69,7 @@ fn simulate_cell(
         (found.len() as u64, covers.count() as u64, width)
     };
     // Collected in order, so that the sum of widths does not depend on the threads.
-    let tried: Vec<(u64, u64, f64)> = (0..studies).into_par_iter().map(one).collect();
+    let tried: Vec<(u64, u64, f64)> = (0..studies).into_par_iter().map(simulate_study).collect();
     let given = tried.iter().map(|(given, ..)| given).sum();
     let covered = tried.iter().map(|(_, covered, _)| covered).sum();
     let mean_width = tried.iter().map(|(.., width)| width).sum::<f64>() / (given as f64).max(1.0);
@@ -79,14 +82,15 @@ pub(super) fn coverage_rows(cells: &[CoverageCell]) -> Vec<Vec<String>> {
         .iter()
         .flat_map(|design| EffectSize::ALL.map(|effects| format!("{design} {}", effects.name())));
     let head = std::iter::once("figure".to_owned()).chain(columns).collect();
-    let row = |of: &[CoverageCell]| {
-        let figure = of.iter().take(1).map(|cell| cell.figure.to_string());
-        figure.chain(of.iter().map(cell_text)).collect()
+    let row = |same_figure: &[CoverageCell]| {
+        let figure = same_figure.iter().take(1).map(|cell| cell.figure.to_string());
+        figure.chain(same_figure.iter().map(cell_text)).collect()
     };
     let rows = cells.chunk_by(|a, b| a.figure == b.figure).map(row);
     std::iter::once(head).chain(rows).collect()
 }
 
+/// A cell as text: the percentage that covers the truth, with that of given intervals in brackets where some are missing.
 fn cell_text(cell: &CoverageCell) -> String {
     let Some(percent) = cell.covered_percent() else { return "-".to_owned() };
     // Rounded down, so that 100 means all.

@@ -61,19 +61,19 @@ impl SimulatedFigure {
         rng: &mut impl Rng,
     ) -> Vec<ConfidenceInterval> {
         let (slots, sd) = (assign_slots(design, rng), effects.sd_logits());
-        let all = |slots: &[_], base, rng: &mut _| walks::draw_walks(slots, base, sd, rng);
+        let draw = |slots: &[_], base, rng: &mut _| walks::draw_walks(slots, base, sd, rng);
         let interval = match self {
-            Self::Share(base) => answer_share(&all(&walks::of_one(&slots), base, rng).successes[0], CONFIDENCE_LEVEL)
-                .and_then(|of| of.interval),
-            Self::Mean(base) => answer_mean(&all(&walks::of_one(&slots), base, rng).values[0], CONFIDENCE_LEVEL)
-                .and_then(|of| of.interval),
+            Self::Share(base) => answer_share(&draw(&walks::of_one(&slots), base, rng).successes[0], CONFIDENCE_LEVEL)
+                .and_then(|estimate| estimate.interval),
+            Self::Mean(base) => answer_mean(&draw(&walks::of_one(&slots), base, rng).values[0], CONFIDENCE_LEVEL)
+                .and_then(|estimate| estimate.interval),
             Self::ShareDifference(base) => {
-                let [first, second] = all(&slots, base, rng).successes;
-                share_difference(&first, &second, CONFIDENCE_LEVEL).and_then(|of| of.interval)
+                let [first, second] = draw(&slots, base, rng).successes;
+                share_difference(&first, &second, CONFIDENCE_LEVEL).and_then(|estimate| estimate.interval)
             }
             Self::MeanDifference(base) => {
-                let [first, second] = all(&slots, base, rng).values;
-                mean_difference(&first, &second, CONFIDENCE_LEVEL).and_then(|of| of.interval)
+                let [first, second] = draw(&slots, base, rng).values;
+                mean_difference(&first, &second, CONFIDENCE_LEVEL).and_then(|estimate| estimate.interval)
             }
             Self::Alpha => ratings::alpha_interval(&slots, sd, rng),
             Self::Strengths => return choices::strength_intervals(&slots, sd, rng),

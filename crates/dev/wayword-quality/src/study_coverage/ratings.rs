@@ -8,6 +8,7 @@ use wayword_metrics::{AnswerScale, ConfidenceInterval, StudyAnswer, krippendorff
 
 /// The four bounds between the five levels, on the logit scale.
 const LEVEL_CUTS_LOGITS: [f64; 4] = [-2.0, -0.7, 0.7, 2.0];
+/// The number of levels.
 const LEVEL_COUNT: usize = LEVEL_CUTS_LOGITS.len() + 1;
 
 /// The interval of alpha that simulated ratings give.
@@ -20,8 +21,8 @@ pub(super) fn alpha_interval(slots: &[AnswerSlot], sd: f64, rng: &mut impl Rng) 
         let level = LEVEL_CUTS_LOGITS.iter().filter(|cut| felt > **cut).count();
         StudyAnswer { person: slot.person, item: slot.item, value: level as f64 }
     };
-    let given: Vec<_> = slots.iter().map(rate).collect();
-    krippendorff_alpha(&given, AnswerScale::Ordinal, CONFIDENCE_LEVEL)?.interval
+    let answers: Vec<_> = slots.iter().map(rate).collect();
+    krippendorff_alpha(&answers, AnswerScale::Ordinal, CONFIDENCE_LEVEL)?.interval
 }
 
 /// The true alpha over all persons and items: one minus the expected disagreement of two persons about one item, divided by that of two
@@ -30,6 +31,7 @@ pub(super) fn true_alpha(sd: f64) -> f64 {
     let chance = |level: usize, item: f64| chance_above(level, item, sd) - chance_above(level + 1, item, sd);
     let overall: Vec<f64> =
         (0..LEVEL_COUNT).map(|level| mean_over_normal(0.0, sd, |item| chance(level, item))).collect();
+    // On an ordinal scale, a level lies at the share of answers below it and half of its own.
     let place = |level: usize| overall[..level].iter().sum::<f64>() + overall[level] / 2.0;
     let disagreement = |chance_of: &dyn Fn(usize, usize) -> f64| -> f64 {
         let pairs = (0..LEVEL_COUNT).flat_map(|a| (0..LEVEL_COUNT).map(move |b| (a, b)));

@@ -8,11 +8,12 @@ use wayword_metrics::StudyAnswer;
 
 /// The share of a person's or item's variance that both conditions have in common.
 const IN_COMMON: f64 = 0.5;
-/// How much lower the second condition's logits are.
+/// How much lower the logits of success are in the second condition than in the first.
 const SECOND_CONDITION_DROP_LOGITS: f64 = 0.8;
 /// The standard deviation of how good a way is, on the logit scale.
 const GOODNESS_SD_LOGITS: f64 = 0.8;
 
+/// The answers about one condition, by person and item.
 type ConditionAnswers = Vec<StudyAnswer<usize, usize>>;
 
 /// The answers of each condition.
@@ -29,7 +30,8 @@ pub(super) fn of_one(slots: &[AnswerSlot]) -> Vec<AnswerSlot> {
     slots.iter().map(|slot| AnswerSlot { is_second: false, ..*slot }).collect()
 }
 
-/// Walks by persons and items who each differ with standard deviation `sd`.
+/// Draws the walk of every slot. Persons differ with standard deviation `sd`, and so do items. `base`: the share of success
+/// in the first condition.
 pub(super) fn draw_walks(slots: &[AnswerSlot], base: f64, sd: f64, rng: &mut impl Rng) -> SimulatedWalks {
     let centre = centre_for_share(base, sd * SQRT_2);
     let persons = slots.iter().map(|slot| slot.person + 1).max().unwrap_or(0);
@@ -49,12 +51,12 @@ pub(super) fn draw_walks(slots: &[AnswerSlot], base: f64, sd: f64, rng: &mut imp
 
 /// Draws the effects of persons, or of items, on each of the two conditions, on the logit scale.
 fn draw_effects(count: usize, sd: f64, rng: &mut impl Rng) -> Vec<[f64; 2]> {
-    let (common, own) = (sd * IN_COMMON.sqrt(), sd * (1.0 - IN_COMMON).sqrt());
-    let mut one = || {
+    let (common, separate) = (sd * IN_COMMON.sqrt(), sd * (1.0 - IN_COMMON).sqrt());
+    let mut draw_effect = || {
         let both = common * draw_normal(rng);
-        [both + own * draw_normal(rng), both + own * draw_normal(rng)]
+        [both + separate * draw_normal(rng), both + separate * draw_normal(rng)]
     };
-    (0..count).map(|_| one()).collect()
+    (0..count).map(|_| draw_effect()).collect()
 }
 
 /// How good the way of a person and an item with this effect is, on the logit scale.

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const MAX_GRAM_WORDS: usize = 3;
 /// A run of words is a feature only if at least this many texts have it.
 const LEAST_TEXTS: usize = 2;
-/// A length is counted in this many words.
+/// The unit of the length feature, words.
 const LENGTH_UNIT: f64 = 20.0;
 
 /// A text in lower case, with letters and digits of ASCII alone, and one space between words.
@@ -26,6 +26,7 @@ pub(super) fn word_grams(plain: &str) -> BTreeSet<String> {
 
 /// The features that some texts have: their runs of words, a length, and a constant.
 pub(super) struct GramFeatures {
+    /// The place of each run of words in a row of features.
     places: BTreeMap<String, usize>,
 }
 

@@ -13,7 +13,8 @@ const GRADIENT_STOP_SHARE: f64 = 1e-4;
 /// How often a step that does not reduce the loss is halved before the fit gives up.
 const MAX_HALVINGS: usize = 20;
 
-/// The weights of the features. The score of a row is their product; a row with a score above 0 is put into the class `true`.
+/// The weights of the features. The score of a row is the dot product of both; a row with a score above 0 is put into the
+/// class `true`.
 #[derive(Debug)]
 pub(super) struct LogisticModel {
     pub(super) weights: Vec<f64>,
@@ -52,25 +53,32 @@ impl LogisticModel {
     }
 }
 
+/// The rows and classes that a model is fitted to.
 struct LogisticProblem<'a> {
     rows: &'a [&'a SparseRow],
+    /// The class of each row.
     classes: &'a [bool],
+    /// The number of features.
     features: usize,
+    /// How much the rows' losses count against the ridge penalty.
     cost: f64,
 }
 
 impl LogisticProblem<'_> {
+    /// 1 for each row of the class `true`, -1 for the others.
     fn class_signs(&self) -> impl Iterator<Item = f64> {
         self.classes.iter().map(|class| if *class { 1.0 } else { -1.0 })
     }
 
+    /// The value that is minimised, at some weights and the scores that they give.
     fn loss_at(&self, weights: &[f64], scores: &[f64]) -> f64 {
-        let one = |(score, side): (&f64, f64)| {
+        let row_loss = |(score, side): (&f64, f64)| {
             let margin = side * score;
             // The same as ln(1 + exp(-margin)), without overflow.
             (-margin).max(0.0) + (-margin.abs()).exp().ln_1p()
         };
-        dot_product(weights, weights) / 2.0 + self.cost * scores.iter().zip(self.class_signs()).map(one).sum::<f64>()
+        dot_product(weights, weights) / 2.0
+            + self.cost * scores.iter().zip(self.class_signs()).map(row_loss).sum::<f64>()
     }
 
     /// The gradient, and for each row the second derivative of the loss along its score.
@@ -92,6 +100,7 @@ impl LogisticProblem<'_> {
         let mut rest: Vec<f64> = gradient.iter().map(|value| -value).collect();
         let mut direction = rest.clone();
         let mut length = dot_product(&rest, &rest);
+        // The squared length, so the step is solved to a tenth of the gradient.
         let enough = length * 0.01;
         for _ in 0..INNER_STEPS {
             if length <= enough {
@@ -108,6 +117,7 @@ impl LogisticProblem<'_> {
         step
     }
 
+    /// The product of the curvature matrix and a direction.
     fn curvature_along(&self, direction: &[f64], bends: &[f64]) -> Vec<f64> {
         let mut bent = direction.to_vec();
         for (row, bend) in self.rows.iter().zip(bends) {

@@ -52,7 +52,9 @@ pub struct TellApartArgs {
 /// How well the classifier separates two sides.
 #[derive(Debug, Serialize)]
 struct SideSeparation {
+    /// The items with a text on each side.
     items: usize,
+    /// The buildings of these items.
     buildings: usize,
     /// The share of texts that the classifier puts on the right side, with an interval over buildings.
     accuracy: Option<ClusteredShare>,
@@ -60,8 +62,10 @@ struct SideSeparation {
     auc: f64,
 }
 
+/// The figures that are printed.
 #[derive(Debug, Serialize)]
 struct TellApartReport {
+    /// Generated texts against people's.
     apart: SideSeparation,
     /// People's first texts against their second ones, where items have two.
     people: Option<SideSeparation>,
@@ -106,9 +110,11 @@ pub fn measure_tell_apart(flags: &TellApartArgs, output: &CommandOutput) -> Resu
 /// The texts of an item, and its building.
 struct SideItem {
     building: String,
+    /// Its texts in plain words ([`to_plain`]).
     texts: Vec<String>,
 }
 
+/// The texts of a file by the id of their item.
 fn by_item(episodes: Vec<Episode>) -> BTreeMap<String, SideItem> {
     let mut items: BTreeMap<String, SideItem> = BTreeMap::new();
     for Episode { id, scene, instructions, .. } in episodes {
@@ -121,6 +127,7 @@ fn by_item(episodes: Vec<Episode>) -> BTreeMap<String, SideItem> {
 /// A text of one side.
 #[derive(Debug, Clone)]
 struct SideText {
+    /// The text in plain words ([`to_plain`]).
     plain: String,
     building: String,
     is_generated: bool,
@@ -129,10 +136,10 @@ struct SideText {
 /// One text of each side for each item that both have.
 fn draw_sides(people: &BTreeMap<String, SideItem>, generated: &BTreeMap<String, SideItem>, seed: u64) -> Vec<SideText> {
     let pair = |(id, item): (&String, &SideItem)| {
-        let one =
+        let draw_text =
             |texts: &[String], side: &str| texts.choose(&mut seeded_rng(seed, &["tell-apart", side, id])).cloned();
-        let other = one(&generated.get(id)?.texts, "generated")?;
-        Some(pair_texts(item, one(&item.texts, "people")?, other))
+        let other = draw_text(&generated.get(id)?.texts, "generated")?;
+        Some(pair_texts(item, draw_text(&item.texts, "people")?, other))
     };
     people.iter().filter_map(pair).flatten().collect()
 }
@@ -148,6 +155,7 @@ fn pair_texts(item: &SideItem, person: String, other: String) -> [SideText; 2] {
     [text(person, false), text(other, true)]
 }
 
+/// How well the classifier separates two sides, cross-validated by building.
 fn separate_sides(texts: &[SideText], folds: usize, seed: u64) -> SideSeparation {
     let scores = cross_validated_scores(texts, folds);
     let right = texts.iter().zip(&scores).map(|(text, score)| (&text.building, (*score > 0.0) == text.is_generated));
@@ -163,23 +171,25 @@ fn separate_sides(texts: &[SideText], folds: usize, seed: u64) -> SideSeparation
 /// The score of each text by a classifier that never saw its building.
 fn cross_validated_scores(texts: &[SideText], folds: usize) -> Vec<f64> {
     let runs: Vec<BTreeSet<String>> = texts.iter().map(|text| word_grams(&text.plain)).collect();
-    let fold_of = fold_of(texts, folds);
+    let folds_by_building = fold_of(texts, folds);
     let mut scores = vec![0.0; texts.len()];
     for fold in 0..folds {
-        let (out, rest): (Vec<usize>, Vec<usize>) =
-            (0..texts.len()).partition(|at| fold_of[&texts[*at].building] == fold);
+        let (left_out, rest): (Vec<usize>, Vec<usize>) =
+            (0..texts.len()).partition(|at| folds_by_building[&texts[*at].building] == fold);
         let (features, model) = fit_classifier(texts, &runs, &rest);
-        for at in out {
+        for at in left_out {
             scores[at] = model.score_row(&features.feature_row(&texts[at].plain, &runs[at]));
         }
     }
     scores
 }
 
-fn fit_classifier(texts: &[SideText], runs: &[BTreeSet<String>], on: &[usize]) -> (GramFeatures, LogisticModel) {
-    let features = GramFeatures::from_texts(on.iter().map(|at| &runs[*at]));
-    let rows: Vec<SparseRow> = on.iter().map(|at| features.feature_row(&texts[*at].plain, &runs[*at])).collect();
-    let classes: Vec<bool> = on.iter().map(|at| texts[*at].is_generated).collect();
+/// The features and the classifier of some of the texts. `runs`: the runs of words of all texts; `chosen`: the numbers
+/// of the texts to learn from.
+fn fit_classifier(texts: &[SideText], runs: &[BTreeSet<String>], chosen: &[usize]) -> (GramFeatures, LogisticModel) {
+    let features = GramFeatures::from_texts(chosen.iter().map(|at| &runs[*at]));
+    let rows: Vec<SparseRow> = chosen.iter().map(|at| features.feature_row(&texts[*at].plain, &runs[*at])).collect();
+    let classes: Vec<bool> = chosen.iter().map(|at| texts[*at].is_generated).collect();
     let model = LogisticModel::fit_rows(&rows.iter().collect::<Vec<_>>(), &classes, features.len(), ERROR_COST);
     (features, model)
 }

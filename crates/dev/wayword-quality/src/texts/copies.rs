@@ -11,7 +11,9 @@ const RUN_LENGTHS_WORDS: [usize; 3] = [5, 8, 10];
 
 /// The runs of words and the skeletons of the training texts.
 pub(super) struct TrainingTexts {
+    /// The runs of words of each length in [`RUN_LENGTHS_WORDS`].
     runs: Vec<HashSet<String>>,
+    /// The texts with their names masked.
     skeletons: HashSet<String>,
 }
 
@@ -26,7 +28,7 @@ fn word_runs(words: &[String], length: usize) -> Vec<String> {
     words.windows(length).map(|run| run.join(" ")).collect()
 }
 
-/// A text with its objects and rooms masked.
+/// The skeleton of a text: its words with the names of objects and rooms masked.
 fn mask_names(text: &str) -> String {
     let mut words = split_words(text);
     for name in find_names(&words).iter().rev() {
@@ -35,18 +37,22 @@ fn mask_names(text: &str) -> String {
     words.join(" ")
 }
 
+/// The rows of the table about words in common. Without training texts, only those about these texts among themselves.
 pub(super) fn copy_rows(texts: &[&str], train: Option<&TrainingTexts>) -> Vec<TextFigureRow> {
     let skeletons: Vec<String> = texts.iter().map(|text| mask_names(text)).collect();
     let mut counts: BTreeMap<&String, usize> = BTreeMap::new();
     skeletons.iter().for_each(|skeleton| *counts.entry(skeleton).or_default() += 1);
     let mut rows = vec![
-        share_row("skeleton in common with another of these texts", skeletons.iter().map(|one| counts[one] > 1)),
+        share_row(
+            "skeleton in common with another of these texts",
+            skeletons.iter().map(|skeleton| counts[skeleton] > 1),
+        ),
         number_row("different skeletons", counts.len() as f64),
     ];
     if let Some(train) = train {
         rows.push(share_row(
             "skeleton in common with a training text",
-            skeletons.iter().map(|one| train.skeletons.contains(one)),
+            skeletons.iter().map(|skeleton| train.skeletons.contains(skeleton)),
         ));
         let copied = |text: &&str, at: usize| {
             word_runs(&split_words(text), RUN_LENGTHS_WORDS[at]).iter().any(|run| train.runs[at].contains(run))

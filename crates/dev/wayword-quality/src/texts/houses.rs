@@ -56,6 +56,7 @@ struct HousePlanComparison {
 }
 
 impl HousePlanComparison {
+    /// Whether the plan contradicts the text in any respect.
     fn is_wrong(&self) -> bool {
         self.room == Some(false)
             || self.stop_m.is_some_and(|far_m| far_m > STOP_M)
@@ -81,15 +82,16 @@ pub fn measure_house_texts(flags: &HouseTextsArgs, output: &CommandOutput) -> Re
                     new.insert(drawn.map_err(|error| CommandError::usage(error.to_string(), "give runs over houses"))?)
                 }
             };
-            let held = compare_with_plan(&record, home, platform.as_ref())?;
-            styles.entry(record.instruction.style.clone()).or_default().push(held);
+            let comparison = compare_with_plan(&record, home, platform.as_ref())?;
+            styles.entry(record.instruction.style.clone()).or_default().push(comparison);
         }
     }
     let sides: Vec<(&str, Vec<TextFigureRow>)> =
-        styles.iter().map(|(style, held)| (style.as_str(), plan_rows(held))).collect();
-    let wrong = styles.values().flatten().filter(|held| held.is_wrong()).take(flags.show);
-    wrong.for_each(|held| {
-        output.say(format!("room {:?}, stop {:?} m, target {:?}: {}", held.room, held.stop_m, held.target, held.text));
+        styles.iter().map(|(style, comparisons)| (style.as_str(), plan_rows(comparisons))).collect();
+    let wrong = styles.values().flatten().filter(|comparison| comparison.is_wrong()).take(flags.show);
+    wrong.for_each(|comparison| {
+        let HousePlanComparison { text, room, stop_m, target } = comparison;
+        output.say(format!("room {room:?}, stop {stop_m:?} m, target {target:?}: {text}"));
     });
     output.print_result(
         &sides.iter().map(|(name, rows)| (*name, rows)).collect::<BTreeMap<_, _>>(),
@@ -98,6 +100,7 @@ pub fn measure_house_texts(flags: &HouseTextsArgs, output: &CommandOutput) -> Re
     Ok(())
 }
 
+/// Compares one text with the plan of its house. Only a text in style `reverie` has a task, and so a target.
 fn compare_with_plan(
     record: &InstructionRecord,
     home: &HouseScene,
@@ -110,7 +113,8 @@ fn compare_with_plan(
     let object_of = |id: &str| home.objects.get(&id.parse().ok()?);
     let target = record.path.target.as_ref().and_then(|target| Some((target, object_of(target.object.as_str())?)));
     let has_task = record.instruction.style == "reverie";
-    let own = target.filter(|_| has_task).map(|(_, object)| home.house.rooms[object.room].kind.word()).or(end_room);
+    let right_room =
+        target.filter(|_| has_task).map(|(_, object)| home.house.rooms[object.room].kind.word()).or(end_room);
     let target = match target.filter(|_| has_task) {
         Some((target, object)) => {
             let around = labels_around(platform, &record.path.scene, last)?;
@@ -120,7 +124,7 @@ fn compare_with_plan(
     };
     Ok(HousePlanComparison {
         text: text.clone(),
-        room: last_room(text).zip(own).map(|(said, own)| same_room(&said, own)),
+        room: last_room(text).zip(right_room).map(|(named, right)| same_room(&named, right)),
         stop_m: stop_at(&split_words(text)).map(|name| nearest_m(feet, &name, home)),
         target,
     })
@@ -139,6 +143,7 @@ fn stop_at(words: &[String]) -> Option<String> {
     after.filter(|name| !name.is_room || name.is_seen()).map(|name| name.name.clone())
 }
 
+/// The distance to the nearest object of a name, metres; infinite where the house has none on this storey.
 fn nearest_m(feet: DVec3, name: &str, home: &HouseScene) -> f64 {
     let is_called = |object: &&NumberedObject| {
         names_agree(&object.name, name) || normalise_name(&object.name) == normalise_name(name)
@@ -151,16 +156,20 @@ fn nearest_m(feet: DVec3, name: &str, home: &HouseScene) -> f64 {
 fn off_m(feet: DVec3, object: &NumberedObject) -> f64 {
     let (low, high) = object.bounds_m;
     let nearest = feet.clamp(DVec3::new(low.x, low.y, f64::MIN), DVec3::new(high.x, high.y, f64::MAX));
+    // On this storey: not wholly above the ceiling, nor wholly below the floor.
     let is_here = low.z < feet.z + 2.5 && high.z > feet.z - 0.5;
     if is_here { (nearest - feet).truncate().length() } else { f64::INFINITY }
 }
 
-fn plan_rows(held: &[HousePlanComparison]) -> Vec<TextFigureRow> {
-    let targets = || held.iter().filter_map(|held| held.target);
-    let stops = || held.iter().filter_map(|held| held.stop_m);
+fn plan_rows(comparisons: &[HousePlanComparison]) -> Vec<TextFigureRow> {
+    let targets = || comparisons.iter().filter_map(|comparison| comparison.target);
+    let stops = || comparisons.iter().filter_map(|comparison| comparison.stop_m);
     vec![
-        number_row("texts", held.len() as f64),
-        share_row("the room named last is the target's, or the end's", held.iter().filter_map(|held| held.room)),
+        number_row("texts", comparisons.len() as f64),
+        share_row(
+            "the room named last is the target's, or the end's",
+            comparisons.iter().filter_map(|comparison| comparison.room),
+        ),
         share_row("\"stop at X\": an X within 2 m of the end", stops().map(|far_m| far_m <= STOP_M)),
         share_row("\"stop at X\": an X within 3 m of the end", stops().map(|far_m| far_m <= TARGET_M)),
         share_row(

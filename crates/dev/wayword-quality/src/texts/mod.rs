@@ -89,18 +89,18 @@ fn open_platform(platform: String, data: Option<PathBuf>) -> Result<Box<dyn Plat
     platforms::open_platform(&AskedSettings::from(asked).resolve()?)
 }
 
-/// The scenes of episodes, those that the platform has.
+/// Surveys of the episodes' scenes, as far as the platform has them.
 fn survey_scenes(
     platform: &dyn Platform,
     episodes: &[Episode],
 ) -> Result<BTreeMap<SceneId, ViewpointSurvey>, CommandError> {
-    let there: BTreeSet<SceneId> = platform.list_scenes()?.into_iter().collect();
+    let available: BTreeSet<SceneId> = platform.list_scenes()?.into_iter().collect();
     let scenes: BTreeSet<&SceneId> = episodes.iter().map(|episode| &episode.scene).collect();
     let survey = |scene: &&SceneId| Ok(((*scene).clone(), survey_scene(platform, scene)?));
-    scenes.iter().filter(|scene| there.contains(**scene)).map(survey).collect()
+    scenes.iter().filter(|scene| available.contains(**scene)).map(survey).collect()
 }
 
-/// People's items that were generated too; all of them where there is none.
+/// The items of people's file that are among the generated ones; all items of the file where none is.
 fn of_items(file: &Path, generated: &[Episode]) -> Result<Vec<Episode>, CommandError> {
     let ids: BTreeSet<&str> = generated.iter().map(|episode| episode.id.as_str()).collect();
     let (same, others): (Vec<Episode>, Vec<Episode>) =
@@ -108,6 +108,7 @@ fn of_items(file: &Path, generated: &[Episode]) -> Result<Vec<Episode>, CommandE
     Ok(if same.is_empty() { others } else { same })
 }
 
+/// The figures that need only the texts.
 fn text_rows(episodes: &[Episode], train: Option<&TrainingTexts>) -> Vec<TextFigureRow> {
     let texts = in_turn(episodes);
     let mut rows = surface::surface_rows(&texts);
@@ -122,14 +123,15 @@ fn in_turn(episodes: &[Episode]) -> Vec<&str> {
     (0..most).flat_map(nth).map(String::as_str).collect()
 }
 
+/// A table with a column for each side, and a line for each row of the first side.
 fn side_by_side(sides: &[(&str, Vec<TextFigureRow>)]) -> String {
     let head = std::iter::once(String::new()).chain(sides.iter().map(|(name, _)| (*name).to_owned()));
     let names = sides.first().map_or(&[][..], |(_, rows)| rows);
     let line = |row: &TextFigureRow| {
-        let of = |rows: &[TextFigureRow]| {
+        let cell = |rows: &[TextFigureRow]| {
             rows.iter().find(|other| other.name == row.name).map_or("-".to_owned(), |row| row.value.table_cell())
         };
-        std::iter::once(row.name.clone()).chain(sides.iter().map(|(_, rows)| of(rows))).collect()
+        std::iter::once(row.name.clone()).chain(sides.iter().map(|(_, rows)| cell(rows))).collect()
     };
     aligned_table(&std::iter::once(head.collect()).chain(names.iter().map(line)).collect::<Vec<_>>())
 }

@@ -9,22 +9,24 @@ const DETERMINERS: [&str; 36] = [
     "fourth", "last", "next", "one", "two", "three", "four", "five", "six", "of", "with", "by", "beside", "near",
     "both", "past", "between", "above", "below", "under", "all", "nearest",
 ];
-/// How many words before a name a determiner may be.
+/// A determiner is at most this many words before its name.
 const DETERMINER_REACH_WORDS: usize = 4;
 
-/// A room of any kind.
+/// The word for a room of any kind.
 const ANY_ROOM: &str = "room";
 
 /// A name in a text.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct LexiconName {
-    /// Its first word.
+    /// The index of its first word.
     pub(super) start: usize,
-    /// The word after its last one.
+    /// The index of the word after its last one.
     pub(super) end: usize,
-    /// As the lexicon spells it.
+    /// The name as the lexicon spells it.
     pub(super) name: String,
+    /// Whether the name can be a room's.
     pub(super) is_room: bool,
+    /// Whether the name can be an object's.
     pub(super) is_thing: bool,
 }
 
@@ -95,6 +97,7 @@ fn all_names(words: &[String], known: &BTreeSet<String>) -> Vec<LexiconName> {
     found
 }
 
+/// Whether a name has more than one word, or a determiner comes before it.
 fn is_introduced(words: &[String], name: &LexiconName) -> bool {
     let before = &words[name.start.saturating_sub(DETERMINER_REACH_WORDS)..name.start];
     name.end - name.start > 1 || before.iter().any(|word| DETERMINERS.contains(&word.as_str()))

@@ -12,7 +12,9 @@ use wayword_language::lexicon::same_room;
 
 /// The words for entering, leaving or passing a room are at most this many words before its name.
 const PHRASE_REACH_WORDS: usize = 4;
+/// Phrases before a room that the walker leaves.
 const LEAVING_PHRASES: [&str; 7] = ["out of", "exit", "leave", "leaving", "exiting", "leaves", "exits"];
+/// Phrases before a room that the walker enters or crosses.
 const ENTERING_PHRASES: [&str; 10] =
     ["into", "enter", "entering", "to", "toward", "towards", "in", "inside", "through", "reach"];
 /// Phrases for a room that the way passes but does not enter.
@@ -21,7 +23,9 @@ const ASIDE_PHRASES: [&str; 5] = ["past", "next to", "near", "by", "beside"];
 /// A room that a text enters or leaves.
 #[derive(Debug, Clone, PartialEq)]
 struct TextRoomPassage {
+    /// The name of the room, as the lexicon spells it.
     room: String,
+    /// Whether the text leaves it.
     is_left: bool,
 }
 
@@ -32,7 +36,7 @@ fn room_passages(text: &str) -> Vec<TextRoomPassage> {
     for name in find_names(&words).into_iter().filter(|name| name.is_room && !name.is_thing) {
         let before = format!(" {} ", words[name.start.saturating_sub(PHRASE_REACH_WORDS)..name.start].join(" "));
         // The phrase nearest to the name counts.
-        let last = |phrases: &[&str]| phrases.iter().filter_map(|one| before.rfind(&format!(" {one} "))).max();
+        let last = |phrases: &[&str]| phrases.iter().filter_map(|phrase| before.rfind(&format!(" {phrase} "))).max();
         let (left, entered, aside) = (last(&LEAVING_PHRASES), last(&ENTERING_PHRASES), last(&ASIDE_PHRASES));
         if left.max(entered) > aside && left.max(entered).is_some() {
             found.push(TextRoomPassage { room: name.name, is_left: left > entered });
@@ -56,7 +60,7 @@ fn leaves_unentered(passages: &[TextRoomPassage], start: Option<&str>) -> bool {
     })
 }
 
-/// Whether the rooms of a text that the path passes come in another order on the path.
+/// Whether the rooms of a text come in another order on the path. Rooms that the path does not pass are skipped.
 fn is_out_of_order(passages: &[TextRoomPassage], passed: &[&str]) -> bool {
     let mut from = 0;
     for passage in passages {
@@ -81,6 +85,7 @@ fn rooms_on_path<'s>(episode: &Episode, surveys: &'s BTreeMap<SceneId, Viewpoint
     rooms
 }
 
+/// The rows of the table about rooms. The order is judged only for paths with a survey of their scene.
 pub(super) fn room_rows(episodes: &[Episode], surveys: &BTreeMap<SceneId, ViewpointSurvey>) -> Vec<TextFigureRow> {
     let (mut left, mut order) = (Vec::new(), Vec::new());
     for episode in episodes {

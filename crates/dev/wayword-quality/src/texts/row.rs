@@ -14,7 +14,9 @@ pub(super) struct TextFigureRow {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum TextFigureValue {
+    /// `count` of `of` cases.
     Share { count: usize, of: usize },
+    /// A number in the unit that the name gives.
     Number(f64),
 }
 
@@ -34,7 +36,7 @@ pub(super) fn number_row(name: &str, value: f64) -> TextFigureRow {
 }
 
 impl TextFigureValue {
-    /// As a cell of a table.
+    /// The value as a cell of a table.
     pub(super) fn table_cell(self) -> String {
         match self {
             Self::Share { of: 0, .. } => "-".to_owned(),

@@ -7,7 +7,7 @@ use super::{
 };
 use std::collections::BTreeSet;
 
-/// Word types are counted over this many texts.
+/// Word types, the different words, are counted over the first texts, at most this many.
 const TYPES_OVER: usize = 500;
 /// Percentiles of the number of words.
 const LENGTH_PERCENTILES: [usize; 3] = [5, 50, 95];
@@ -51,13 +51,13 @@ pub(super) fn surface_rows(texts: &[&str]) -> Vec<TextFigureRow> {
         number_row("word types over 500 texts", count_word_types(texts) as f64),
     ];
     rows.extend(length_rows(texts, &split));
-    let begins = |opener: &str| {
+    let opener_row = |opener: &str| {
         share_row(&format!("begins with \"{opener}\""), split.iter().map(|words| begins_with(words, opener)))
     };
-    rows.extend(OPENER_PHRASES.iter().map(|opener| begins(opener)));
-    let held =
+    rows.extend(OPENER_PHRASES.iter().map(|opener| opener_row(opener)));
+    let phrase_row =
         |(name, phrases): &(&str, &[&str])| share_row(name, split.iter().map(|words| holds_phrase(words, phrases)));
-    rows.extend(COUNTED_PHRASES.iter().map(held));
+    rows.extend(COUNTED_PHRASES.iter().map(phrase_row));
     rows
 }
 
@@ -65,6 +65,7 @@ fn begins_with(words: &[String], opener: &str) -> bool {
     opener.split(' ').eq(words.iter().map(String::as_str).take(opener.split(' ').count()))
 }
 
+/// The number of different words in the first [`TYPES_OVER`] texts.
 fn count_word_types(texts: &[&str]) -> usize {
     let lower = texts.iter().take(TYPES_OVER).map(|text| text.to_lowercase()).collect::<Vec<_>>().join("\n");
     let words: BTreeSet<&str> =
@@ -72,6 +73,7 @@ fn count_word_types(texts: &[&str]) -> usize {
     words.len()
 }
 
+/// The rows about numbers of words and sentences. `split`: the words of each text.
 fn length_rows(texts: &[&str], split: &[Vec<String>]) -> Vec<TextFigureRow> {
     let mut counts: Vec<usize> = split.iter().map(Vec::len).collect();
     counts.sort_unstable();

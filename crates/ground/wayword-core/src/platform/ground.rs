@@ -32,8 +32,9 @@ pub trait Ground: Send + Sync {
         Ok(None)
     }
 
-    /// The distances of what [`look_from`](super::Platform::look_from) shows from a frame, level and for the same gaze; `None`
-    /// where the platform does not know them. It is separate from the view, so that only callers that want it pay for it.
+    /// The depth image of the view that [`look_from`](super::Platform::look_from) shows for the same frame and gaze; `None`
+    /// where the platform does not know distances. The view does not contain it, so that only callers that want it pay for
+    /// it.
     ///
     /// # Errors
     /// When the frame is not a place of the scene, or its data cannot be read.

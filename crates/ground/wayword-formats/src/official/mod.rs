@@ -59,6 +59,7 @@ impl OfficialSplit {
     }
 }
 
+/// The split of a Matterport3D scene.
 fn of_matterport3d(scene: &str) -> Option<OfficialSplit> {
     let mut lines = MATTERPORT3D_SCENES.lines().filter_map(|line| line.split_once(' '));
     let (split, _) = lines.find(|(_, name)| *name == scene)?;

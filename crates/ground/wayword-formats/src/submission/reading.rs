@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::{collections::BTreeSet, path::Path};
 use wayword_core::{Heading, ViewpointId};
 
-/// An item's name is its episode's, followed by the place of the instruction.
+/// Longest name of an item, bytes: its episode's name, an underscore, and a number of at most 20 digits.
 const INSTR_ID_BYTES: usize = limits::NAME_BYTES + 21;
 
 /// The usable items of a submission, and the problems of the others.
@@ -45,7 +45,9 @@ struct SubmissionReader {
     submitted: Vec<SubmittedTrajectory>,
     flawed: Vec<String>,
     problems: SubmissionProblems,
+    /// The names of all items so far.
     names: BTreeSet<String>,
+    /// The number of entries of all trajectories so far.
     poses: usize,
 }
 
@@ -137,6 +139,7 @@ fn entry_poses(item: &DatasetItem<'_>, field: &str, entry: &Value) -> Result<Vec
     }
 }
 
+/// A viewpoint without directions, which looks north and level.
 fn undirected_pose(item: &DatasetItem<'_>, field: &str, value: &Value) -> Result<TrajectoryPose, FormatError> {
     let viewpoint = ViewpointId::new(item.checked_text(field, value)?)
         .map_err(|error| item.wrong_field(field, error.to_string(), "give the viewpoint's bare name"))?;

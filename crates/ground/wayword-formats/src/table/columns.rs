@@ -28,6 +28,7 @@ pub(super) fn write_columns<W: Write + Send>(
     columns.write_checks(rows)
 }
 
+/// Writes columns one after the other; the order of its calls is the order of the schema.
 struct ColumnWriter<'g, 'w, W: Write> {
     group: &'g mut SerializedRowGroupWriter<'w, W>,
 }
@@ -41,20 +42,22 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
         column.close()
     }
 
+    /// Writes a column of texts.
     fn put_words<'r>(
         &mut self,
         rows: &[ParquetRow<'r>],
-        of: impl Fn(&ParquetRow<'r>) -> &'r str,
+        cell: impl Fn(&ParquetRow<'r>) -> &'r str,
     ) -> Result<(), ParquetError> {
-        self.put_column::<ByteArrayType>(&required_column(rows, |row| ByteArray::from(of(row))))
+        self.put_column::<ByteArrayType>(&required_column(rows, |row| ByteArray::from(cell(row))))
     }
 
+    /// Writes a column of texts, with null where a row has none.
     fn words_or_null<'r>(
         &mut self,
         rows: &[ParquetRow<'r>],
-        of: impl Fn(&ParquetRow<'r>) -> Option<&'r str>,
+        cell: impl Fn(&ParquetRow<'r>) -> Option<&'r str>,
     ) -> Result<(), ParquetError> {
-        self.put_column::<ByteArrayType>(&optional_column(rows, |row| of(row).map(ByteArray::from)))
+        self.put_column::<ByteArrayType>(&optional_column(rows, |row| cell(row).map(ByteArray::from)))
     }
 
     fn write_text(&mut self, rows: &[ParquetRow<'_>]) -> Result<(), ParquetError> {
@@ -81,11 +84,13 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
     }
 
     fn write_ambiguity(&mut self, rows: &[ParquetRow<'_>]) -> Result<(), ParquetError> {
-        let of = |row: &ParquetRow<'_>| row.record.instruction.ambiguity.clone();
-        self.put_column::<BoolType>(&optional_column(rows, |row| of(row).as_ref().map(TextAmbiguity::is_ambiguous)))?;
-        self.put_column::<Int64Type>(&optional_column(rows, |row| of(row)?.ends.map(count_as_i64)))?;
+        let row_ambiguity = |row: &ParquetRow<'_>| row.record.instruction.ambiguity.clone();
+        self.put_column::<BoolType>(&optional_column(rows, |row| {
+            row_ambiguity(row).as_ref().map(TextAmbiguity::is_ambiguous)
+        }))?;
+        self.put_column::<Int64Type>(&optional_column(rows, |row| row_ambiguity(row)?.ends.map(count_as_i64)))?;
         self.put_column::<Int64Type>(&optional_column(rows, |row| {
-            of(row).map(|ambiguity| count_as_i64(ambiguity.objects))
+            row_ambiguity(row).map(|ambiguity| count_as_i64(ambiguity.objects))
         }))
     }
 
@@ -115,10 +120,15 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
         self.of_findings(rows, |finding| &finding.reason)
     }
 
-    fn of_findings(&mut self, rows: &[ParquetRow<'_>], of: impl Fn(&CheckFinding) -> &str) -> Result<(), ParquetError> {
-        let of = |finding| ByteArray::from(of(finding));
+    /// Writes a column with a list of texts in each row, one for each finding.
+    fn of_findings(
+        &mut self,
+        rows: &[ParquetRow<'_>],
+        text: impl Fn(&CheckFinding) -> &str,
+    ) -> Result<(), ParquetError> {
+        let element = |finding| ByteArray::from(text(finding));
         self.put_column::<ByteArrayType>(&list_column(rows, |row| {
-            row.record.instruction.findings.iter().map(of).collect()
+            row.record.instruction.findings.iter().map(element).collect()
         }))
     }
 }

@@ -16,7 +16,7 @@ use parquet::{
 use std::{path::Path, sync::Arc};
 
 const SCHEMA_TEXT: &str = include_str!("schema.txt");
-/// Rows of a group. Readers hold a group in memory.
+/// Most rows of one row group of the file. Readers have a whole group in memory.
 const GROUP_ROWS: usize = 10_000;
 
 /// A row: an instruction, and the split that it belongs to.

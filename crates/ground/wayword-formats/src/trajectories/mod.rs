@@ -25,8 +25,9 @@ use wayword_core::{AgentAction, DVec3, Heading, SceneId};
 
 /// The value of `format`.
 const TRAJECTORY_FORMAT: &str = "wayword-trajectory/1";
-/// Positions and headings are rounded to parts of a metre and of a radian, and the parts of rotations more finely.
+/// Positions and headings are rounded to that part of a metre and of a radian: a millionth.
 const PARTS_PER_UNIT: f64 = 1e6;
+/// The four numbers of a rotation are rounded to that part of 1, so that the heading keeps its digits.
 const ROTATION_PARTS: f64 = 1e9;
 
 /// A walk in single actions.
@@ -118,7 +119,7 @@ fn rotation_from_heading(heading: Heading) -> [f64; 4] {
     habitat_from_heading(heading).map(|part| (part * ROTATION_PARTS).round() / ROTATION_PARTS)
 }
 
-/// The heading of a rotation that was written.
+/// The heading of a rotation that a file has, with the digits that its writer had.
 fn heading_from_rotation(rotation: [f64; 4]) -> Option<Heading> {
     heading_from_habitat(rotation).map(rounded_heading)
 }

@@ -10,9 +10,9 @@ use std::{
 };
 use wayword_core::hex_text;
 
-/// Largest picture that is read, bytes.
+/// Largest picture that is read, bytes: 16 MiB. A larger one is an error.
 const PICTURE_BYTES: u64 = 16 << 20;
-/// Most files of one shard.
+/// Most files of one shard that are looked at; pictures behind them count as missing.
 const SHARD_FILES: usize = 4_000_000;
 const REWRITE_HINT: &str = "write the trajectories again: the same command goes on where it stopped";
 
@@ -64,9 +64,9 @@ pub fn read_pictures(folder: &Path, trajectory: &ActionTrajectory) -> Result<Vec
         }
         PictureLocation::Sample { shard, key } => {
             let file = folder.join(shard);
-            let found =
+            let pictures =
                 sample_pictures(&file, key, count).map_err(|source| FormatError::from_io(&file, "read", source))?;
-            (file, found)
+            (file, pictures)
         }
     };
     if pictures.len() != count || PictureDigest::from_pictures(&pictures) != trajectory.sha256 {
@@ -76,6 +76,7 @@ pub fn read_pictures(folder: &Path, trajectory: &ActionTrajectory) -> Result<Vec
     Ok(pictures)
 }
 
+/// The bytes of a picture, which are bounded.
 fn picture_bytes(file: io::Result<impl Read>) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     file?.take(PICTURE_BYTES + 1).read_to_end(&mut bytes)?;
@@ -85,19 +86,19 @@ fn picture_bytes(file: io::Result<impl Read>) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The pictures of one sample of a shard.
+/// The first `count` pictures of one sample of a shard, which lie in their order.
 fn sample_pictures(file: &Path, key: &str, count: usize) -> io::Result<Vec<Vec<u8>>> {
     let mut archive = tar::Archive::new(io::BufReader::new(File::open(file)?));
-    let mut found = Vec::new();
+    let mut pictures = Vec::new();
     for entry in archive.entries()?.take(SHARD_FILES) {
         let entry = entry?;
         let name = entry.path()?.to_string_lossy().into_owned();
-        if found.len() >= count {
+        if pictures.len() >= count {
             break;
         }
-        if name == format!("{key}.{}", picture_name(found.len())) {
-            found.push(picture_bytes(Ok(entry))?);
+        if name == format!("{key}.{}", picture_name(pictures.len())) {
+            pictures.push(picture_bytes(Ok(entry))?);
         }
     }
-    Ok(found)
+    Ok(pictures)
 }

@@ -9,9 +9,9 @@ use std::{
 };
 use wayword_core::{AgentAction, DVec3, Heading};
 
-/// Most actions of one walk.
+/// Most actions of one walk; a file with a longer one is refused.
 const MAX_ACTIONS: usize = 25_000;
-/// Most actions of all walks together that are kept in memory.
+/// Most actions of all walks together that are kept in memory; a file with more is refused.
 const ACTIONS_KEPT: usize = 20_000_000;
 
 /// Reads `trajectories.jsonl`, plain or gzip.
@@ -90,6 +90,7 @@ fn take_actions(item: &mut DatasetItem<'_>) -> Result<Vec<AgentAction>, FormatEr
     }
 }
 
+/// Takes where the agent is and looks before each of the `count` actions.
 fn take_poses(item: &mut DatasetItem<'_>, count: usize) -> Result<(Vec<DVec3>, Vec<Heading>), FormatError> {
     let (positions, rotations) = (item.take_field("positions")?, item.take_field("rotations")?);
     for (field, value) in [("positions", &positions), ("rotations", &rotations)] {
@@ -114,6 +115,7 @@ fn take_poses(item: &mut DatasetItem<'_>, count: usize) -> Result<(Vec<DVec3>, V
     Ok((positions, headings))
 }
 
+/// Takes, for each frame, the action before which the agent comes there.
 fn take_frame_steps(item: &mut DatasetItem<'_>, actions: usize) -> Result<Vec<usize>, FormatError> {
     let value = item.take_field("frame_steps")?;
     item.checked_list("frame_steps", &value, limits::PATH_NODES)?;
@@ -125,6 +127,7 @@ fn take_frame_steps(item: &mut DatasetItem<'_>, actions: usize) -> Result<Vec<us
     Ok(steps)
 }
 
+/// Takes the place of the pictures: a path of at most 512 bytes that does not leave the folder.
 fn take_place(item: &mut DatasetItem<'_>) -> Result<PictureLocation, FormatError> {
     let value = item.take_field("pictures")?;
     let place: PictureLocation = item.parse_value("pictures", value)?;
@@ -156,22 +159,22 @@ fn take_instructions(
     let mut all = Vec::with_capacity(list.len());
     for (number, value) in list.iter().enumerate() {
         let field = format!("instructions[{number}]");
-        let told: TrajectoryInstruction = item.parse_value(&field, value.clone())?;
-        if told.text.len() > limits::INSTRUCTION_BYTES {
-            let problem = format!("it has {} bytes, more than {}", told.text.len(), limits::INSTRUCTION_BYTES);
+        let instruction: TrajectoryInstruction = item.parse_value(&field, value.clone())?;
+        if instruction.text.len() > limits::INSTRUCTION_BYTES {
+            let problem = format!("it has {} bytes, more than {}", instruction.text.len(), limits::INSTRUCTION_BYTES);
             return Err(item.wrong_field(
                 &format!("{field}.text"),
                 problem,
                 "shorten it: an instruction is a few sentences",
             ));
         }
-        for (part, sub) in told.sub_instructions.iter().enumerate() {
-            if let Some((what, problem)) = find_fault(sub, &told.text, frame_steps) {
-                let field = format!("{field}.sub_instructions[{part}].{what}");
+        for (part, sub) in instruction.sub_instructions.iter().enumerate() {
+            if let Some((wrong, problem)) = find_fault(sub, &instruction.text, frame_steps) {
+                let field = format!("{field}.sub_instructions[{part}].{wrong}");
                 return Err(item.wrong_field(&field, problem, "docs/FORMATS.md says what it should be"));
             }
         }
-        all.push(told);
+        all.push(instruction);
     }
     Ok(all)
 }
@@ -182,9 +185,9 @@ fn find_fault(sub: &SubInstruction, text: &str, frame_steps: &[usize]) -> Option
     if text.get(from..to) != Some(sub.text.as_str()) {
         return Some(("span", "the instruction has other words there"));
     }
-    if first > last || last >= frame_steps.len() {
+    let steps = frame_steps.get(first).zip(frame_steps.get(last)).filter(|_| first <= last);
+    let Some((from_step, to_step)) = steps else {
         return Some(("frames", "the walk has no such frames"));
-    }
-    (sub.steps != [frame_steps[first], frame_steps[last]])
-        .then_some(("steps", "the agent comes to these frames before other actions"))
+    };
+    (sub.steps != [*from_step, *to_step]).then_some(("steps", "the agent comes to these frames before other actions"))
 }

@@ -12,6 +12,7 @@ use std::{
 /// A shard that is being written, under another name until it is whole.
 pub struct ShardWriter {
     file: PathBuf,
+    /// The name that the shard has while it is written.
     beside: PathBuf,
     tar: tar::Builder<BufWriter<File>>,
 }
@@ -43,7 +44,7 @@ impl ShardWriter {
         named.try_for_each(|(number, picture)| self.append_file(&format!("{key}.{}", picture_name(number)), picture))
     }
 
-    /// The same bytes for the same walks: no time and no owner.
+    /// Appends a file without time and owner, so that the same walks give the same bytes.
     fn append_file(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
         let mut header = tar::Header::new_ustar();
         header.set_size(bytes.len() as u64);
@@ -52,7 +53,7 @@ impl ShardWriter {
         self.tar.append_data(&mut header, name, bytes)
     }
 
-    /// Ends the shard: it survives a crash of the machine, and has its name.
+    /// Ends the shard: writes it to the disk, and gives it its name.
     ///
     /// # Errors
     /// When it cannot be written.

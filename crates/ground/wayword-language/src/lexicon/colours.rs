@@ -3,6 +3,7 @@
 use crate::data;
 use std::sync::LazyLock;
 
+/// Colours that people use for one another, as lists: one list for each line of `words/colours.txt`.
 static COLOUR_FAMILIES: LazyLock<Vec<Vec<&'static str>>> = LazyLock::new(|| {
     data::content_lines(include_str!("../words/colours.txt")).map(|line| data::split_names(line).collect()).collect()
 });
@@ -15,6 +16,7 @@ pub fn same_colour(a: &str, b: &str) -> bool {
     a == b || COLOUR_FAMILIES.iter().any(|family| family.contains(&a) && family.contains(&b))
 }
 
+/// "brown" of "dark brown".
 fn without_shade(colour: &str) -> &str {
     ["dark ", "light ", "pale ", "bright ", "deep "]
         .iter()

@@ -60,9 +60,10 @@ pub fn to_plural(name: &str) -> String {
     if let Some(stem) = name.strip_suffix("shelf") {
         return format!("{stem}shelves");
     }
-    let hisses = ["s", "x", "z", "ch", "sh"].iter().any(|end| name.ends_with(end));
+    // "Benches", "boxes".
+    let ends_in_hiss = ["s", "x", "z", "ch", "sh"].iter().any(|end| name.ends_with(end));
     let consonant_y = name.ends_with('y') && !["ay", "ey", "oy", "uy"].iter().any(|end| name.ends_with(end));
-    match (hisses, consonant_y) {
+    match (ends_in_hiss, consonant_y) {
         (true, _) => format!("{name}es"),
         (_, true) => format!("{}ies", &name[..name.len() - 1]),
         _ => format!("{name}s"),

@@ -6,6 +6,7 @@ use std::{collections::BTreeMap, sync::LazyLock};
 
 const ROOM_LIST: &str = include_str!("../words/rooms.txt");
 
+/// The rooms of `words/rooms.txt`. Names on one line mean the same room.
 struct RoomLexicon {
     /// The line of each name, by its normal spelling.
     line_of: BTreeMap<String, usize>,
@@ -31,6 +32,7 @@ static ROOMS: LazyLock<RoomLexicon> = LazyLock::new(|| {
     RoomLexicon { line_of, names, taken_for }
 });
 
+/// The line of the list that has a name.
 fn room_line(name: &str) -> Option<usize> {
     ROOMS.line_of.get(&normalise_name(name)).copied()
 }

@@ -59,12 +59,16 @@ pub struct LexiconThing {
     pub class: ThingClass,
     /// From 0 (never a landmark) to 3 (a landmark that is seen from afar).
     pub salience: u8,
+    /// The usual name of a more general thing: "chair" of a dining chair.
     parent: Option<&'static str>,
 }
 
+/// The things of `words/objects.txt`.
 struct ThingLexicon {
     things: Vec<LexiconThing>,
+    /// Indices into `things`, by every name in normal spelling.
     by_name: BTreeMap<String, usize>,
+    /// The number of words of the longest name.
     longest: usize,
 }
 
@@ -89,6 +93,7 @@ static THINGS: LazyLock<ThingLexicon> = LazyLock::new(|| {
     ThingLexicon { things, by_name, longest }
 });
 
+/// The class by its name in the list.
 fn class_named(name: &str) -> ThingClass {
     match name {
         "seat" => ThingClass::Seat,
@@ -147,6 +152,7 @@ pub fn find_thing(name: &str) -> Option<&'static LexiconThing> {
     name_tails(&name).find_map(thing_named)
 }
 
+/// A name and its endings, the longest first: "old oak table", "oak table", "table".
 fn name_tails(name: &str) -> impl Iterator<Item = &str> {
     std::iter::once(name).chain(name.match_indices(' ').map(move |(at, _)| &name[at + 1..]))
 }
@@ -156,20 +162,22 @@ fn name_tails(name: &str) -> impl Iterator<Item = &str> {
 #[must_use]
 pub fn kinds_of(name: &str) -> Vec<String> {
     let name = normalise_name(name);
-    let Some(mut at) = name_tails(&name).find_map(thing_named) else {
+    let Some(mut thing) = name_tails(&name).find_map(thing_named) else {
         let last = name.rsplit(' ').next().unwrap_or_default().to_owned();
         return if last == name { vec![name] } else { vec![name, last] };
     };
-    let mut kinds = vec![at.name.to_owned()];
+    let mut kinds = vec![thing.name.to_owned()];
+    // The bound keeps a mistake in the list from leading in circles.
     while let Some(parent) =
-        parent_thing(at).filter(|parent| kinds.len() < 4 && !kinds.contains(&parent.name.to_owned()))
+        parent_thing(thing).filter(|parent| kinds.len() < 4 && !kinds.contains(&parent.name.to_owned()))
     {
         kinds.push(parent.name.to_owned());
-        at = parent;
+        thing = parent;
     }
     kinds
 }
 
+/// The thing of a thing's parent.
 fn parent_thing(thing: &LexiconThing) -> Option<&'static LexiconThing> {
     thing_named(&normalise_name(thing.parent?))
 }

@@ -15,14 +15,14 @@ pub(super) fn climbs_and_floors(tokens: TokenSlice<'_>, clauses: &[usize]) -> Ve
     let before_climb = tokens.runs_before(|word| v::BEFORE_CLIMB.contains(&word));
     let text = ClimbText { tokens, clauses, before_climb };
     let mut events: Vec<TextEvent> = Vec::new();
-    // The climbs found in this clause. They are few, because each is counted once in a clause.
-    let mut told: Vec<EventContent> = Vec::new();
+    // They are few, because a climb counts only once in a clause.
+    let mut climbs_in_clause: Vec<EventContent> = Vec::new();
     for at in 0..tokens.len() {
         if at > 0 && clauses[at] != clauses[at - 1] {
-            told.clear();
+            climbs_in_clause.clear();
         }
-        if let Some(what) = text.climb_at(at).filter(|what| !told.contains(what)) {
-            told.push(what.clone());
+        if let Some(what) = text.climb_at(at).filter(|what| !climbs_in_clause.contains(what)) {
+            climbs_in_clause.push(what.clone());
             events.push(TextEvent { what, span: tokens.span_of(at, at), clause: clauses[at], denied: false });
         }
         if let Some((floor, last)) = text.storey_at(at) {
@@ -47,7 +47,9 @@ fn is_floor(word: &str) -> bool {
 /// How far a climb goes: a flight of stairs, or a few steps.
 #[derive(Clone, Copy)]
 enum ClimbExtent {
+    /// At least one flight of stairs.
     Flight,
+    /// A few steps, fewer than a flight.
     Steps,
 }
 
@@ -60,10 +62,12 @@ impl ClimbExtent {
     }
 }
 
+/// A command to climb, or else a place that lies up or down the stairs.
 fn climb_or_storey(climb: ClimbDirection, is_command: bool) -> EventContent {
     if is_command { EventContent::Climb(climb) } else { EventContent::Storey(climb) }
 }
 
+/// A text, for questions about single tokens.
 struct ClimbText<'a> {
     tokens: TokenSlice<'a>,
     clauses: &'a [usize],
@@ -107,8 +111,8 @@ impl<'a> ClimbText<'a> {
         }
     }
 
-    /// "Take the stairs to the upper floor", "go to the floor above", but not "start on the upper floor", and not "the
-    /// stairs to the upper floor".
+    /// Another storey as a goal: "take the stairs to the upper floor", "go to the floor above", but not "start on the
+    /// upper floor", and not "the stairs to the upper floor".
     fn other_storey(&self, at: usize) -> Option<EventContent> {
         let next = self.word_at(at + 1);
         let is_joint = |word: &str| v::BREAKERS.contains(&word) && !v::DETERMINERS.contains(&word);
@@ -151,8 +155,8 @@ impl<'a> ClimbText<'a> {
         (goes && climbs && self.leads_on(at).is_none()).then_some(climb)
     }
 
-    /// "The stairs leading up to the bedroom", "the stairs going up", "the stairs that go up", "the stairs ascending to
-    /// the attic": the agent need not climb them.
+    /// Whether a word of climbing only describes stairs: "the stairs leading up to the bedroom", "the stairs going up",
+    /// "the stairs that go up", "the stairs ascending to the attic": the agent need not climb them.
     fn describes_stairs(&self, at: usize) -> bool {
         let Some(before) = self.before_climb(at) else { return false };
         let of_stairs =
@@ -170,7 +174,8 @@ impl<'a> ClimbText<'a> {
         self.before_climb[at].checked_sub(1)
     }
 
-    /// "Up the old stairs", "up one floor", "up to the second floor", but not "up to the stairs".
+    /// How far a climb goes by the words behind "up" or a verb of climbing: "up the old stairs", "up one floor", "up to
+    /// the second floor", but not "up to the stairs". `None` where they name no stairs or storey.
     fn leads_on(&self, at: usize) -> Option<ClimbExtent> {
         let to = usize::from(self.word_at(at + 1) == "to");
         let in_phrase = |at: &usize| {
@@ -194,13 +199,15 @@ impl<'a> ClimbText<'a> {
         Some(if few { ClimbExtent::Steps } else { ClimbExtent::Flight })
     }
 
-    /// "Down the tiled floor", "down the wood floor hallway": the ground that one walks on, and no storey.
+    /// Whether a "floor" is no storey: "down the tiled floor", "down the wood floor hallway", the ground that one walks
+    /// on.
     fn is_underfoot(&self, floor: usize) -> bool {
         let next = normal_word(self.word_at(floor + 1));
         v::FLOORINGS.contains(&self.word_before(floor)) || is_room(&next) || matches!(next.as_str(), "path" | "walkway")
     }
 
-    /// "Take the stairs up", "take the elevator down", but not "take a few steps down the hallway".
+    /// How far a climb goes by the stairs before "up": "take the stairs up", "take the elevator down", but not "take a
+    /// few steps down the hallway".
     fn behind_stairs(&self, at: usize) -> Option<ClimbExtent> {
         if v::DETERMINERS.contains(&self.word_at(at + 1)) && self.word_before(at) == "steps" {
             return None;
@@ -221,7 +228,7 @@ impl<'a> ClimbText<'a> {
         !is_place || is_carrier || link_before(self.tokens, self.clauses, before) == PlaceLink::Along
     }
 
-    /// The same for "upstairs" and "downstairs". Without a verb of going before them, they name a place.
+    /// Whether "upstairs" or "downstairs" is a command to climb. Without a verb of going before it, it names a place.
     fn commands_upstairs(&self, at: usize) -> bool {
         let name = normal_word(self.word_at(at + 1));
         if is_thing(&name) || is_room(&name) {
@@ -237,8 +244,8 @@ impl<'a> ClimbText<'a> {
     fn storey_at(&self, at: usize) -> Option<(StoreyMention, usize)> {
         let is_numbered = |at: usize| v::floor_number(self.word_at(at));
         let (number, last) = if is_floor(self.word_at(at)) {
-            let told_before = at > 0 && (is_numbered(at - 1).is_some() || self.word_at(at - 1) == "top");
-            (Some(is_numbered(at + 1).filter(|_| !told_before)?), at + 1)
+            let has_number_before = at > 0 && (is_numbered(at - 1).is_some() || self.word_at(at - 1) == "top");
+            (Some(is_numbered(at + 1).filter(|_| !has_number_before)?), at + 1)
         } else if self.word_at(at) == "top" && is_floor(self.word_at(at + 1)) {
             (None, at + 1)
         } else {

@@ -30,13 +30,15 @@ impl<'a> PlaceColours<'a> {
         Some(self.colour_at(self.last[from.checked_sub(1)?]?))
     }
 
-    /// "Is green", "that are dark red": a colour that the words right behind a place give it.
+    /// The colour that the words right behind a place give it: "is green", "that are dark red". `to` is the token behind the
+    /// place.
     pub(super) fn colour_behind(&self, to: usize) -> Option<String> {
         let word = |at: usize| self.tokens.word_at(at);
         let at = to + usize::from(matches!(word(to), "that" | "which"));
-        let is = matches!(word(at), "is" | "are" | "was" | "were").then_some(at + 1)?;
+        let behind_verb = matches!(word(at), "is" | "are" | "was" | "were").then_some(at + 1)?;
         let is_shade = |word: &str| matches!(word, "dark" | "light" | "all" | "mostly" | "very" | "painted" | "bright");
-        let at = is + usize::from(is_shade(word(is)));
+        let at = behind_verb + usize::from(is_shade(word(behind_verb)));
+        // "Is a green chair" is about another thing.
         let name = normal_word(word(at + 1));
         let is_whole = !is_thing(&name) && !is_room(&name);
         (v::COLOURS.contains(&word(at)) && is_whole).then(|| self.colour_at(at))

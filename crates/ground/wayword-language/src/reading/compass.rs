@@ -29,6 +29,7 @@ fn direction_at(tokens: TokenSlice<'_>, at: usize) -> Option<(CompassDirection, 
     }
 }
 
+/// The direction that a word names: "north", "northern", "northwards".
 fn of_word(word: &str) -> Option<CompassDirection> {
     let stem = ["wards", "ward", "erly", "ern"].iter().find_map(|end| word.strip_suffix(end)).unwrap_or(word);
     match stem {
@@ -44,6 +45,7 @@ fn of_word(word: &str) -> Option<CompassDirection> {
     }
 }
 
+/// "Northeast" for "north" and "east"; `None` where the two do not go together.
 fn join_directions(first: CompassDirection, second: CompassDirection) -> Option<CompassDirection> {
     match (first, second) {
         (CompassDirection::North, CompassDirection::East) => Some(CompassDirection::NorthEast),

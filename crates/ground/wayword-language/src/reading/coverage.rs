@@ -16,9 +16,9 @@ pub(super) fn read_coverage(
     known: &BTreeSet<String>,
 ) -> (Vec<ReadWord>, Vec<TextClause>) {
     let named = named_tokens(tokens, known);
-    let told = event_roles(tokens, events);
+    let roles_by_event = event_roles(tokens, events);
     let text = CoverageText { tokens, clauses, named };
-    let roles: Vec<Option<WordRole>> = (0..tokens.len()).map(|at| text.role_at(at, told[at])).collect();
+    let roles: Vec<Option<WordRole>> = (0..tokens.len()).map(|at| text.role_at(at, roles_by_event[at])).collect();
     let words = roles.iter().enumerate().filter_map(|(at, role)| {
         let role = (*role)?;
         Some(ReadWord { span: tokens.span_of(at, at), role, is_counted: !r::STOP_WORDS.contains(&tokens.word_at(at)) })
@@ -40,13 +40,13 @@ fn named_tokens(tokens: TokenSlice<'_>, known: &BTreeSet<String>) -> Vec<bool> {
 
 /// For each token, the role that it gets from the event that it belongs to.
 fn event_roles(tokens: TokenSlice<'_>, events: &[TextEvent]) -> Vec<Option<WordRole>> {
-    let mut told = vec![None; tokens.len()];
+    let mut roles = vec![None; tokens.len()];
     for event in events {
         let Some(role) = role_of(&event.what) else { continue };
         let within = tokens.first_from(event.span[0])..tokens.first_from(event.span[1]);
-        told[within].fill(Some(role));
+        roles[within].fill(Some(role));
     }
-    told
+    roles
 }
 
 /// The role of the words of an event. Those of a place are named or not, word by word.
@@ -81,15 +81,15 @@ impl<'a> CoverageText<'a> {
     }
 
     /// The role of a token; `None` for a mark.
-    fn role_at(&self, at: usize, told: Option<WordRole>) -> Option<WordRole> {
+    fn role_at(&self, at: usize, event_role: Option<WordRole>) -> Option<WordRole> {
         if !self.tokens.is_word(at) {
             return None;
         }
-        let found = told.or_else(|| self.named[at].then_some(WordRole::Place)).or_else(|| self.by_context(at));
-        Some(found.or_else(|| self.by_list(self.word_at(at))).unwrap_or(WordRole::Unknown))
+        let role = event_role.or_else(|| self.named[at].then_some(WordRole::Place)).or_else(|| self.by_context(at));
+        Some(role.or_else(|| self.by_list(self.word_at(at))).unwrap_or(WordRole::Unknown))
     }
 
-    /// The role of a word that depends on the words around it.
+    /// The role of a word that depends on the words around it; `None` where they decide nothing.
     fn by_context(&self, at: usize) -> Option<WordRole> {
         let (word, before, next) = (self.word_at(at), self.word_before(at), self.word_at(at + 1));
         let is_number = !matches!(word, "bottom" | "ground") && v::floor_number(word).is_some()
@@ -175,6 +175,7 @@ impl<'a> CoverageText<'a> {
         }
     }
 
+    /// Whether a token belongs to a name, or can be on a side of the walker.
     fn is_noun(&self, at: usize) -> bool {
         self.named.get(at) == Some(&true) || v::HAVE_SIDES.contains(&self.word_at(at))
     }
@@ -192,9 +193,9 @@ impl<'a> CoverageText<'a> {
             (&r::MANNER, WordRole::Manner),
             (&r::STOP_WORDS, WordRole::Filler),
         ];
-        let by_list = lists.into_iter().find(|(list, _)| list.contains(&word)).map(|(_, role)| role);
+        let listed = lists.into_iter().find(|(list, _)| list.contains(&word)).map(|(_, role)| role);
         let denies = word.ends_with("n't") || word.ends_with("n’t");
-        by_list
+        listed
             .or_else(|| denies.then_some(WordRole::Denial))
             .or_else(|| r::GENERAL.contains(&name.as_str()).then_some(WordRole::General))
             .or_else(|| is_form_of(word, &r::RELATIONS).then_some(WordRole::Relation))
@@ -202,10 +203,11 @@ impl<'a> CoverageText<'a> {
             .or_else(|| (is_thing(&name) || is_room(&name)).then_some(WordRole::Place))
     }
 
-    /// The clauses: each is understood unless the first word with a meaning in it is unknown.
+    /// The clauses by their numbers: each is understood unless the first word with a meaning in it is unknown.
     fn understood_clauses(&self, roles: &[Option<WordRole>]) -> Vec<TextClause> {
         let count = self.clauses.last().map_or(0, |last| last + 1);
         let mut clauses = vec![TextClause { span: [0, 0], understood: true }; count];
+        // Whether a word with a meaning has come in the clause.
         let mut decided = vec![false; count];
         for (at, role) in roles.iter().enumerate() {
             let Some(role) = role else { continue };
@@ -234,13 +236,14 @@ impl<'a> CoverageText<'a> {
 
 /// Whether a word is an adjective, or a form of one: "larger", "biggest".
 fn is_descriptive(word: &str) -> bool {
-    let is_one = |word: &str| v::ADJECTIVES.contains(&word) || r::MANNER.contains(&word);
+    let is_listed = |word: &str| v::ADJECTIVES.contains(&word) || r::MANNER.contains(&word);
     let stem = word.strip_suffix("er").or(word.strip_suffix("est")).filter(|stem| stem.len() > 2);
     let graded = |stem: &str| {
+        // "Larg" of "larger" lacks an "e". "Bigg" has a letter too many, and "tini" has an "i" for a "y".
         let single = stem.char_indices().next_back().map_or("", |(last, _)| &stem[..last]);
-        is_one(stem) || is_one(&format!("{stem}e")) || is_one(single) || is_one(&format!("{single}y"))
+        is_listed(stem) || is_listed(&format!("{stem}e")) || is_listed(single) || is_listed(&format!("{single}y"))
     };
-    is_one(word) || stem.is_some_and(graded)
+    is_listed(word) || stem.is_some_and(graded)
 }
 
 /// "Directly": how something is done. "Family" is not one.

@@ -14,6 +14,7 @@ pub(super) fn denied_tokens(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<bo
 /// How far a denial reaches.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum DenialReach {
+    /// There is no denial.
     Nothing,
     /// To the end of the noun phrase: "no piano in the hall".
     Phrase,
@@ -23,7 +24,9 @@ enum DenialReach {
     Clause,
 }
 
+/// For each token, whether a word of denial before it ("not", "no", "without") reaches it.
 fn by_words(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<bool> {
+    // The denial that is in force, and its clause.
     let mut reach = DenialReach::Nothing;
     let mut clause = 0;
     let is_denied = |at: usize| {
@@ -118,7 +121,8 @@ fn affirms_anyway(tokens: TokenSlice<'_>, at: usize) -> bool {
     )
 }
 
-/// "If you reach the stairs, you have gone too far": the condition after the "if" is not part of the walk.
+/// Marks conditions of having gone wrong: in "if you reach the stairs, you have gone too far", the stairs are not part of
+/// the walk.
 fn too_far(tokens: TokenSlice<'_>, clauses: &[usize], denied: &mut [bool]) {
     let mut from = 0;
     while from < tokens.len() {
@@ -141,6 +145,7 @@ fn too_far(tokens: TokenSlice<'_>, clauses: &[usize], denied: &mut [bool]) {
     }
 }
 
+/// The token behind the clause of `start`, at most `end`.
 fn end_of_clause(clauses: &[usize], start: usize, end: usize) -> usize {
     start + clauses[start..end].iter().take_while(|clause| **clause == clauses[start]).count()
 }

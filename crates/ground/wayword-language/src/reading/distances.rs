@@ -4,9 +4,9 @@ use super::{EventContent, TextEvent, numbers::cardinal_number, tokens::TokenSlic
 
 /// A foot, metres.
 const FOOT_M: f64 = 0.3048;
-/// People's steps are that long, metres: from short to long ones.
+/// Length of a person's step, metres: a short one and a long one.
 const STEP_M: [f64; 2] = [0.4, 0.9];
-/// Farther than any text asks to walk, metres. Greater numbers are mistakes.
+/// Farther than any text asks to walk, metres. A greater distance is a mistake and is not read.
 const FARTHEST_M: f64 = 100_000.0;
 
 /// The distances that a text asks to walk. A distance that only locates something ("two feet from the sofa") is none,
@@ -15,20 +15,23 @@ pub(super) fn read_distances(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<T
     let mut events = Vec::new();
     let mut at = 0;
     while at < tokens.len() {
-        let found = distance_at(tokens, at);
-        if let Some(told) = found.as_ref().filter(|told| is_walked(tokens, at, told)) {
-            let [metres_low, metres_high] = told.metres;
+        let distance = distance_at(tokens, at);
+        if let Some(walked) = distance.as_ref().filter(|distance| is_walked(tokens, at, distance)) {
+            let [metres_low, metres_high] = walked.metres;
             let what = EventContent::Distance { metres_low, metres_high };
-            events.push(TextEvent { what, span: tokens.span_of(at, told.end - 1), clause: clauses[at], denied: false });
+            let span = tokens.span_of(at, walked.end - 1);
+            events.push(TextEvent { what, span, clause: clauses[at], denied: false });
         }
-        at = found.map_or(at + 1, |told| told.end);
+        at = distance.map_or(at + 1, |distance| distance.end);
     }
     events
 }
 
 /// A number with a unit.
 struct DistanceWords {
+    /// The least and the greatest distance that the words can mean.
     metres: [f64; 2],
+    /// Whether the unit is a step.
     in_steps: bool,
     /// The token behind it.
     end: usize,
@@ -48,12 +51,13 @@ fn distance_at(tokens: TokenSlice<'_>, at: usize) -> Option<DistanceWords> {
     Some(DistanceWords { metres: in_metres(numbers, unit)?, in_steps, end: behind + 1 })
 }
 
+/// Numbers of a unit in metres; `None` where they are no distance. `unit` is the least and the greatest length of one.
 fn in_metres(numbers: [f64; 2], unit: [f64; 2]) -> Option<[f64; 2]> {
     let metres = [numbers[0] * unit[0], numbers[1] * unit[1]];
     (0.0 < metres[0] && metres[0] <= metres[1] && metres[1] <= FARTHEST_M).then_some(metres)
 }
 
-/// "10ft", "3.5m".
+/// The number and the unit of one word: "10ft", "3.5m".
 fn joined_number(word: &str) -> Option<(f64, [f64; 2])> {
     let unit = word.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
     let number = word[..word.len() - unit.len()].parse().ok()?;
@@ -99,6 +103,7 @@ fn number_at(tokens: TokenSlice<'_>, at: usize) -> Option<(f64, usize)> {
     Some(more.map_or((many, end), |more| (many + more, rest + 1)))
 }
 
+/// The number that one word means.
 fn number_word(word: &str) -> Option<f64> {
     let many = match word {
         "a" | "an" | "one" => 1.0,
@@ -142,9 +147,9 @@ fn unit_m(word: &str) -> Option<f64> {
 }
 
 /// Whether the walker walks that far, and the distance does not locate or measure a thing.
-fn is_walked(tokens: TokenSlice<'_>, at: usize, told: &DistanceWords) -> bool {
+fn is_walked(tokens: TokenSlice<'_>, at: usize, distance: &DistanceWords) -> bool {
     // "Three feet from the sofa", "two metres to the left of it", "a ten foot ladder".
-    let next = tokens.word_at(told.end);
+    let next = tokens.word_at(distance.end);
     let placed = matches!(
         next,
         "from"
@@ -160,16 +165,16 @@ fn is_walked(tokens: TokenSlice<'_>, at: usize, told: &DistanceWords) -> bool {
             | "below"
             | "above"
             | "thick"
-    ) || matches!((next, tokens.word_at(told.end + 1)), ("in", "front"))
+    ) || matches!((next, tokens.word_at(distance.end + 1)), ("in", "front"))
         || (next == "to"
-            && (told.end + 2..told.end + 4).any(|at| matches!(tokens.word_at(at), "left" | "right" | "side")));
+            && (distance.end + 2..distance.end + 4).any(|at| matches!(tokens.word_at(at), "left" | "right" | "side")));
     // "Up three steps", "the two steps", "two steps up": stairs.
     let climbs = |word: &str| {
         matches!(word, "up" | "down" | "climb" | "climbing" | "ascend" | "descend" | "the" | "these" | "those" | "of")
     };
     let leads_up = matches!(next, "up" | "down" | "upwards" | "downwards" | "upward" | "downward" | "leading")
-        || tokens.word_at(told.end + 2) == "stairs";
-    let stairs = told.in_steps && ((at.saturating_sub(2)..at).any(|at| climbs(tokens.word_at(at))) || leads_up);
+        || tokens.word_at(distance.end + 2) == "stairs";
+    let stairs = distance.in_steps && ((at.saturating_sub(2)..at).any(|at| climbs(tokens.word_at(at))) || leads_up);
     let start = at.saturating_sub(6);
     let mut words = (start..at).rev().take_while(|at| tokens.is_word(*at)).map(|at| tokens.word_at(at));
     let verb = words.find(|word| v::WALKING.contains(word) || v::TURNING.contains(word) || word.ends_with("ing"));

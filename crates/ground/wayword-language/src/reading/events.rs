@@ -54,7 +54,7 @@ pub enum EventContent {
     /// The walker looks at the places of this clause ("stop facing the window"), or away from them ("with your back to
     /// the bed").
     Face {
-        /// Whether the walker's back is to them.
+        /// Whether the walker's back is to the places.
         away: bool,
     },
     /// A direction of the compass.

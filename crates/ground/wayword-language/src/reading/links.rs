@@ -21,12 +21,12 @@ pub(super) fn link_before(tokens: TokenSlice<'_>, clauses: &[usize], from: usize
         return if words.iter().any(|word| v::ARRIVING.contains(word)) { PlaceLink::Goal } else { PlaceLink::Plain };
     };
     let before = words.get(at + 1).copied().unwrap_or("");
-    let said_across = || words[at + 1..].iter().take(3).any(|word| *word == "across");
+    let has_across = || words[at + 1..].iter().take(3).any(|word| *word == "across");
     match words[at] {
         // "next to" and "closest to", but not "walk to".
         "to" if v::BESIDE.contains(&before) => PlaceLink::Beside,
         "to" | "into" | "onto" | "toward" | "towards" | "until" | "till" => PlaceLink::Goal,
-        "from" if said_across() => PlaceLink::Beside,
+        "from" if has_across() => PlaceLink::Beside,
         // "The end of the hallway" is in it, but "the door of the kitchen" may be seen from outside.
         "of" if !matches!(before, "out" | "inside" | "end" | "middle" | "center" | "centre" | "top" | "bottom") => {
             PlaceLink::Beside

@@ -56,13 +56,14 @@ pub fn read_instruction(text: &str, known: &BTreeSet<String>) -> TextReading {
     events.extend(compass::compass_events(tokens, &clauses));
     events.extend(stops::stops_and_facing(tokens, &clauses));
     events.extend(distances::read_distances(tokens, &clauses));
+    // In "the second floor" there is no place, and "left" in "turn left at the door" is no side of the door.
     let names_no_place =
         |event: &&TextEvent| matches!(event.what, EventContent::Floor(_) | EventContent::Distance { .. });
-    let taken: Vec<[usize; 2]> = events.iter().filter(names_no_place).map(|event| event.span).collect();
-    let numbers_of_others = |event: &&TextEvent| matches!(event.what, EventContent::Turn(_) | EventContent::Floor(_));
-    let mut others: Vec<[usize; 2]> = events.iter().filter(numbers_of_others).map(|event| event.span).collect();
-    others.sort_unstable();
-    events.extend(places::read_places(tokens, &clauses, known, &taken, &others));
+    let placeless: Vec<[usize; 2]> = events.iter().filter(names_no_place).map(|event| event.span).collect();
+    let has_own_side = |event: &&TextEvent| matches!(event.what, EventContent::Turn(_) | EventContent::Floor(_));
+    let mut turns_and_storeys: Vec<[usize; 2]> = events.iter().filter(has_own_side).map(|event| event.span).collect();
+    turns_and_storeys.sort_unstable();
+    events.extend(places::read_places(tokens, &clauses, known, &placeless, &turns_and_storeys));
     events.sort_by_key(|event| event.span);
     let denied = denial::denied_tokens(tokens, &clauses);
     for event in &mut events {
@@ -93,8 +94,9 @@ pub fn clause_numbers(tokens: &[TextToken]) -> Vec<usize> {
     (0..tokens.len()).map(number).collect()
 }
 
-/// Marks the places at which the turn before them happens.
+/// Marks the places at which the turn before them happens: the sofa of "turn left at the sofa".
 fn mark_turn_places(tokens: TokenSlice<'_>, events: &mut [TextEvent]) {
+    // A text may have many places, so the connecting words are found once.
     let is_connection =
         |at: &usize| matches!(tokens.word_at(*at), "at" | "by" | "near" | "after" | "past" | "when" | "once");
     let connections: Vec<usize> = (0..tokens.len()).filter(is_connection).collect();

@@ -1,4 +1,5 @@
-//! Numbers before a place: which one of several it is, and how many there are.
+//! Finds the numbers before a place: which one of several it is ("the second door"), and how many there are ("two
+//! chairs").
 
 use super::{PlaceOrdinal, tokens::TokenSlice, vocabulary as v};
 use wayword_core::Side;
@@ -23,10 +24,10 @@ impl<'a> PlaceNumbers<'a> {
         for span in spans {
             others[tokens.first_from(span[0])..tokens.first_from(span[1])].fill(true);
         }
-        let may = |word: &str| {
+        let is_number_or_adjective = |word: &str| {
             v::ADJECTIVES.contains(&word) || cardinal_number(word).is_some() || ordinal_word(word).is_some()
         };
-        Self { tokens, runs: tokens.runs_before(may), others }
+        Self { tokens, runs: tokens.runs_before(is_number_or_adjective), others }
     }
 
     /// The adjectives and numbers before a token, the nearest first.
@@ -43,14 +44,16 @@ impl<'a> PlaceNumbers<'a> {
     pub(super) fn count_before(&self, from: usize) -> Option<u32> {
         let counted = |from: usize| self.words_before(from).find_map(|at| cardinal_number(self.tokens.word_at(at)));
         counted(from).or_else(|| {
-            let of = self.runs[from].checked_sub(1)?;
-            let of = if v::DETERMINERS.contains(&self.tokens.word_at(of)) { of.checked_sub(1)? } else { of };
-            let head = of.checked_sub(1).filter(|_| self.tokens.word_at(of) == "of")?;
-            match self.tokens.word_at(head) {
+            // In "a pair of the doors" the word before "of" counts.
+            let before = self.runs[from].checked_sub(1)?;
+            let is_article = v::DETERMINERS.contains(&self.tokens.word_at(before));
+            let before = if is_article { before.checked_sub(1)? } else { before };
+            let counting = before.checked_sub(1).filter(|_| self.tokens.word_at(before) == "of")?;
+            match self.tokens.word_at(counting) {
                 "pair" | "couple" => Some(2),
                 "trio" => Some(3),
                 "set" => None,
-                "sets" | "pairs" | "flights" | "rows" => counted(head),
+                "sets" | "pairs" | "flights" | "rows" => counted(counting),
                 word => cardinal_number(word),
             }
         })

@@ -22,15 +22,16 @@ pub(super) fn motion_by_place(
     if text.is_task() {
         return None;
     }
-    let (at, found) = text.deciding_word((first.max(from.saturating_sub(MOTION_REACH_WORDS))..from).rev())?;
+    let (at, motion) = text.deciding_word((first.max(from.saturating_sub(MOTION_REACH_WORDS))..from).rev())?;
     // "Take the second door".
-    let is_taken = found == Some(PlaceMotion::Along) && text.is_doorway(place);
-    let found = if is_taken { Some(PlaceMotion::Through) } else { found };
+    let is_taken = motion == Some(PlaceMotion::Along) && text.is_doorway(place);
+    let motion = if is_taken { Some(PlaceMotion::Through) } else { motion };
     // "Until you are at the sofa", "when you get to the sofa", but not "once you are past the sofa".
-    let is_there = matches!(found, None | Some(PlaceMotion::Towards));
-    if is_there && text.tells_when(at) { Some(PlaceMotion::Until) } else { found }
+    let is_there = matches!(motion, None | Some(PlaceMotion::Towards));
+    if is_there && text.tells_when(at) { Some(PlaceMotion::Until) } else { motion }
 }
 
+/// The words before a place, in its clause.
 struct MotionText<'a> {
     tokens: TokenSlice<'a>,
     /// The first token that is looked at.
@@ -46,7 +47,7 @@ impl<'a> MotionText<'a> {
         self.tokens.word_before(at)
     }
 
-    /// "Take the towel down from the shelf": the towel moves, and not the walker.
+    /// Whether the clause is a task: in "take the towel down from the shelf" the towel moves, and not the walker.
     fn is_task(&self) -> bool {
         let skips = |at: &usize| v::ADVERBS.contains(&self.word_at(*at)) || matches!(self.word_at(*at), "and" | "but");
         let verb = (self.first..self.tokens.len()).take(MOMENT_REACH_WORDS).find(|at| !skips(at)).unwrap_or(self.first);
@@ -56,7 +57,8 @@ impl<'a> MotionText<'a> {
         moves_it || (r::TASKS.contains(&word) && !walks && word != "use")
     }
 
-    /// The nearest of these tokens that decides, and its decision.
+    /// The first of these tokens, read backwards from the place, that decides, and the motion that it means; the motion is
+    /// `None` where the word only locates something there.
     fn deciding_word(&self, mut window: impl Iterator<Item = usize>) -> Option<(usize, Option<PlaceMotion>)> {
         while let Some(at) = window.next() {
             if self.word_at(at) == "of" && v::PARTS.contains(&self.word_before(at)) {
@@ -64,8 +66,8 @@ impl<'a> MotionText<'a> {
                 window.next();
                 continue;
             }
-            if let Some(found) = self.verb_motion(at) {
-                return Some((at, Some(found)));
+            if let Some(motion) = self.verb_motion(at) {
+                return Some((at, Some(motion)));
             }
             if matches!(
                 self.word_at(at),
@@ -138,12 +140,13 @@ impl<'a> MotionText<'a> {
         }
     }
 
-    /// "Walk right by the sofa", but not "turn right by the sofa".
+    /// Whether "right" before "by" is no turn: "walk right by the sofa", but not "turn right by the sofa".
     fn goes_right_by(&self, by: usize) -> bool {
         self.word_before(by) == "right" && by > 1 && v::GOING.contains(&self.word_before(by - 1))
     }
 
-    /// "From the kitchen", "away from the sofa", but not "across from", "two feet from" or "far from".
+    /// Whether a "from" is the walker's: "from the kitchen", "away from the sofa", but not "across from", "two feet
+    /// from" or "far from".
     fn leaves_place(&self, at: usize) -> bool {
         let before = self.word_before(at);
         let across = (self.first..at).rev().take(3).any(|at| self.word_at(at) == "across");
@@ -152,17 +155,19 @@ impl<'a> MotionText<'a> {
         !across && (away || !aside)
     }
 
+    /// Whether a word names a thing or a room.
     fn is_noun(&self, word: &str) -> bool {
         let name = normal_word(word);
         !v::ADJECTIVES.contains(&word) && (find_thing(&name).is_some_and(|thing| thing.name == name) || is_room(&name))
     }
 
-    /// A way that can be followed: "take the stairs up".
+    /// Whether a word names a way that can be followed: the stairs of "take the stairs up".
     fn is_way(&self, word: &str) -> bool {
         find_thing(&normal_word(word)).is_some_and(|thing| thing.class == ThingClass::Stairs)
     }
 
-    /// "The door to the kitchen": it names the goal of the door.
+    /// Whether a word names a door or a way through a wall. In "the door to the kitchen" the kitchen is the door's goal, and
+    /// not the walk's.
     fn is_doorway(&self, word: &str) -> bool {
         let name = normal_word(word);
         find_thing(&name)

@@ -11,10 +11,15 @@ use std::collections::BTreeSet;
 struct PlaceCandidate {
     /// Where the words begin that distinguish it: "bedroom" of "the second bedroom door".
     noun: usize,
+    /// The first token of its name.
     from: usize,
+    /// The token behind its name.
     to: usize,
+    /// Its name in normal spelling.
     name: String,
+    /// Whether the name can be an object's.
     is_thing: bool,
+    /// Whether the name can be a room's.
     is_room: bool,
 }
 
@@ -28,7 +33,7 @@ pub(super) fn read_places(
     others: &[[usize; 2]],
 ) -> Vec<TextEvent> {
     let free = free_tokens(tokens, taken);
-    let mut found: Vec<PlaceCandidate> = Vec::new();
+    let mut candidates: Vec<PlaceCandidate> = Vec::new();
     let mut at = 0;
     while at < tokens.len() {
         let next = if free[at] {
@@ -42,8 +47,8 @@ pub(super) fn read_places(
         // "The kitchen table": a place right before another only qualifies the other. A basement does not,
         // because it is a storey.
         let is_floor = |before: &PlaceCandidate| before.is_room && room_name(&before.name) == Some("basement");
-        let tells_which = |before: &mut PlaceCandidate| before.to == place.from && !is_floor(before);
-        if let Some(mut before) = found.pop_if(tells_which) {
+        let qualifies = |before: &mut PlaceCandidate| before.to == place.from && !is_floor(before);
+        if let Some(mut before) = candidates.pop_if(qualifies) {
             place.noun = before.noun;
             if !before.is_room && !place.is_room {
                 before.name.push(' ');
@@ -51,7 +56,7 @@ pub(super) fn read_places(
                 place.name = before.name;
             }
         }
-        found.push(place);
+        candidates.push(place);
     }
     let (colours, numbers) = (PlaceColours::from_tokens(tokens), PlaceNumbers::from_tokens(tokens, others));
     let event = |place: PlaceCandidate| {
@@ -65,15 +70,16 @@ pub(super) fn read_places(
         let (ordinal, count) = (numbers.ordinal_before(place.noun), numbers.count_before(place.noun));
         let several = count.is_some() || says_several(tokens.word_at(place.to - 1));
         let PlaceCandidate { name, is_thing, is_room, .. } = place;
+        // `mark_turn_places` sets it.
         let tells_turn = false;
         let place =
             PlaceMention { name, is_thing, is_room, link, side, colour, tells_turn, going, ordinal, count, several };
         TextEvent { what: EventContent::Place(place), span, clause, denied: false }
     };
-    found.into_iter().map(event).collect()
+    candidates.into_iter().map(event).collect()
 }
 
-/// Whether a place is outside all of these spans: "an about-face" and "a U-turn" are turns.
+/// Whether a place is outside all of these spans: the face of "an about-face" belongs to a turn and is no place.
 fn is_free_of(spans: &[[usize; 2]], tokens: TokenSlice<'_>, place: &PlaceCandidate) -> bool {
     let [from, to] = tokens.span_of(place.from, place.to - 1);
     // The spans ascend.
@@ -93,6 +99,7 @@ fn free_tokens(tokens: TokenSlice<'_>, taken: &[[usize; 2]]) -> Vec<bool> {
 
 /// The longest known name that begins at a token.
 fn named_place_at(tokens: TokenSlice<'_>, at: usize, known: &BTreeSet<String>) -> Option<PlaceCandidate> {
+    // Names of the evidence may have six words, even if those of the lexicon are shorter.
     let longest = longest_name().max(6).min(tokens.len() - at);
     (1..=longest).rev().find_map(|length| {
         let mut run = at..at + length;
@@ -218,7 +225,7 @@ fn unnamed_place_at(tokens: TokenSlice<'_>, at: usize, known: &BTreeSet<String>)
     Some(PlaceCandidate { noun: at + 1, from: at + 1, to, name, is_thing: true, is_room: false })
 }
 
-/// "A picture of two horses": the horses are in the picture and not at the place.
+/// Whether a noun phrase names something in a picture: the horses of "a picture of two horses" are not at the place.
 fn is_depicted(tokens: TokenSlice<'_>, at: usize) -> bool {
     let word = |back: usize| at.checked_sub(back).map_or("", |at| tokens.word_at(at));
     word(1) == "of" && find_thing(&normal_word(word(2))).is_some_and(|thing| thing.class == ThingClass::WallArt)

@@ -29,17 +29,17 @@ pub(super) fn side_after(tokens: TokenSlice<'_>, to: usize) -> (Option<Side>, us
 /// The side that is named before a place: "on your left is the sofa", "to the right you will see a sofa".
 pub(super) fn side_before(tokens: TokenSlice<'_>, from: usize) -> Option<Side> {
     let word = |at: usize| tokens.word_at(at);
-    let may = |word: &str| {
+    let can_come_between = |word: &str| {
         v::DETERMINERS.contains(&word)
             || v::ADJECTIVES.contains(&word) && side_of(word).is_none()
             || matches!(word, "there" | "you" | "will" | "should" | "you'll" | "you’ll" | "," | "can")
     };
-    let tells = |word: &str| {
+    let locates = |word: &str| {
         matches!(word, "is" | "are" | "be" | "see" | "find" | "notice" | "have" | "there's" | "there’s" | "comes")
     };
     let first = from.saturating_sub(SIDE_REACH_WORDS);
-    let at = (first..from).rev().find(|at| !may(word(*at)) && !tells(word(*at)))?;
-    if !(at..from).any(|at| tells(word(at))) {
+    let at = (first..from).rev().find(|at| !can_come_between(word(*at)) && !locates(word(*at)))?;
+    if !(at..from).any(|at| locates(word(at))) {
         return None;
     }
     let at = if matches!(word(at), "side" | "hand") { at.checked_sub(1)? } else { at };
@@ -62,6 +62,7 @@ fn side_of(word: &str) -> Option<Side> {
     }
 }
 
+/// Whether a word between "on the" and the side only makes the side exact: "on the far left".
 fn is_exact(word: &str) -> bool {
     matches!(word, "immediate" | "far" | "near" | "extreme" | "direct")
 }

@@ -7,17 +7,17 @@ pub(super) fn is_form_of(word: &str, list: &[&str]) -> bool {
 
 /// The candidates for the plain form of a word, if it is a verb. Some of them are no words.
 fn verb_stems(word: &str) -> impl Iterator<Item = String> {
-    let cut = |end: &str| word.strip_suffix(end).filter(|stem| stem.len() > 1);
-    let y = cut("ies").or(cut("ied")).map(|stem| format!("{stem}y"));
-    let bare = [cut("s"), cut("es"), cut("ed"), cut("ing"), cut("d")].map(|stem| stem.map(str::to_owned));
-    let with_e = cut("ing").map(|stem| format!("{stem}e"));
+    let without = |end: &str| word.strip_suffix(end).filter(|stem| stem.len() > 1);
+    let y = without("ies").or(without("ied")).map(|stem| format!("{stem}y"));
+    let bare = ["s", "es", "ed", "ing", "d"].map(|end| without(end).map(str::to_owned));
+    let with_e = without("ing").map(|stem| format!("{stem}e"));
     // "Stopping", "stopped".
     let single = |stem: &str| {
         let mut ends = stem.bytes().rev();
         let is_double = ends.next() == ends.next() && stem.is_ascii();
         is_double.then(|| stem[..stem.len() - 1].to_owned())
     };
-    let single = [cut("ing"), cut("ed")].map(|stem| stem.and_then(single));
+    let single = [without("ing"), without("ed")].map(|stem| stem.and_then(single));
     [Some(word.to_owned()), y, with_e].into_iter().chain(bare).chain(single).flatten()
 }
 

@@ -54,7 +54,7 @@ pub struct InstructionStep {
     pub side: Option<(StepRelation, Side)>,
     /// The landmarks and rooms that it names.
     pub places: Vec<StepMention>,
-    /// Which words of the list `marking` it has.
+    /// Which words of the list [`MARKING`] it has, as indices into the list.
     pub marks: Vec<usize>,
 }
 
@@ -101,13 +101,14 @@ pub fn read_steps(text: &str, reading: &TextReading) -> Vec<InstructionStep> {
     let denied = denied_tokens(TokenSlice::from_tokens(&tokens), &clauses);
     let first_token = |event: &TextEvent| tokens.partition_point(|token| token.span[0] < event.span[0]);
     let events: Vec<(usize, &TextEvent)> = reading.events.iter().map(|event| (first_token(event), event)).collect();
-    let mut next = 0;
+    let mut next_event = 0;
     let mut steps = Vec::new();
     for range in step_ranges(&tokens, &clauses, &events) {
-        let from = next;
-        next += events[from..].partition_point(|(at, _)| *at < range.end);
+        let from = next_event;
+        next_event += events[from..].partition_point(|(at, _)| *at < range.end);
         steps.extend(
-            StepBuilder { tokens: &tokens, denied: &denied, range, first_event: from }.build_step(&events[from..next]),
+            StepBuilder { tokens: &tokens, denied: &denied, range, first_event: from }
+                .build_step(&events[from..next_event]),
         );
     }
     steps
@@ -122,7 +123,7 @@ fn step_ranges(tokens: &[TextToken], clauses: &[usize], events: &[(usize, &TextE
         events.iter().filter(|(_, event)| matches!(event.what, EventContent::Turn(_))).map(|(at, _)| *at).peekable();
     let mut cuts = vec![0];
     let (mut has_word, mut has_turn) = (false, false);
-    let ends_at = |at: usize| events.partition_point(|(event, _)| *event < at);
+    let events_before = |at: usize| events.partition_point(|(event, _)| *event < at);
     for (at, token) in tokens.iter().enumerate() {
         let is_turn = std::iter::from_fn(|| turns.next_if(|turn| *turn <= at)).last() == Some(at);
         let new_clause = at > 0 && clauses[at] != clauses[at - 1];
@@ -130,8 +131,8 @@ fn step_ranges(tokens: &[TextToken], clauses: &[usize], events: &[(usize, &TextE
         // "Walk down the hallway turn left": a turn without an "and".
         let begins_turn = TURN_VERBS.contains(&token.word.as_str())
             && clauses.get(at + 1).is_some_and(|clause| *clause == clauses[at])
-            && ends_at(*cuts.last().unwrap_or(&0)) < ends_at(at)
-            && events[ends_at(at)..].first().is_some_and(|(turn, event)| {
+            && events_before(*cuts.last().unwrap_or(&0)) < events_before(at)
+            && events[events_before(at)..].first().is_some_and(|(turn, event)| {
                 *turn <= at + TURN_REACH && clauses[*turn] == clauses[at] && matches!(event.what, EventContent::Turn(_))
             });
         if new_clause || (has_word && is_condition) || (is_turn && has_turn) || (has_word && begins_turn) {
@@ -150,6 +151,7 @@ struct StepBuilder<'a> {
     tokens: &'a [TextToken],
     /// For each token, whether the text denies it.
     denied: &'a [bool],
+    /// The tokens of the step.
     range: Range<usize>,
     /// The number of the first of its events.
     first_event: usize,
@@ -190,8 +192,9 @@ impl StepBuilder<'_> {
         Some(step)
     }
 
-    /// Takes the events over. Whether one of them names a room.
+    /// Puts the events into the step. Returns whether one of them names a room.
     fn take_events(&self, events: &[(usize, &TextEvent)], step: &mut InstructionStep) -> bool {
+        // The place before, by its first word in the step, with its relation.
         let mut before = None;
         let mut names_room = false;
         for (number, (at, event)) in events.iter().enumerate().filter(|(_, (_, event))| !event.denied) {
@@ -229,10 +232,12 @@ impl StepBuilder<'_> {
         self.range.clone().filter(|at| !self.denied[*at])
     }
 
+    /// Whether the step has a word of a list.
     fn has_word(&self, list: &[&str]) -> bool {
         self.undenied_tokens().any(|at| list.contains(&self.tokens[at].word.as_str()))
     }
 
+    /// How the step relates to stairs, by its words.
     fn step_stairs(&self) -> StepStairs {
         match self.has_word(&STAIR_WORDS) {
             false => StepStairs::None,
@@ -242,7 +247,7 @@ impl StepBuilder<'_> {
         }
     }
 
-    /// A side that the step names in any way.
+    /// A side that the step names in any way, but not the "right" of "right before".
     fn named_side(&self) -> Option<Side> {
         let words = &self.tokens[self.range.clone()];
         let right_before = |at: usize| words.get(at + 1).is_some_and(|next| matches!(&*next.word, "before" | "after"));

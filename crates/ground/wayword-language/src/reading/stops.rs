@@ -12,11 +12,11 @@ pub(super) fn stops_and_facing(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec
         clause: clauses[at],
         denied: false,
     };
-    let told = |at: usize| {
+    let event_at = |at: usize| {
         let stops = text.stops_at(at).then(|| event(EventContent::Stop, at));
         stops.or_else(|| text.faces_at(at).map(|away| event(EventContent::Face { away }, at)))
     };
-    (0..tokens.len()).filter_map(told).collect()
+    (0..tokens.len()).filter_map(event_at).collect()
 }
 
 struct StopText<'a> {
@@ -53,7 +53,7 @@ impl<'a> StopText<'a> {
         }
     }
 
-    /// "Stay where you are".
+    /// Whether the words from a token on are "where you are", as in "stay where you are".
     fn names_this_spot(&self, at: usize) -> bool {
         matches!((self.word_at(at), self.word_at(at + 1), self.word_at(at + 2)), ("where", "you", "are"))
     }
@@ -63,7 +63,7 @@ impl<'a> StopText<'a> {
         at == 0 || !self.tokens.is_word(at - 1) || v::ADVERBS.contains(&self.word_before(at))
     }
 
-    /// "When you are done with that": the walk goes on.
+    /// Whether the words only give the time of something: after "when you are done with that" the walk goes on.
     fn tells_when(&self, at: usize) -> bool {
         let mut before = (at.saturating_sub(5)..at).rev().take_while(|at| self.tokens.is_word(*at));
         before.any(|at| matches!(self.word_at(at), "when" | "once" | "after" | "if" | "until"))
@@ -85,7 +85,7 @@ impl<'a> StopText<'a> {
         }
     }
 
-    /// "Face left", "facing the opposite direction": no place.
+    /// Whether words behind "face" name a direction and no place: "face left", "facing the opposite direction".
     fn names_direction(&self, from: usize) -> bool {
         let at = from + usize::from(matches!(self.word_at(from), "the" | "to" | "your"));
         let at = at + usize::from(matches!(self.word_at(at), "the" | "your"));

@@ -40,12 +40,12 @@ pub fn documented_commands(repository: &Path) -> io::Result<Vec<DocumentedComman
         docs.into_iter().filter(|path| path.extension().is_some_and(|end| end == "md")).collect();
     documents.sort();
     documents.insert(0, repository.join("README.md"));
-    let mut found = Vec::new();
+    let mut commands = Vec::new();
     for document in documents {
         let name = document.strip_prefix(repository).unwrap_or(&document).display().to_string();
-        found.extend(commands_of(&name, &fs::read_to_string(&document)?));
+        commands.extend(commands_of(&name, &fs::read_to_string(&document)?));
     }
-    Ok(found)
+    Ok(commands)
 }
 
 /// The commands of one document, in its order. `name` is the document's name in their places.
@@ -63,7 +63,7 @@ pub fn commands_of(name: &str, markdown: &str) -> Vec<DocumentedCommand> {
     found
 }
 
-/// Which of the programs a command starts, directly or with `cargo run`, and its arguments.
+/// Which of [`DOCUMENTED_PROGRAMS`] a command starts, directly or as `cargo run -p PROGRAM -- ...`, and the program's arguments.
 fn program_of(words: &[String]) -> Option<(String, Vec<String>)> {
     let (first, rest) = words.split_first()?;
     if DOCUMENTED_PROGRAMS.contains(&first.as_str()) {
@@ -81,12 +81,15 @@ fn program_of(words: &[String]) -> Option<(String, Vec<String>)> {
 struct MarkdownSnippet {
     /// Line on which it begins, from 1.
     line: usize,
+    /// The commands as they are written.
     text: String,
+    /// Whether it is a code span within a paragraph.
     is_within_text: bool,
 }
 
+/// The fenced blocks of shell and the code spans of a document, in order.
 fn find_snippets(markdown: &str) -> Vec<MarkdownSnippet> {
-    let mut pieces = Vec::new();
+    let mut snippets = Vec::new();
     let mut fence: Option<(&str, MarkdownSnippet)> = None;
     let mut paragraph = MarkdownSnippet { line: 1, text: String::new(), is_within_text: true };
     for (number, line) in (1..).zip(markdown.lines()) {
@@ -94,18 +97,18 @@ fn find_snippets(markdown: &str) -> Vec<MarkdownSnippet> {
         match &mut fence {
             Some((_, block)) if marks.starts_with("```") => {
                 block.text.push('\n');
-                pieces
+                snippets
                     .extend(fence.take().filter(|(name, _)| SHELL_FENCE_NAMES.contains(name)).map(|(_, block)| block));
             }
             Some((name, block)) => {
-                // In a console transcript, lines after `$ ` are commands. The other lines are output.
+                // In a console transcript, lines after `$ ` are commands. The other lines are output and become comments.
                 let typed = if *name == "console" { marks.strip_prefix("$ ").unwrap_or("#") } else { marks };
                 block.text.push_str(typed);
                 block.text.push('\n');
             }
             None if marks.starts_with("```") || marks.is_empty() => {
                 let next = MarkdownSnippet { line: number + 1, text: String::new(), is_within_text: true };
-                pieces.extend(code_spans(&std::mem::replace(&mut paragraph, next)));
+                snippets.extend(code_spans(&std::mem::replace(&mut paragraph, next)));
                 let block = MarkdownSnippet { line: number + 1, text: String::new(), is_within_text: false };
                 fence = marks.strip_prefix("```").map(|name| (name.trim(), block));
             }
@@ -115,8 +118,8 @@ fn find_snippets(markdown: &str) -> Vec<MarkdownSnippet> {
             }
         }
     }
-    pieces.extend(code_spans(&paragraph));
-    pieces
+    snippets.extend(code_spans(&paragraph));
+    snippets
 }
 
 /// The code spans within a paragraph. A span may continue in the next line.

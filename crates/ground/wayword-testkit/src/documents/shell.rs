@@ -52,25 +52,33 @@ pub(super) fn parse_script(script: &str) -> Vec<ShellCommand> {
     reader.done
 }
 
+/// The state of the parser between two characters.
 #[derive(Default)]
 struct ShellScriptReader {
+    /// The current line, from 0.
     line: usize,
+    /// The quotation mark that is open.
     quote: Option<char>,
+    /// The word so far; `None` between words.
     word: Option<String>,
     /// Whether the next word is a file that is read or written, and not an argument.
     is_redirected: bool,
+    /// The words of the current command.
     now: Vec<String>,
+    /// The line on which the current command began.
     begun: Option<usize>,
+    /// The commands that have ended.
     done: Vec<ShellCommand>,
 }
 
 impl ShellScriptReader {
+    /// Adds a character to the current word.
     fn add_char(&mut self, c: char) {
         self.begun.get_or_insert(self.line);
         self.word.get_or_insert_default().push(c);
     }
 
-    /// `2>` and `>`: the number of a stream is not an argument.
+    /// Begins a redirection, as `2>` or `>`. The number of a stream before it is not an argument, so it is dropped.
     fn start_redirection(&mut self) {
         if self.word.as_ref().is_some_and(|word| word.chars().all(|c| c.is_ascii_digit())) {
             self.word = None;
@@ -79,6 +87,7 @@ impl ShellScriptReader {
         self.is_redirected = true;
     }
 
+    /// Ends the current word, if there is one. The file of a redirection is dropped.
     fn end_word(&mut self) {
         if let Some(word) = self.word.take()
             && !std::mem::take(&mut self.is_redirected)
@@ -87,20 +96,21 @@ impl ShellScriptReader {
         }
     }
 
+    /// Ends the current command, if it has words besides variables.
     fn end_command(&mut self) {
         self.end_word();
         self.is_redirected = false;
         let line = self.begun.take().unwrap_or(self.line);
         let mut words = std::mem::take(&mut self.now);
-        let set = words.iter().take_while(|word| parse_assignment(word).is_some()).count();
-        let variables = words.drain(..set).filter_map(|word| parse_assignment(&word)).collect();
+        let variable_count = words.iter().take_while(|word| parse_assignment(word).is_some()).count();
+        let variables = words.drain(..variable_count).filter_map(|word| parse_assignment(&word)).collect();
         if !words.is_empty() {
             self.done.push(ShellCommand { line, variables, words });
         }
     }
 }
 
-/// `NAME=value`.
+/// The name and the value of an assignment, `NAME=value`.
 fn parse_assignment(word: &str) -> Option<(String, String)> {
     let (name, value) = word.split_once('=')?;
     let is_name = !name.is_empty() && name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_');

@@ -3,8 +3,9 @@
 
 use wayword_core::Image;
 
-/// Blocks of a picture, one bit each: 64 bits of the number and 16 of a checksum.
+/// Columns of blocks. The 80 blocks of a picture have one bit each: 64 bits of the number and 16 of a checksum.
 const BLOCK_COLUMNS: u32 = 10;
+/// Rows of blocks.
 const BLOCK_ROWS: u32 = 8;
 /// Side of a block, pixels: large enough to survive JPEG and scaling to half the size.
 const BLOCK_PX: u32 = 16;
@@ -38,6 +39,7 @@ pub fn read_number(file: &[u8]) -> Option<u64> {
     (u128::from(checksum(id)) == bits & 0xffff).then_some(id)
 }
 
+/// 16 bits that depend on all bits of the number.
 fn checksum(id: u64) -> u16 {
     let mixed = id.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5bd1_e995;
     (mixed >> 48) as u16

@@ -73,7 +73,8 @@ impl<P: Platform> Platform for BarcodePlatform<P> {
     }
 }
 
-/// The barcodes hang in the platform's own rooms. `look_down` keeps its default, because a picture from above would show the scene.
+/// Routes, islands and depth come from the wrapped platform, because barcodes replace only pictures. `look_down` keeps its default,
+/// which gives no picture: a picture from above would show the scene.
 impl<P: Platform> Ground for BarcodePlatform<P> {
     fn ground_route(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<GroundRoute>, PlatformError> {
         self.platform.ground().ground_route(scene, from, to)

@@ -45,7 +45,7 @@ impl ProviderBehaviour {
 /// A substitute for a model: turns a request into the text of a reply.
 pub trait ModelScript: Send + Sync {
     /// The model's reply. It should depend on the request alone, so that runs can be repeated.
-    fn reply(&self, heard: &ScriptRequest) -> String;
+    fn reply(&self, request: &ScriptRequest) -> String;
 }
 
 /// A request to a model, the same in every dialect.
@@ -57,9 +57,9 @@ pub struct ScriptRequest {
     pub messages: Vec<(MessageRole, String)>,
     /// The bytes of all pictures, in order.
     pub pictures: Vec<Vec<u8>>,
-    /// 0 gives the likeliest words.
+    /// The temperature of the sampling. 0 gives the likeliest words.
     pub temperature: Option<f64>,
-    /// Most words of the reply, because this provider counts a word as a token when it cuts replies.
+    /// The most tokens of the reply. When this provider cuts replies, it counts a word as a token.
     pub max_tokens: Option<u64>,
     /// Seed of the sampling.
     pub seed: Option<u64>,

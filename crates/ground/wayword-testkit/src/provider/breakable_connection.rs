@@ -37,10 +37,12 @@ pub(super) enum ConnectionBreak {
 pub(super) struct BreakSwitch(Arc<Mutex<Option<ConnectionBreak>>>);
 
 impl BreakSwitch {
+    /// Orders the connection to break from its next response on.
     pub(super) fn order_break(&self, how: ConnectionBreak) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(how);
     }
 
+    /// The break that was ordered, if any.
     fn ordered_break(&self) -> Option<ConnectionBreak> {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -85,19 +87,24 @@ impl Listener for BreakableListener {
 /// A TCP connection. Once its [`BreakSwitch`] orders a break, it spoils the bytes that are written to it.
 pub(super) struct BreakableConnection {
     stream: TcpStream,
+    /// The switch that the handler of the requests has too.
     line: BreakSwitch,
     /// Bytes sent since the order to break.
     sent: usize,
-    /// Where sending changes: the end of the head for a trickle, the middle of the body for a reset; bytes from the start.
+    /// The byte of the response at which the break begins: the end of the head for a trickle, the middle of the body for a reset.
     half: Option<usize>,
+    /// The pause before the next byte of a trickle.
     pause: Option<Pin<Box<Sleep>>>,
 }
 
+/// The beginning of a response that never ends: a head without a length, and the beginning of a reply in JSON.
 const ENDLESS_HEAD: &[u8] = b"HTTP/1.1 200 OK\r\ncontent-type: application/json\r\nconnection: close\r\n\r\n\
     {\"choices\":[{\"message\":{\"role\":\"assistant\",\"content\":\"";
+/// A piece of the reply of a response that never ends, which is sent again and again.
 const ENDLESS_WORDS: [u8; 16 * 1024] = [b'w'; 16 * 1024];
 
 impl BreakableConnection {
+    /// Sends bytes, and counts those that were sent.
     fn send_bytes(&mut self, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
         let sent = Pin::new(&mut self.stream).poll_write(cx, bytes);
         if let Poll::Ready(Ok(count)) = sent {
@@ -114,15 +121,16 @@ impl BreakableConnection {
                 self.stream.set_zero_linger()?;
                 Poll::Ready(Err(io::ErrorKind::ConnectionReset.into()))
             }
-            left => self.send_bytes(cx, &bytes[..left.min(bytes.len())]),
+            remaining => self.send_bytes(cx, &bytes[..remaining.min(bytes.len())]),
         }
     }
 
+    /// Sends the head at once, then one byte after each pause of `every`.
     fn send_trickle(&mut self, cx: &mut Context<'_>, bytes: &[u8], every: Duration) -> Poll<io::Result<usize>> {
         let head = *self.half.get_or_insert_with(|| head_bytes(bytes));
         if self.sent < head {
-            let left = (head - self.sent).min(bytes.len());
-            return self.send_bytes(cx, &bytes[..left]);
+            let remaining = (head - self.sent).min(bytes.len());
+            return self.send_bytes(cx, &bytes[..remaining]);
         }
         let pause = self.pause.get_or_insert_with(|| Box::pin(tokio::time::sleep(every)));
         if pause.as_mut().poll(cx).is_pending() {

@@ -11,6 +11,7 @@ use axum::{
 };
 use serde_json::Value;
 
+/// The page that a gateway sends in place of JSON.
 const GATEWAY_ERROR_PAGE: &str =
     "<!DOCTYPE html><html><head><title>502 Bad Gateway</title></head><body>Bad Gateway</body></html>";
 
@@ -18,6 +19,7 @@ const GATEWAY_ERROR_PAGE: &str =
 pub(super) struct FaultResponder<'a> {
     pub(super) dialect: ProviderDialect,
     pub(super) faults: &'a FaultSchedule,
+    /// Orders the connection to break.
     pub(super) line: &'a BreakSwitch,
     pub(super) headers: &'a HeaderMap,
     /// The answer without the fault.
@@ -25,6 +27,7 @@ pub(super) struct FaultResponder<'a> {
 }
 
 impl FaultResponder<'_> {
+    /// The response that a service with this fault would give.
     pub(super) fn respond_with_fault(self, fault: ServiceFault) -> Response {
         match fault {
             ServiceFault::TooMany(form) => self.dialect.too_many(form, self.faults.wait),
@@ -75,17 +78,19 @@ impl FaultResponder<'_> {
     }
 }
 
+/// A response of JSON with status 200.
 pub(super) fn json_response(body: &Value) -> Response {
     ([(header::CONTENT_TYPE, "application/json")], body.to_string()).into_response()
 }
 
+/// A page of HTML where a client expects JSON.
 fn html_response(status: StatusCode) -> Response {
     (status, [(header::CONTENT_TYPE, "text/html; charset=utf-8")], GATEWAY_ERROR_PAGE).into_response()
 }
 
-/// The key that came with a request.
+/// The API key that came with a request; empty if none did.
 pub(super) fn key_of(dialect: ProviderDialect, headers: &HeaderMap) -> String {
-    let (name, before) = dialect.key_header();
+    let (name, prefix) = dialect.key_header();
     let value = headers.get(name).and_then(|value| value.to_str().ok()).unwrap_or_default();
-    value.strip_prefix(before).unwrap_or_default().to_owned()
+    value.strip_prefix(prefix).unwrap_or_default().to_owned()
 }

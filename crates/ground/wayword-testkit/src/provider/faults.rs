@@ -50,7 +50,9 @@ pub enum ServiceFault {
 /// succeed.
 #[derive(Debug, Clone)]
 pub struct FaultSchedule {
+    /// Each fault with its share of the requests, 0 to 1.
     shares: Vec<(ServiceFault, f64)>,
+    /// The faults of the first requests, in order; `None` for a request without a fault.
     first: Vec<Option<ServiceFault>>,
     /// After this number of requests was let in, the key is refused (401).
     pub key_refused_after: Option<u64>,
@@ -75,7 +77,7 @@ impl Default for FaultSchedule {
     }
 }
 
-/// The faults after which the same request may succeed, without 429 in its forms.
+/// The faults after which the same request may succeed, except 429, which has several forms.
 const PASSING_FAULTS: [ServiceFault; 12] = [
     ServiceFault::Server,
     ServiceFault::Gateway,
@@ -99,8 +101,8 @@ impl FaultSchedule {
     pub fn storm(share: f64) -> Self {
         let each = share / (PASSING_FAULTS.len() + 1) as f64;
         let each_form = each / RetryAfter::ALL.len() as f64;
-        let many = RetryAfter::ALL.iter().map(|form| (ServiceFault::TooMany(*form), each_form));
-        let shares = PASSING_FAULTS.iter().map(|fault| (*fault, each)).chain(many).collect();
+        let rate_faults = RetryAfter::ALL.iter().map(|form| (ServiceFault::TooMany(*form), each_form));
+        let shares = PASSING_FAULTS.iter().map(|fault| (*fault, each)).chain(rate_faults).collect();
         Self { shares, ..Self::default() }
     }
 
@@ -124,16 +126,17 @@ impl FaultSchedule {
         (1.0 - self.shares.iter().map(|(_, share)| share).sum::<f64>()).max(0.0)
     }
 
-    /// The fault of a request: `index` requests were let in before it, `nth` of them equal to it.
+    /// The fault of a request, if it gets one. `request` is its hash; `index` requests were let in before it, `nth` of them equal to it.
     pub(super) fn for_request(&self, seed: u64, index: u64, request: u64, nth: u64) -> Option<ServiceFault> {
         if let Some(scripted) = usize::try_from(index).ok().and_then(|index| self.first.get(index)) {
             return *scripted;
         }
         let purpose = ["fault", &format!("{request:016x}"), &nth.to_string()];
-        let mut left: f64 = wayword_core::seeded_rng(seed, &purpose).random();
+        // A draw between 0 and 1 falls into the share of one fault, or beyond all shares.
+        let mut rest: f64 = wayword_core::seeded_rng(seed, &purpose).random();
         self.shares.iter().find_map(|(fault, share)| {
-            left -= share;
-            (left < 0.0).then_some(*fault)
+            rest -= share;
+            (rest < 0.0).then_some(*fault)
         })
     }
 }

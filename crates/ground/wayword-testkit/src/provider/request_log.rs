@@ -23,7 +23,7 @@ pub struct ProviderLog {
     pub unfit: u64,
     /// How often each fault was committed.
     pub faults: BTreeMap<ServiceFault, u64>,
-    /// Most requests that were in work at the same time.
+    /// The highest number of requests that were in work at the same time.
     pub most_at_once: u64,
     /// The length of the longest chain of requests in which each came after the one before had ended: how often a client
     /// waited, however many requests it sent at a time. This does not depend on the speed of the machine, as long as requests
@@ -31,6 +31,7 @@ pub struct ProviderLog {
     pub rounds: u64,
     /// Each distinct request (its dialect, model and body), by hash.
     pub bodies: BTreeMap<u64, RequestCounts>,
+    /// Requests that are in work now.
     pub(super) at_once: u64,
 }
 
@@ -64,7 +65,7 @@ impl ProviderLog {
         self.faults.values().sum()
     }
 
-    /// Counts a request that came, and returns its round.
+    /// Counts a request that came, and returns its round: one more than the latest round that has ended.
     pub(super) fn count_arrival(&mut self, request: u64) -> u64 {
         self.received += 1;
         self.at_once += 1;
@@ -88,6 +89,7 @@ impl ProviderLog {
         before
     }
 
+    /// Counts a request that got a whole answer.
     pub(super) fn count_answer(&mut self, request: u64) {
         self.answered += 1;
         self.bodies.entry(request).or_default().answered += 1;

@@ -14,15 +14,17 @@ pub struct ProviderRequestRate {
     pub retry_after: RetryAfter,
 }
 
-/// The bucket in use: how many requests are left in it, and when that was computed.
+/// The bucket in use.
 #[derive(Debug)]
 pub(super) struct ProviderTokenBucket {
     rate: ProviderRequestRate,
+    /// Requests in the bucket at the moment `at`.
     left: f64,
     at: Instant,
 }
 
 impl ProviderTokenBucket {
+    /// A full bucket.
     pub(super) fn full(rate: ProviderRequestRate, now: Instant) -> Self {
         Self { rate, left: f64::from(rate.burst), at: now }
     }

@@ -51,6 +51,7 @@ impl RetryAfter {
     }
 }
 
+/// A wait rounded up to whole seconds, at least one.
 fn whole_seconds(wait: Duration) -> Duration {
     Duration::from_secs(wait.as_millis().div_ceil(1000).max(1).try_into().unwrap_or(u64::MAX))
 }
@@ -61,6 +62,7 @@ pub(super) fn end_of_wait(wait: Duration) -> Timestamp {
     at.and_then(|at| Timestamp::from_second(at.as_second())).unwrap_or(Timestamp::MAX)
 }
 
+/// A moment as HTTP headers write it.
 fn http_date(at: Timestamp) -> String {
     rfc2822::DateTimePrinter::new().timestamp_to_rfc9110_string(&at).unwrap_or_default()
 }

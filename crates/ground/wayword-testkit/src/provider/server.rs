@@ -23,7 +23,7 @@ use std::{
 };
 use tokio::net::TcpListener;
 
-/// Largest request that is accepted; several pictures fit.
+/// Largest body of a request that is accepted, bytes; several pictures fit. A larger one is refused with 413.
 const LARGEST_BODY: usize = 64 << 20;
 /// Tokens that are billed for a picture: about as many as two large services bill for 512 x 384 pixels.
 const PICTURE_TOKENS: u64 = 262;
@@ -33,6 +33,7 @@ const CHARS_PER_TOKEN: u64 = 4;
 /// The state that all connections share.
 pub(super) struct ProviderState {
     behaviour: ProviderBehaviour,
+    /// The rate limit; `None` for no limit.
     bucket: Option<Mutex<ProviderTokenBucket>>,
     log: Mutex<ProviderLog>,
 }
@@ -44,9 +45,11 @@ struct IncomingRequest {
     model: Option<String>,
     headers: HeaderMap,
     body: Bytes,
+    /// Orders the connection of the request to break.
     line: BreakSwitch,
 }
 
+/// Serves all dialects on one port until the runtime ends.
 pub(super) async fn serve_connections(listener: TcpListener, shared: Arc<ProviderState>) {
     let router = Router::new()
         .route("/v1/chat/completions", ask_route(ProviderDialect::OpenAi))
@@ -64,6 +67,7 @@ pub(super) async fn serve_connections(listener: TcpListener, shared: Arc<Provide
     let _ = axum::serve(BreakableListener(listener), router.into_make_service_with_connect_info::<BreakSwitch>()).await;
 }
 
+/// The route of a dialect for requests to a model.
 fn ask_route(dialect: ProviderDialect) -> MethodRouter<Arc<ProviderState>> {
     post(
         move |State(shared): State<Arc<ProviderState>>,
@@ -75,6 +79,7 @@ fn ask_route(dialect: ProviderDialect) -> MethodRouter<Arc<ProviderState>> {
     )
 }
 
+/// Gemini's route for requests to a model: the address contains the model's name.
 fn asked_of_gemini() -> MethodRouter<Arc<ProviderState>> {
     post(
         move |State(shared): State<Arc<ProviderState>>,
@@ -90,8 +95,8 @@ fn asked_of_gemini() -> MethodRouter<Arc<ProviderState>> {
 
 /// Ollama's `/api/show`: lists the capabilities of a model.
 async fn show_model(State(shared): State<Arc<ProviderState>>, body: Bytes) -> Response {
-    let asked: Value = serde_json::from_slice(&body).unwrap_or_default();
-    let model = asked["model"].as_str().unwrap_or_default();
+    let request: Value = serde_json::from_slice(&body).unwrap_or_default();
+    let model = request["model"].as_str().unwrap_or_default();
     if !shared.behaviour.scripts.contains_key(model) {
         return ProviderDialect::Ollama.error_response(ServiceErrorKind::Model, "There is no such model.");
     }
@@ -100,6 +105,7 @@ async fn show_model(State(shared): State<Arc<ProviderState>>, body: Bytes) -> Re
     fault_response::json_response(&json!({ "capabilities": capabilities }))
 }
 
+/// The route of a dialect for the list of models.
 fn list_route(dialect: ProviderDialect) -> MethodRouter<Arc<ProviderState>> {
     get(move |State(shared): State<Arc<ProviderState>>, headers: HeaderMap| async move {
         // OpenAI's and Anthropic's lists have one address.
@@ -135,6 +141,7 @@ impl ProviderState {
         work.await.unwrap_or_else(|_| dialect.error_response(ServiceErrorKind::Server, "The script panicked."))
     }
 
+    /// The response to a request: a refusal, a whole answer or a fault. `request` is its hash.
     async fn answer_arrival(&self, arrival: &IncomingRequest, request: u64) -> Response {
         let (index, nth) = match self.admit_arrival(arrival, request) {
             Ok(before) => before,
@@ -159,6 +166,7 @@ impl ProviderState {
         }
     }
 
+    /// Whether the key of a request is the right one, or none is needed.
     fn accepts_key(&self, dialect: ProviderDialect, headers: &HeaderMap) -> bool {
         self.behaviour.key.as_ref().is_none_or(|key| *key == key_of(dialect, headers))
     }
@@ -190,30 +198,31 @@ impl ProviderState {
         Ok(log.count_admission(request))
     }
 
-    /// The model's reply to a request.
+    /// The reply of the model's script to a request; `Err` with the error if the request is malformed or the model unknown.
     fn ask_script(&self, arrival: &IncomingRequest) -> Result<ScriptReply, Box<Response>> {
         let dialect = arrival.dialect;
-        let refused = |wrong: ServiceErrorKind, message: &str| {
+        let refused = |kind: ServiceErrorKind, message: &str| {
             self.lock_log().unfit += 1;
-            Box::new(dialect.error_response(wrong, message))
+            Box::new(dialect.error_response(kind, message))
         };
         let body: serde_json::Value = serde_json::from_slice(&arrival.body)
             .map_err(|_| refused(ServiceErrorKind::Request, "This is not JSON."))?;
-        let heard = dialect
+        let request = dialect
             .read_request(&body, arrival.model.as_deref())
             .map_err(|why| refused(ServiceErrorKind::Request, why))?;
-        let script = self.behaviour.scripts.get(&heard.model);
+        let script = self.behaviour.scripts.get(&request.model);
         let script = script.ok_or_else(|| refused(ServiceErrorKind::Model, "There is no such model."))?;
-        let tokens_in = heard.messages.iter().map(|(_, text)| count_tokens(text)).sum::<u64>();
-        let tokens_in = tokens_in + PICTURE_TOKENS * heard.pictures.len() as u64;
-        let (text, end) = cut_reply(script.reply(&heard), &heard);
+        let tokens_in = request.messages.iter().map(|(_, text)| count_tokens(text)).sum::<u64>();
+        let tokens_in = tokens_in + PICTURE_TOKENS * request.pictures.len() as u64;
+        let (text, end) = cut_reply(script.reply(&request), &request);
         let tokens_out = count_tokens(&text);
         let (text, calls) = with_calls(text, &body);
-        Ok(ScriptReply { tokens_in, tokens_out, text, calls, end, model: heard.model })
+        Ok(ScriptReply { tokens_in, tokens_out, text, calls, end, model: request.model })
     }
 }
 
 impl IncomingRequest {
+    /// A hash of the request's dialect, model and body. Equal requests have equal hashes.
     fn request_hash(&self) -> u64 {
         let model = self.model.as_deref().unwrap_or_default();
         let body = String::from_utf8_lossy(&self.body);
@@ -221,6 +230,7 @@ impl IncomingRequest {
     }
 }
 
+/// About how many tokens a text has.
 fn count_tokens(text: &str) -> u64 {
     (text.len() as u64).div_ceil(CHARS_PER_TOKEN)
 }
@@ -230,11 +240,11 @@ fn count_words(text: &str) -> u64 {
 }
 
 /// The reply, cut to the number of words that the request allows.
-fn cut_reply(reply: String, heard: &ScriptRequest) -> (String, ReplyEnding) {
-    let most = heard.max_tokens.and_then(|most| usize::try_from(most).ok()).unwrap_or(usize::MAX);
-    if count_words(&reply) <= most as u64 {
+fn cut_reply(reply: String, request: &ScriptRequest) -> (String, ReplyEnding) {
+    let max_words = request.max_tokens.and_then(|max| usize::try_from(max).ok()).unwrap_or(usize::MAX);
+    if count_words(&reply) <= max_words as u64 {
         return (reply, ReplyEnding::Stop);
     }
-    let kept: Vec<&str> = reply.split_whitespace().take(most).collect();
+    let kept: Vec<&str> = reply.split_whitespace().take(max_words).collect();
     (kept.join(" "), ReplyEnding::Length)
 }

@@ -96,13 +96,13 @@ impl<'a> CaptionRowSets<'a> {
 /// The figures of items' texts, and of the anchors.
 #[must_use]
 pub fn anchored_caption_figures(sets: &CaptionRowSets<'_>, drawing: &ResamplingOptions) -> AnchoredCaptionFigures {
-    let of_several =
+    let figures_of_several =
         |rows: &[CaptionRow<'_>]| CaptionFigures::from_scores(&sets.clusters_of_several, &score_rows(rows), drawing);
     AnchoredCaptionFigures {
         all: CaptionFigures::from_scores(&sets.clusters, &score_rows(&sets.all), drawing),
-        rest: of_several(&sets.rest),
-        person: of_several(&sets.person),
-        other_path: sets.other_path.as_deref().and_then(of_several),
+        rest: figures_of_several(&sets.rest),
+        person: figures_of_several(&sets.person),
+        other_path: sets.other_path.as_deref().and_then(figures_of_several),
         single: sets.all.len() - sets.rest.len(),
     }
 }
@@ -117,19 +117,19 @@ fn other_path_texts<'a>(items: &[&CaptionItem<'a>], seed: u64) -> Option<Vec<&'a
 /// a single path.
 #[must_use]
 pub fn draw_other_paths(items: &[(&str, &str)], seed: u64) -> Option<Vec<usize>> {
-    let mut of_path: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    let mut by_path: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (at, (_, path)) in items.iter().enumerate() {
-        of_path.entry(path).or_default().push(at);
+        by_path.entry(path).or_default().push(at);
     }
     // In the order of their paths, an item of another path is before the first or after the last of its own path.
     let mut ordered = Vec::with_capacity(items.len());
     let mut start = BTreeMap::new();
-    for (path, of_path) in &of_path {
+    for (path, path_items) in &by_path {
         start.insert(*path, ordered.len());
-        ordered.extend(of_path);
+        ordered.extend(path_items);
     }
     let draw = |(id, path): &(&str, &str)| {
-        let (first, count) = (start[path], of_path[path].len());
+        let (first, count) = (start[path], by_path[path].len());
         let others = ordered.len() - count;
         let at = (others > 0).then(|| seeded_rng(seed, &["another path", id]).random_range(0..others))?;
         Some(ordered[if at < first { at } else { at + count }])
@@ -168,12 +168,13 @@ impl CaptionFigures {
     pub fn from_scores(clusters: &[&str], scores: &[CaptionScores], drawing: &ResamplingOptions) -> Option<Self> {
         let mut sums: BTreeMap<&str, CaptionSum> = BTreeMap::new();
         for (cluster, score) in clusters.iter().zip(scores) {
-            let one = CaptionSum { counts: score.counts, rouge_l: score.rouge_l, cider_d: score.cider_d, texts: 1 };
+            let text_sum =
+                CaptionSum { counts: score.counts, rouge_l: score.rouge_l, cider_d: score.cider_d, texts: 1 };
             let sum = sums.entry(cluster).or_default();
-            *sum = sum.plus(one);
+            *sum = sum.plus(text_sum);
         }
         let sums: Vec<CaptionSum> = sums.into_values().collect();
-        let total = |of: &mut dyn Iterator<Item = CaptionSum>| of.fold(CaptionSum::default(), CaptionSum::plus);
+        let total = |parts: &mut dyn Iterator<Item = CaptionSum>| parts.fold(CaptionSum::default(), CaptionSum::plus);
         let means = total(&mut sums.iter().copied());
         if means.texts == 0 {
             return None;

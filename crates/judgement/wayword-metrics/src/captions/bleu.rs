@@ -1,5 +1,5 @@
-//! BLEU-1 to BLEU-4 as `pycocoevalcap`'s `bleu_scorer.py` computes them: the share of a text's n-grams that a reference has too,
-//! over the whole corpus, less if the text is shorter than the reference closest in length.
+//! BLEU-1 to BLEU-4 as `pycocoevalcap`'s `bleu_scorer.py` computes them: over the whole corpus, the share of the texts' n-grams (runs
+//! of n words) that a reference has too. The score is lowered if the texts are shorter than the references closest in length.
 
 use super::numbered_text::{GRAM_ORDER_COUNT, NumberedText};
 use std::ops::{Add, AddAssign};
@@ -55,17 +55,18 @@ impl BleuCounts {
 
 /// For each n-gram of a text, its highest count in any one reference.
 fn most_in(text: &NumberedText, references: &[&NumberedText]) -> Vec<u32> {
-    let mut most = vec![0; text.grams().len()];
+    let mut highest = vec![0; text.grams().len()];
     for reference in references {
-        let mut there = reference.grams().iter().peekable();
-        for (gram, most) in text.grams().iter().zip(&mut most) {
-            while there.next_if(|other| other.key < gram.key).is_some() {}
-            if let Some(same) = there.next_if(|other| other.key == gram.key) {
-                *most = same.count.max(*most);
+        // Both lists of n-grams are sorted, so one pass over both finds the common ones.
+        let mut reference_grams = reference.grams().iter().peekable();
+        for (gram, count) in text.grams().iter().zip(&mut highest) {
+            while reference_grams.next_if(|other| other.key < gram.key).is_some() {}
+            if let Some(same) = reference_grams.next_if(|other| other.key == gram.key) {
+                *count = same.count.max(*count);
             }
         }
     }
-    most
+    highest
 }
 
 impl Add for BleuCounts {

@@ -38,6 +38,7 @@ impl Hasher for GramKeyHasher {
 }
 
 impl GramOccurrences {
+    /// Counts the n-grams of one item's references, each n-gram once.
     fn count_references(&mut self, references: &[&NumberedText]) {
         let mut keys: Vec<u128> = references.iter().flat_map(|text| text.grams()).map(|gram| gram.key).collect();
         keys.sort_unstable();
@@ -51,8 +52,8 @@ impl GramOccurrences {
     fn weigh_text<'a>(&self, text: &'a NumberedText, items: f64) -> WeightedText<'a> {
         let mut squares = [0.0; GRAM_ORDER_COUNT];
         let weight = |gram: &CountedGram| {
-            let found = self.0.get(&gram.key).map_or(1.0, |count| f64::from(*count));
-            let weight = f64::from(gram.count) * (items.ln() - found.ln());
+            let items_with_gram = self.0.get(&gram.key).map_or(1.0, |count| f64::from(*count));
+            let weight = f64::from(gram.count) * (items.ln() - items_with_gram.ln());
             squares[gram.order()] += weight * weight;
             weight
         };
@@ -63,10 +64,15 @@ impl GramOccurrences {
     }
 }
 
+/// A text as a vector over n-grams.
 struct WeightedText<'a> {
+    /// The n-grams, sorted by their keys.
     grams: &'a [CountedGram],
+    /// The weight of each n-gram: its count times how rare it is.
     weights: Vec<f64>,
+    /// The length of the vector of weights, for the n-grams of 1 to 4 words.
     norms: [f64; GRAM_ORDER_COUNT],
+    /// The length of the text, pairs of words.
     length: f64,
 }
 
@@ -74,15 +80,15 @@ impl WeightedText<'_> {
     /// The sum over the lengths of n-grams of the clipped cosines, times the penalty for a difference in length.
     fn similarity_to(&self, reference: &Self) -> f64 {
         let mut products = [0.0; GRAM_ORDER_COUNT];
-        let mut there = reference.grams.iter().zip(&reference.weights).peekable();
+        let mut reference_grams = reference.grams.iter().zip(&reference.weights).peekable();
         for (gram, weight) in self.grams.iter().zip(&self.weights) {
-            while there.next_if(|(other, _)| other.key < gram.key).is_some() {}
-            if let Some((_, other)) = there.next_if(|(other, _)| other.key == gram.key) {
-                products[gram.order()] += weight.min(*other) * other;
+            while reference_grams.next_if(|(other, _)| other.key < gram.key).is_some() {}
+            if let Some((_, other_weight)) = reference_grams.next_if(|(other, _)| other.key == gram.key) {
+                products[gram.order()] += weight.min(*other_weight) * other_weight;
             }
         }
-        let apart = self.length - reference.length;
-        let penalty = (-(apart * apart) / (2.0 * LENGTH_SIGMA_WORDS * LENGTH_SIGMA_WORDS)).exp();
+        let difference = self.length - reference.length;
+        let penalty = (-(difference * difference) / (2.0 * LENGTH_SIGMA_WORDS * LENGTH_SIGMA_WORDS)).exp();
         let cosine = |order: usize| match self.norms[order] * reference.norms[order] {
             norms if norms > 0.0 => products[order] / norms,
             _ => products[order],
@@ -98,11 +104,11 @@ pub fn cider_d(rows: &[super::CaptionRow<'_>]) -> Vec<f64> {
     let mut occurrences = GramOccurrences::default();
     rows.iter().for_each(|row| occurrences.count_references(&row.references));
     let items = rows.len() as f64;
-    let of_row = |row: &super::CaptionRow<'_>| {
+    let score_row = |row: &super::CaptionRow<'_>| {
         let text = occurrences.weigh_text(row.text, items);
-        let alike =
+        let similarities =
             row.references.iter().map(|reference| text.similarity_to(&occurrences.weigh_text(reference, items)));
-        alike.sum::<f64>() / GRAM_ORDER_COUNT as f64 / row.references.len().max(1) as f64 * CIDER_SCALE
+        similarities.sum::<f64>() / GRAM_ORDER_COUNT as f64 / row.references.len().max(1) as f64 * CIDER_SCALE
     };
-    rows.iter().map(of_row).collect()
+    rows.iter().map(score_row).collect()
 }

@@ -53,35 +53,37 @@ struct TopGramCounts {
     second: u32,
 }
 
+/// Mean BLEU-4 of each text against all others; `None` for fewer than two texts.
 fn self_bleu_4(texts: &[&NumberedText]) -> Option<f64> {
-    let mut most: BTreeMap<u128, TopGramCounts> = BTreeMap::new();
+    let mut top_counts: BTreeMap<u128, TopGramCounts> = BTreeMap::new();
     let mut lengths: BTreeMap<usize, usize> = BTreeMap::new();
     for (owner, text) in texts.iter().enumerate() {
         *lengths.entry(text.len()).or_default() += 1;
         for gram in text.grams() {
-            let of_gram = most.entry(gram.key).or_default();
-            *of_gram = if gram.count > of_gram.first {
-                TopGramCounts { first: gram.count, owner, second: of_gram.first }
+            let top = top_counts.entry(gram.key).or_default();
+            *top = if gram.count > top.first {
+                TopGramCounts { first: gram.count, owner, second: top.first }
             } else {
-                TopGramCounts { second: of_gram.second.max(gram.count), ..*of_gram }
+                TopGramCounts { second: top.second.max(gram.count), ..*top }
             };
         }
     }
-    let of_text = |(owner, text): (usize, &&NumberedText)| {
+    let score_text = |(owner, text): (usize, &&NumberedText)| {
         let mut counts = BleuCounts::for_text(text, &[]);
         for gram in text.grams() {
-            let found = most.get(&gram.key).copied().unwrap_or_default();
-            let others = if found.owner == owner { found.second } else { found.first };
+            let top = top_counts.get(&gram.key).copied().unwrap_or_default();
+            let others = if top.owner == owner { top.second } else { top.first };
             counts.correct[gram.order()] += u64::from(gram.count.min(others));
         }
         counts.reference = closest_length(&lengths, text.len()) as u64;
         counts.bleu_scores()[GRAM_ORDER_COUNT - 1]
     };
-    let scores: Vec<f64> = texts.iter().enumerate().map(of_text).collect();
+    let scores: Vec<f64> = texts.iter().enumerate().map(score_text).collect();
     (texts.len() > 1).then(|| scores.iter().sum::<f64>() / scores.len() as f64)
 }
 
-/// The closest length among the other texts; of two equally close ones the shorter.
+/// The length closest to `length` among the other texts; of two equally close ones the shorter. `lengths` counts the texts of each
+/// length, the text itself included.
 fn closest_length(lengths: &BTreeMap<usize, usize>, length: usize) -> usize {
     let shared = lengths.get(&length).is_some_and(|count| *count > 1);
     let below = lengths.range(..length).next_back();
@@ -90,8 +92,9 @@ fn closest_length(lengths: &BTreeMap<usize, usize>, length: usize) -> usize {
     if shared { length } else { near.map_or(0, |(_, other)| other) }
 }
 
-fn distinct_share(texts: &[&NumberedText], of_order: usize) -> Option<f64> {
-    let grams = texts.iter().flat_map(|text| text.grams()).filter(|gram| gram_order(gram.key) == of_order);
+/// Different n-grams over all n-grams. `order` is n less one.
+fn distinct_share(texts: &[&NumberedText], order: usize) -> Option<f64> {
+    let grams = texts.iter().flat_map(|text| text.grams()).filter(|gram| gram_order(gram.key) == order);
     let (mut different, mut all) = (HashSet::new(), 0u64);
     for gram in grams {
         different.insert(gram.key);
@@ -100,6 +103,7 @@ fn distinct_share(texts: &[&NumberedText], of_order: usize) -> Option<f64> {
     (all > 0).then(|| different.len() as f64 / all as f64)
 }
 
+/// The mean share of different words in windows of [`WINDOW_WORDS`] words, which move by one word at a time.
 fn type_token_ratio(texts: &[&NumberedText]) -> Option<f64> {
     let words: Vec<u32> = texts.iter().flat_map(|text| text.words()).copied().collect();
     let width = WINDOW_WORDS.min(words.len());
@@ -111,11 +115,11 @@ fn type_token_ratio(texts: &[&NumberedText]) -> Option<f64> {
     for (at, word) in words.iter().enumerate() {
         *counts.entry(*word).or_default() += 1;
         if at >= width {
-            let left = words[at - width];
-            if let Some(count) = counts.get_mut(&left) {
+            let leaving = words[at - width];
+            if let Some(count) = counts.get_mut(&leaving) {
                 *count -= 1;
                 if *count == 0 {
-                    counts.remove(&left);
+                    counts.remove(&leaving);
                 }
             }
         }
@@ -126,6 +130,7 @@ fn type_token_ratio(texts: &[&NumberedText]) -> Option<f64> {
     Some(types as f64 / (words.len() - width + 1) as f64 / width as f64)
 }
 
+/// Mean ROUGE-L of random pairs of texts about different paths; `None` where there is a single path.
 fn measure_homogenisation(texts: &[(&str, &NumberedText)], seed: u64) -> Option<f64> {
     let paths: HashSet<&str> = texts.iter().map(|(path, _)| *path).collect();
     if paths.len() < 2 {

@@ -47,22 +47,26 @@ pub struct CaptionScores {
 /// The figures of each text.
 #[must_use]
 pub fn score_rows(rows: &[CaptionRow<'_>]) -> Vec<CaptionScores> {
-    let of_row = |(row, cider_d): (&CaptionRow<'_>, f64)| CaptionScores {
+    let scores = |(row, cider_d): (&CaptionRow<'_>, f64)| CaptionScores {
         counts: BleuCounts::for_text(row.text, &row.references),
         rouge_l: rouge_l(row.text, &row.references),
         cider_d,
     };
-    rows.iter().zip(cider_d(rows)).map(of_row).collect()
+    rows.iter().zip(cider_d(rows)).map(scores).collect()
 }
 
-/// White space collapsed to single blanks, without any at the ends. Line breaks within a text shift all later texts
-/// in a tokenizer that reads line by line, so this comes before any tokenizer. White space is what Python's `str.split` splits at.
+/// The text with each run of white space as a single blank, and without any at the ends. White space means the characters at which
+/// Python's `str.split` splits.
+///
+/// A tokenizer that reads line by line would take a line break within a text for the end of that text, so this comes before any
+/// tokenizer.
 #[must_use]
 pub fn collapse_white_space(text: &str) -> String {
     let words = text.split(is_white).filter(|word| !word.is_empty());
     words.collect::<Vec<_>>().join(" ")
 }
 
+/// Whether Python's `str.split` splits at a character.
 fn is_white(c: char) -> bool {
     c.is_whitespace() || ('\u{1c}'..='\u{1f}').contains(&c)
 }

@@ -5,13 +5,13 @@ use std::collections::HashMap;
 /// The number of the empty word. In Python, `"".split(" ")` gives one empty word, so ROUGE-L sees it in a text without tokens.
 const EMPTY_WORD_NUMBER: u32 = 0;
 
-/// Longest n-grams that the scores count.
+/// The scores count n-grams (runs of n words) of 1 to this many words.
 pub(super) const GRAM_ORDER_COUNT: usize = 4;
 
 /// Bits of a word's number. Four numbers and two bits for the length of the n-gram fit into 128 bits.
 const WORD_NUMBER_BITS: u32 = 30;
 
-/// Numbers of words.
+/// Gives each distinct word a number, from 1.
 #[derive(Debug, Clone, Default)]
 pub struct CaptionVocabulary {
     numbers: HashMap<String, u32>,
@@ -22,8 +22,9 @@ pub struct CaptionVocabulary {
 pub struct NumberedText {
     /// The words that BLEU, CIDEr-D and the figures of diversity count.
     words: Vec<u32>,
-    /// The words that ROUGE-L counts; `None` where they are the same.
+    /// The words that ROUGE-L counts, which are split at blanks only; `None` where they are the same.
     pieces: Option<Vec<u32>>,
+    /// The n-grams of `words`, sorted by their keys.
     grams: Vec<CountedGram>,
 }
 
@@ -32,6 +33,7 @@ pub struct NumberedText {
 pub(super) struct CountedGram {
     /// The length less one in the highest bits, then the words: the n-grams of one length lie together when sorted.
     pub(super) key: u128,
+    /// How often the n-gram occurs in the text.
     pub(super) count: u32,
 }
 
@@ -57,7 +59,7 @@ impl CaptionVocabulary {
         words.into_iter().map(|(_, word)| word).collect()
     }
 
-    /// A text of tokens.
+    /// Numbers the tokens of a text. Words that are new get the next numbers.
     ///
     /// The reference keeps tokens as one line and splits it again: ROUGE-L at blanks, the others at white space of
     /// any kind. A token with a no-break space (`1 1/2`) is therefore one piece and two words.
@@ -101,8 +103,8 @@ impl NumberedText {
     /// Its tokens with blanks between. `words` is what [`CaptionVocabulary::words_by_number`] gives.
     #[must_use]
     pub fn to_line(&self, words: &[&str]) -> String {
-        let of = |number: &u32| words.get(*number as usize).copied().unwrap_or_default();
-        self.pieces().iter().map(of).collect::<Vec<_>>().join(" ")
+        let word = |number: &u32| words.get(*number as usize).copied().unwrap_or_default();
+        self.pieces().iter().map(word).collect::<Vec<_>>().join(" ")
     }
 
     pub(super) fn words(&self) -> &[u32] {
@@ -119,15 +121,16 @@ impl NumberedText {
     }
 }
 
+/// The n-grams of all lengths with their counts, sorted by their keys.
 fn count_grams(words: &[u32]) -> Vec<CountedGram> {
-    let of_order = |order: usize| {
+    let keys_of_order = |order: usize| {
         let key = move |window: &[u32]| {
             window.iter().fold(order as u128, |key, word| key << WORD_NUMBER_BITS | u128::from(*word))
         };
-        let place = WORD_NUMBER_BITS * (GRAM_ORDER_COUNT - 1 - order) as u32;
-        words.windows(order + 1).map(move |window| key(window) << place)
+        let shift = WORD_NUMBER_BITS * (GRAM_ORDER_COUNT - 1 - order) as u32;
+        words.windows(order + 1).map(move |window| key(window) << shift)
     };
-    let mut keys: Vec<u128> = (0..GRAM_ORDER_COUNT).flat_map(of_order).collect();
+    let mut keys: Vec<u128> = (0..GRAM_ORDER_COUNT).flat_map(keys_of_order).collect();
     keys.sort_unstable();
     keys.chunk_by(|a, b| a == b).map(|same| CountedGram { key: same[0], count: same.len() as u32 }).collect()
 }

@@ -1,17 +1,18 @@
-//! ROUGE-L as `pycocoevalcap`'s `rouge.py` computes it: how long a common subsequence of words a text has with a reference.
+//! ROUGE-L as `pycocoevalcap`'s `rouge.py` computes it: from the length of the longest subsequence of words that a text has in common
+//! with a reference.
 
 use super::numbered_text::NumberedText;
 
 /// How much more recall counts than precision.
 const ROUGE_BETA: f64 = 1.2;
 
-/// ROUGE-L of a text: from the best precision and the best recall against any reference, which may be two references.
+/// ROUGE-L of a text, from its best precision and its best recall. The two may come from different references.
 #[must_use]
 pub fn rouge_l(text: &NumberedText, references: &[&NumberedText]) -> f64 {
-    let mut before = Vec::new();
+    let mut row_buffer = Vec::new();
     let [mut precision, mut recall] = [0.0, 0.0];
     for reference in references {
-        let common = longest_common(text.pieces(), reference.pieces(), &mut before) as f64;
+        let common = longest_common(text.pieces(), reference.pieces(), &mut row_buffer) as f64;
         precision = f64::max(precision, common / text.pieces().len() as f64);
         recall = f64::max(recall, common / reference.pieces().len() as f64);
     }

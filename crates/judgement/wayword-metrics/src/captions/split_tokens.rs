@@ -21,6 +21,7 @@ fn is_of_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
+/// Adds the tokens of a run, which is a word or a run of other characters.
 fn push_run(run: &str, tokens: &mut Vec<String>) {
     let is_marks = run.chars().all(|c| c.is_ascii_punctuation()) && run.chars().any(|c| c != '.');
     if is_marks {

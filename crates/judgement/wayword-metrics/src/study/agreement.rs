@@ -77,8 +77,11 @@ struct RatingTable {
     levels: Vec<f64>,
     /// How often each item has each value, by the number of the value.
     items: Vec<Vec<(usize, f64)>>,
+    /// All answers, item by item.
     answers: Vec<AnswerPosition>,
+    /// The answers of each person.
     by_person: Vec<Vec<AnswerPosition>>,
+    /// The answers to each item.
     by_item: Vec<Vec<AnswerPosition>>,
 }
 
@@ -88,23 +91,23 @@ impl RatingTable {
         for answer in answers {
             items.entry(&answer.item).or_default().push(answer);
         }
-        items.retain(|_, of| of.len() > 1);
+        items.retain(|_, item_answers| item_answers.len() > 1);
         let mut levels: Vec<f64> = items.values().flatten().map(|answer| answer.value).collect();
         levels.sort_unstable_by(f64::total_cmp);
         levels.dedup_by(|a, b| a == b);
         let mut by_person: BTreeMap<&P, Vec<AnswerPosition>> = BTreeMap::new();
         let mut by_item = vec![Vec::new(); items.len()];
-        for (item, answer) in
-            items.values().enumerate().flat_map(|(item, of)| of.iter().map(move |answer| (item, answer)))
-        {
-            let place = (item, levels.partition_point(|level| *level < answer.value));
-            by_person.entry(&answer.person).or_default().push(place);
-            by_item[item].push(place);
+        for (item, item_answers) in items.values().enumerate() {
+            for answer in item_answers {
+                let position = (item, levels.partition_point(|level| *level < answer.value));
+                by_person.entry(&answer.person).or_default().push(position);
+                by_item[item].push(position);
+            }
         }
         Self {
             scale,
             levels,
-            items: by_item.iter().map(|of| count_levels(of)).collect(),
+            items: by_item.iter().map(|item_answers| count_levels(item_answers)).collect(),
             answers: by_item.iter().flatten().copied().collect(),
             by_person: by_person.into_values().collect(),
             by_item,
@@ -113,7 +116,7 @@ impl RatingTable {
 
     /// The standard error by the jackknife; `None` if too few of the reduced sets of answers have an alpha.
     fn standard_error(&self) -> Option<f64> {
-        let single: Vec<Vec<AnswerPosition>> = self.answers.iter().map(|place| vec![*place]).collect();
+        let single: Vec<Vec<AnswerPosition>> = self.answers.iter().map(|position| vec![*position]).collect();
         let [item, person, answer] =
             [&self.by_item, &self.by_person, &single].map(|groups| self.jackknife_variance(groups));
         Some((item? + (person? - answer?).max(0.0)).sqrt())
@@ -129,22 +132,25 @@ impl RatingTable {
     }
 
     /// Alpha without some answers. `None` where no item has two answers, or all answers are the same.
-    fn alpha_without(&self, out: &[AnswerPosition]) -> Option<f64> {
+    fn alpha_without(&self, left_out: &[AnswerPosition]) -> Option<f64> {
         let mut items = self.items.clone();
-        for (item, level) in out {
+        for (item, level) in left_out {
             items[*item].iter_mut().filter(|(at, _)| at == level).for_each(|(_, count)| *count -= 1.0);
         }
-        items.retain(|of| answer_total(of) > 1.0);
+        items.retain(|counts| answer_total(counts) > 1.0);
         let mut totals = vec![0.0; self.levels.len()];
         items.iter().flatten().for_each(|(level, count)| totals[*level] += count);
-        let places = self.level_positions(&totals);
-        let apart = |a: usize, b: usize| match self.scale {
+        let positions = self.level_positions(&totals);
+        let distance = |a: usize, b: usize| match self.scale {
             AnswerScale::Nominal => f64::from(u8::from(a != b)),
-            AnswerScale::Ordinal | AnswerScale::Interval => (places[a] - places[b]) * (places[a] - places[b]),
+            AnswerScale::Ordinal | AnswerScale::Interval => {
+                (positions[a] - positions[b]) * (positions[a] - positions[b])
+            }
         };
-        let observed: f64 = items.iter().map(|of| total_disagreement(of, apart) / (answer_total(of) - 1.0)).sum();
+        let observed: f64 =
+            items.iter().map(|counts| total_disagreement(counts, distance) / (answer_total(counts) - 1.0)).sum();
         let all: Vec<(usize, f64)> = totals.iter().copied().enumerate().filter(|(_, total)| *total > 0.0).collect();
-        let expected = total_disagreement(&all, apart) / (answer_total(&all) - 1.0);
+        let expected = total_disagreement(&all, distance) / (answer_total(&all) - 1.0);
         (expected > 0.0).then(|| 1.0 - observed / expected)
     }
 
@@ -162,21 +168,23 @@ impl RatingTable {
     }
 }
 
-/// Sum of the distances of all ordered pairs.
-fn total_disagreement(counts: &[(usize, f64)], apart: impl Fn(usize, usize) -> f64) -> f64 {
+/// Sum of the distances of all ordered pairs of answers. `counts` has the number of answers at each level.
+fn total_disagreement(counts: &[(usize, f64)], distance: impl Fn(usize, usize) -> f64) -> f64 {
     let mut sum = 0.0;
     for (at, (level, count)) in counts.iter().enumerate() {
         for (other, others) in &counts[..at] {
-            sum += count * others * apart(*level, *other);
+            sum += count * others * distance(*level, *other);
         }
     }
     2.0 * sum
 }
 
+/// The number of answers at all levels together.
 fn answer_total(counts: &[(usize, f64)]) -> f64 {
     counts.iter().map(|(_, count)| count).sum()
 }
 
+/// How often each level occurs among answers.
 fn count_levels(answers: &[AnswerPosition]) -> Vec<(usize, f64)> {
     let mut counts: BTreeMap<usize, f64> = BTreeMap::new();
     answers.iter().for_each(|(_, level)| *counts.entry(*level).or_default() += 1.0);

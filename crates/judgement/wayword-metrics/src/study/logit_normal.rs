@@ -11,14 +11,15 @@ pub fn mean_share(logit: f64, sd: f64) -> f64 {
 }
 
 /// The mean of a function of a normal variable.
-pub(super) fn mean_over_normal(mean: f64, sd: f64, of: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn mean_over_normal(mean: f64, sd: f64, function: impl Fn(f64) -> f64) -> f64 {
+    // 144 steps of 1/16 are 9 standard deviations on each side.
     const STEPS_PER_SIDE: i32 = 144;
     const STEP_DEVIATIONS: f64 = 1.0 / 16.0;
     let (mut sum, mut weights) = (0.0, 0.0);
     for step in -STEPS_PER_SIDE..=STEPS_PER_SIDE {
         let at = f64::from(step) * STEP_DEVIATIONS;
         let weight = (-at * at / 2.0).exp();
-        sum += weight * of(mean + sd * at);
+        sum += weight * function(mean + sd * at);
         weights += weight;
     }
     sum / weights
@@ -26,6 +27,7 @@ pub(super) fn mean_over_normal(mean: f64, sd: f64, of: impl Fn(f64) -> f64) -> f
 
 /// The inverse of [`mean_share`]: the logit for which the mean share, with standard deviation `sd`, is `share`; by bisection.
 pub(super) fn centre_logit(share: f64, sd: f64) -> f64 {
+    // Shares at these logits are 0 and 1 in all digits.
     let (mut low, mut high) = (-60.0, 60.0);
     for _ in 0..100 {
         let middle = f64::midpoint(low, high);
@@ -38,10 +40,12 @@ pub(super) fn centre_logit(share: f64, sd: f64) -> f64 {
     f64::midpoint(low, high)
 }
 
+/// The logit of a share: ln(p / (1 - p)).
 pub(super) fn logit(share: f64) -> f64 {
     (share / (1.0 - share)).ln()
 }
 
+/// The share of a logit, the inverse of [`logit`].
 pub(super) fn expit(logit: f64) -> f64 {
     1.0 / (1.0 + (-logit).exp())
 }

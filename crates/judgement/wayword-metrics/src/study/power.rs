@@ -53,12 +53,12 @@ pub fn detectable_difference(plan: &PowerPlan, power: f64, significance: f64) ->
     let answers_per_condition = (plan.persons * plan.answers_per_person) as f64 / 2.0;
     let is_inside = |share: f64| share > 0.0 && share < 1.0;
     let is_sd = |sd: f64| (0.0..=MOST_SD).contains(&sd);
-    let can_be = [plan.base_share, power, significance].into_iter().all(is_inside)
+    let is_possible = [plan.base_share, power, significance].into_iter().all(is_inside)
         && is_sd(plan.person_sd)
         && is_sd(plan.item_sd)
         && plan.items > 0
         && answers_per_condition > 0.0;
-    let design_effect = can_be.then(|| design_effect(plan, answers_per_condition))?;
+    let design_effect = is_possible.then(|| design_effect(plan, answers_per_condition))?;
     let z = [quantile::normal_quantile(1.0 - significance / 2.0), quantile::normal_quantile(power)];
     let difference = smallest_difference(plan.base_share, answers_per_condition / design_effect, z)?;
     Some(DetectableShareDifference { difference, answers_per_condition, design_effect })
@@ -67,6 +67,7 @@ pub fn detectable_difference(plan: &PowerPlan, power: f64, significance: f64) ->
 /// Largest standard deviation of logits that is accepted. Beyond it a person gives nearly always the same answer.
 const MOST_SD: f64 = 10.0;
 
+/// The factor by which the variance exceeds that of independent answers, for `answers` in each condition.
 fn design_effect(plan: &PowerPlan, answers: f64) -> f64 {
     let conditions = |in_both: bool| if in_both { 1.0 } else { 2.0 };
     let per_person = answers * conditions(plan.persons_see_both) / plan.persons as f64;
@@ -81,14 +82,14 @@ fn design_effect(plan: &PowerPlan, answers: f64) -> f64 {
 /// Two answers of one person share the person's part of the logit and differ in the rest. Their covariance is the variance, over
 /// the shared part, of the expected share given that part. Divided by p (1 - p) it is their correlation.
 fn answer_correlations(plan: &PowerPlan) -> [f64; 2] {
-    let all = plan.person_sd.hypot(plan.item_sd);
-    let centre = logit_normal::centre_logit(plan.base_share, all);
+    let total_sd = plan.person_sd.hypot(plan.item_sd);
+    let centre = logit_normal::centre_logit(plan.base_share, total_sd);
     let total = plan.base_share * (1.0 - plan.base_share);
-    let of = |shared: f64, rest: f64| {
-        let square = logit_normal::mean_over_normal(centre, shared, |at| mean_share(at, rest).powi(2));
+    let correlation = |shared_sd: f64, rest_sd: f64| {
+        let square = logit_normal::mean_over_normal(centre, shared_sd, |at| mean_share(at, rest_sd).powi(2));
         (square - plan.base_share * plan.base_share) / total
     };
-    [of(plan.person_sd, plan.item_sd), of(plan.item_sd, plan.person_sd)]
+    [correlation(plan.person_sd, plan.item_sd), correlation(plan.item_sd, plan.person_sd)]
 }
 
 /// Solves the formula for the difference, by bisection.
@@ -99,8 +100,9 @@ fn smallest_difference(mean: f64, answers: f64, [significance, power]: [f64; 2])
         let needed = significance * (2.0 * variance(mean)).sqrt() + power * apart.sqrt();
         difference * answers.sqrt() >= needed
     };
-    let most = 2.0 * mean.min(1.0 - mean);
-    let (mut low, mut high) = (0.0, most);
+    // With a larger difference, one of the two shares would be outside 0 to 1.
+    let largest = 2.0 * mean.min(1.0 - mean);
+    let (mut low, mut high) = (0.0, largest);
     for _ in 0..100 {
         let middle = f64::midpoint(low, high);
         if is_detected(middle) {
@@ -109,7 +111,7 @@ fn smallest_difference(mean: f64, answers: f64, [significance, power]: [f64; 2])
             low = middle;
         }
     }
-    is_detected(most).then_some(high)
+    is_detected(largest).then_some(high)
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 /// The standard normal quantile, by Wichura's algorithm AS 241 (PPND16, Applied Statistics 37, 1988): accurate to about
 /// sixteen digits. Infinite at 0 and 1, and not a number beyond them.
 pub(super) fn normal_quantile(share: f64) -> f64 {
+    // The numbers in this function are those of AS 241.
     let from_half = share - 0.5;
     if from_half.abs() <= 0.425 {
         let r = 0.180_625 - from_half * from_half;
@@ -14,8 +15,9 @@ pub(super) fn normal_quantile(share: f64) -> f64 {
         return if tail < 0.0 { f64::NAN } else { f64::INFINITY.copysign(from_half) };
     }
     let root = (-tail.ln()).sqrt();
-    let (of, r) = if root <= 5.0 { (&MIDDLE_COEFFICIENTS, root - 1.6) } else { (&FAR_COEFFICIENTS, root - 5.0) };
-    (evaluate_polynomial(&of.0, r) / evaluate_polynomial(&of.1, r)).copysign(from_half)
+    let (coefficients, r) =
+        if root <= 5.0 { (&MIDDLE_COEFFICIENTS, root - 1.6) } else { (&FAR_COEFFICIENTS, root - 5.0) };
+    (evaluate_polynomial(&coefficients.0, r) / evaluate_polynomial(&coefficients.1, r)).copysign(from_half)
 }
 
 /// The quantile of Student's distribution, for a share from 0.5 to below 1; `None` for other shares and for 0 degrees of freedom.
@@ -55,6 +57,7 @@ pub(super) fn student_quantile(share: f64, degrees: usize) -> Option<f64> {
 
 /// Beyond this many degrees of freedom the quantile equals the normal one in all digits that reports show.
 const MOST_DEGREES: usize = 1_000_000;
+/// Steps of the iteration at most; then the value so far is returned. Bisection alone needs fewer.
 const MOST_STEPS: usize = 200;
 
 /// Student's distribution with its degrees of freedom.
@@ -74,6 +77,7 @@ impl StudentDistribution {
         Self { degrees: degrees as f64, beta }
     }
 
+    /// The probability density at `t`.
     fn density(&self, t: f64) -> f64 {
         let power = -(self.degrees + 1.0) / 2.0 * (t * t / self.degrees).ln_1p();
         power.exp() / (self.degrees.sqrt() * self.beta)
@@ -96,9 +100,9 @@ impl StudentDistribution {
 /// The continued fraction of the incomplete beta function (Abramowitz and Stegun 26.5.8), by Lentz's method.
 fn continued_fraction(a: f64, b: f64, x: f64) -> f64 {
     const SMALLEST_DENOMINATOR: f64 = 1e-300;
-    let away = |value: f64| if value.abs() < SMALLEST_DENOMINATOR { SMALLEST_DENOMINATOR } else { value };
+    let away_from_zero = |value: f64| if value.abs() < SMALLEST_DENOMINATOR { SMALLEST_DENOMINATOR } else { value };
     let mut c = 1.0;
-    let mut d = 1.0 / away(1.0 - (a + b) * x / (a + 1.0));
+    let mut d = 1.0 / away_from_zero(1.0 - (a + b) * x / (a + 1.0));
     let mut value = d;
     for step in 1..10_000 {
         let m = f64::from(step);
@@ -106,8 +110,8 @@ fn continued_fraction(a: f64, b: f64, x: f64) -> f64 {
         let odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
         let before = value;
         for term in [even, odd] {
-            d = 1.0 / away(1.0 + term * d);
-            c = away(1.0 + term / c);
+            d = 1.0 / away_from_zero(1.0 + term * d);
+            c = away_from_zero(1.0 + term / c);
             value *= c * d;
         }
         if (value - before).abs() <= 1e-16 * value.abs() {
@@ -117,6 +121,7 @@ fn continued_fraction(a: f64, b: f64, x: f64) -> f64 {
     value
 }
 
+/// The value of a polynomial, constant term first, by Horner's rule.
 fn evaluate_polynomial(coefficients: &[f64; 8], at: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * at + coefficient)
 }
@@ -124,6 +129,7 @@ fn evaluate_polynomial(coefficients: &[f64; 8], at: f64) -> f64 {
 /// Numerator and denominator of a rational approximation, constant terms first.
 type RationalCoefficients = ([f64; 8], [f64; 8]);
 
+/// For shares from 0.075 to 0.925, by the distance from one half.
 #[rustfmt::skip]
 const CENTRE_COEFFICIENTS: RationalCoefficients = (
     [3.387_132_872_796_366_5, 1.331_416_678_917_843_8e2, 1.971_590_950_306_551_3e3, 1.373_169_376_550_946e4,
@@ -131,6 +137,7 @@ const CENTRE_COEFFICIENTS: RationalCoefficients = (
     [1.0, 4.231_333_070_160_091e1, 6.871_870_074_920_579e2, 5.394_196_021_424_751e3,
      2.121_379_430_158_659_7e4, 3.930_789_580_009_271e4, 2.872_908_573_572_194_3e4, 5.226_495_278_852_854e3],
 );
+/// For smaller tails down to e^-25.
 #[rustfmt::skip]
 const MIDDLE_COEFFICIENTS: RationalCoefficients = (
     [1.423_437_110_749_683_5, 4.630_337_846_156_546, 5.769_497_221_460_691, 3.647_848_324_763_204_5,
@@ -138,6 +145,7 @@ const MIDDLE_COEFFICIENTS: RationalCoefficients = (
     [1.0, 2.053_191_626_637_759, 1.676_384_830_183_803_8, 6.897_673_349_851e-1,
      1.481_039_764_274_800_8e-1, 1.519_866_656_361_645_7e-2, 5.475_938_084_995_345e-4, 1.050_750_071_644_416_9e-9],
 );
+/// For tails below e^-25.
 #[rustfmt::skip]
 const FAR_COEFFICIENTS: RationalCoefficients = (
     [6.657_904_643_501_103, 5.463_784_911_164_114, 1.784_826_539_917_291_3, 2.965_605_718_285_048_7e-1,

@@ -1,4 +1,4 @@
-//! All shortest distances between the viewpoints of a scene.
+//! All shortest distances between the viewpoints of a scene. A place is the number of a viewpoint in the order of names.
 
 use super::numbered_viewpoints::NumberedViewpoints;
 use std::{cmp::Ordering, collections::BinaryHeap};
@@ -10,6 +10,7 @@ use wayword_core::{ViewpointGraph, ViewpointId};
 #[derive(Debug, Clone)]
 pub struct SceneDistances {
     places: NumberedViewpoints,
+    /// The edges of the graph.
     roads: EdgeLists,
     /// From one place to all, place after place; infinite where there is no way.
     metres: Vec<f64>,
@@ -50,12 +51,12 @@ impl SceneDistances {
         ends.is_some_and(|(a, b)| self.are_joined(a, b))
     }
 
-    /// The number of a viewpoint, for the other functions.
+    /// The place of a viewpoint; `None` if the scene lacks it.
     pub(super) fn place_number(&self, viewpoint: &str) -> Option<usize> {
         self.places.find(viewpoint)
     }
 
-    /// The name of a place.
+    /// The name of the viewpoint at a place.
     pub(super) fn place_name(&self, place: usize) -> &ViewpointId {
         self.places.name(place)
     }
@@ -65,6 +66,7 @@ impl SceneDistances {
         self.metres[a * self.places.len() + b]
     }
 
+    /// Whether an edge joins two places.
     pub(super) fn are_joined(&self, a: usize, b: usize) -> bool {
         self.roads.edges_from(a).iter().any(|(other, _)| *other == b)
     }
@@ -74,7 +76,7 @@ impl SceneDistances {
 #[derive(Debug, Clone)]
 struct EdgeLists {
     first: Vec<usize>,
-    /// The other end, and the length in metres.
+    /// The place at the other end of each edge, and the length in metres.
     to: Vec<(usize, f64)>,
 }
 
@@ -92,12 +94,13 @@ impl EdgeLists {
         Self { first, to: ends.into_iter().map(|(_, b, length_m)| (b, length_m)).collect() }
     }
 
+    /// The edges of a place.
     fn edges_from(&self, place: usize) -> &[(usize, f64)] {
         &self.to[self.first[place]..self.first[place + 1]]
     }
 
-    /// Writes the distances from `start` into a row that is infinite everywhere. The frontier is empty before and
-    /// after.
+    /// Writes the distances from `start` to all places, metres, into a row that is infinite everywhere. The frontier is empty before
+    /// and after; the caller passes it so that its memory is reused.
     fn walk_all(&self, start: usize, row: &mut [f64], frontier: &mut BinaryHeap<FrontierPlace>) {
         row[start] = 0.0;
         frontier.push(FrontierPlace { metres: 0.0, place: start });

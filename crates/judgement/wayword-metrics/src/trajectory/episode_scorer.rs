@@ -16,8 +16,9 @@ const SUCCESS_M: f64 = 3.0;
 #[derive(Debug, Clone)]
 pub struct EpisodeScorer {
     start: usize,
-    /// The annotated path; never empty.
+    /// The annotated path, by places (numbers of viewpoints); never empty.
     path: Vec<usize>,
+    /// The length of the annotated path.
     path_m: f64,
     /// From the start to the goal; infinite where there is no way.
     shortest_m: f64,
@@ -34,23 +35,23 @@ impl EpisodeScorer {
     pub fn new(distances: &SceneDistances, demand: &EpisodeDemand) -> Result<Self, Vec<TrajectoryError>> {
         let path = reference_places(distances, demand)?;
         let ([start, .., goal] | [start @ goal]) = path[..] else { return Err(vec![TrajectoryError::NoReference]) };
-        let seen = demand.visible_from.as_ref().filter(|_| demand.object.is_some());
-        let places = |from: &BTreeSet<ViewpointId>| {
+        let visible_from = demand.visible_from.as_ref().filter(|_| demand.object.is_some());
+        let places = |viewpoints: &BTreeSet<ViewpointId>| {
             // Places are numbered in the order of their names, so these are in order too.
-            from.iter().filter_map(|viewpoint| distances.place_number(viewpoint.as_str())).collect()
+            viewpoints.iter().filter_map(|viewpoint| distances.place_number(viewpoint.as_str())).collect()
         };
         Ok(Self {
             start,
             path_m: length_m(distances, &path),
             shortest_m: distances.metres_between_places(start, goal),
             object: demand.object.clone(),
-            visible_from: seen.map(places),
+            visible_from: visible_from.map(places),
             path,
         })
     }
 
-    /// The figures of a trajectory, as [`score_trajectory`](super::score_trajectory) gives them. `names` are its viewpoints, `object` is the object that
-    /// the agent names, and `distances` must be those that were given to [`EpisodeScorer::new`].
+    /// The figures of a trajectory, as [`score_trajectory`](super::score_trajectory) gives them. `names` are its viewpoints, `object` is
+    /// the object that the agent names, and `distances` must be those that were given to [`EpisodeScorer::new`].
     ///
     /// # Errors
     /// Each problem of the trajectory.
@@ -61,25 +62,25 @@ impl EpisodeScorer {
         object: Option<&str>,
     ) -> Result<TrajectoryScore, Vec<TrajectoryError>> {
         let taken = trajectory_places(distances, Some(self.start), names)?;
-        let apart = PathDistances::new(distances, &taken, &self.path);
+        let path_distances = PathDistances::new(distances, &taken, &self.path);
         let length_m = length_m(distances, &taken);
-        let weight = path_efficiency(self.shortest_m, length_m);
-        let ndtw = apart.ndtw();
+        let efficiency = path_efficiency(self.shortest_m, length_m);
+        let ndtw = path_distances.ndtw();
         let outcome = |success, oracle_success| SuccessOutcome {
             success,
             oracle_success,
-            spl: if success { weight } else { 0.0 },
+            spl: if success { efficiency } else { 0.0 },
             sdtw: if success { ndtw } else { 0.0 },
         };
-        let error_m = apart.to_goal_m().last().unwrap_or(f64::INFINITY);
-        let oracle_m = apart.to_goal_m().fold(f64::INFINITY, f64::min);
-        let visible = self.visible_from.as_ref().map(|from| {
-            let sees = |place: &usize| from.binary_search(place).is_ok();
+        let error_m = path_distances.to_goal_m().last().unwrap_or(f64::INFINITY);
+        let oracle_m = path_distances.to_goal_m().fold(f64::INFINITY, f64::min);
+        let visible = self.visible_from.as_ref().map(|visible_from| {
+            let sees = |place: &usize| visible_from.binary_search(place).is_ok();
             outcome(taken.last().is_some_and(sees), taken.iter().any(sees))
         });
         let grounding = self.object.as_ref().map(|target| {
             let rgs = object == Some(target.as_str());
-            TargetGrounding { rgs, rgspl: if rgs { weight } else { 0.0 } }
+            TargetGrounding { rgs, rgspl: if rgs { efficiency } else { 0.0 } }
         });
         Ok(TrajectoryScore {
             length_m,
@@ -89,7 +90,7 @@ impl EpisodeScorer {
             visible,
             grounding,
             ndtw,
-            cls: apart.cls(length_m, self.path_m),
+            cls: path_distances.cls(length_m, self.path_m),
         })
     }
 }

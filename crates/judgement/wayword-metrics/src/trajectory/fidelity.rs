@@ -1,4 +1,5 @@
-//! How closely a trajectory follows the annotated path: nDTW and CLS.
+//! How closely a trajectory follows the annotated path: nDTW (normalised dynamic time warping) and CLS (coverage weighted by length
+//! score).
 
 use super::SceneDistances;
 
@@ -15,6 +16,7 @@ pub(super) struct PathDistances {
 }
 
 impl PathDistances {
+    /// The distances between the places `taken` by a trajectory and those of the annotated path.
     pub(super) fn new(distances: &SceneDistances, taken: &[usize], reference: &[usize]) -> Self {
         let mut metres = Vec::with_capacity(taken.len() * reference.len());
         for place in taken {
@@ -23,11 +25,12 @@ impl PathDistances {
         Self { metres, on_path: reference.len() }
     }
 
+    /// The row of each viewpoint of the trajectory.
     fn rows(&self) -> impl Iterator<Item = &[f64]> {
         self.metres.chunks_exact(self.on_path)
     }
 
-    /// From each viewpoint of the trajectory to the goal.
+    /// The distance from each viewpoint of the trajectory to the goal, metres.
     pub(super) fn to_goal_m(&self) -> impl Iterator<Item = f64> {
         self.rows().map(|row| row[row.len() - 1])
     }

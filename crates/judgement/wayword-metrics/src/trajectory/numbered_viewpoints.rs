@@ -13,6 +13,7 @@ pub(super) struct NumberedViewpoints {
     /// The bytes after the head of each name, so that short names are compared without following a pointer. Long names have here
     /// 255 in every byte, which is not valid UTF-8 and so equals no name.
     tails: Vec<[u8; TAIL_BYTES]>,
+    /// The names, in order.
     names: Vec<ViewpointId>,
 }
 
@@ -25,20 +26,22 @@ impl NumberedViewpoints {
         let mut names: Vec<ViewpointId> = names.cloned().collect();
         names.sort_unstable();
         let heads = names.iter().map(|name| head_number(name.as_str())).collect();
-        let kept = |name: &ViewpointId| {
+        let tail = |name: &ViewpointId| {
             if is_short(name.as_str()) { tail_bytes(name.as_str()) } else { [u8::MAX; TAIL_BYTES] }
         };
-        Self { heads, tails: names.iter().map(kept).collect(), names }
+        Self { heads, tails: names.iter().map(tail).collect(), names }
     }
 
     pub(super) fn len(&self) -> usize {
         self.names.len()
     }
 
+    /// The name of viewpoint number `place`.
     pub(super) fn name(&self, place: usize) -> &ViewpointId {
         &self.names[place]
     }
 
+    /// The number of a viewpoint; `None` if the scene lacks it.
     pub(super) fn find(&self, name: &str) -> Option<usize> {
         let head = head_number(name);
         let first = self.heads.partition_point(|other| *other < head);
@@ -53,14 +56,18 @@ impl NumberedViewpoints {
     }
 }
 
+/// Whether head and tail contain the whole name, so that comparing them is enough. A shorter name with a zero in it could equal
+/// another one that is padded with zeros.
 fn is_short(name: &str) -> bool {
     name.len() == HEAD_BYTES + TAIL_BYTES || name.len() < HEAD_BYTES + TAIL_BYTES && !name.as_bytes().contains(&0)
 }
 
+/// The first bytes of a name as a number.
 fn head_number(name: &str) -> u64 {
     u64::from_be_bytes(zero_padded::<HEAD_BYTES>(name.as_bytes()))
 }
 
+/// The bytes after the head, filled up with zeros.
 fn tail_bytes(name: &str) -> [u8; TAIL_BYTES] {
     zero_padded(name.as_bytes().get(HEAD_BYTES..).unwrap_or_default())
 }

@@ -30,7 +30,7 @@ pub fn score_trajectory(
     let names = trajectory.viewpoints.iter().map(ViewpointId::as_str);
     let object = trajectory.object.as_ref().map(ObjectId::as_str);
     match EpisodeScorer::new(distances, demand) {
-        Ok(course) => course.score_trajectory(distances, names, object),
+        Ok(scorer) => scorer.score_trajectory(distances, names, object),
         // The episode has problems. Report those of the trajectory as well.
         Err(_) => Err(find_problems(distances, demand, trajectory)),
     }

@@ -6,15 +6,15 @@ use wayword_core::ViewpointId;
 /// A problem of a trajectory or of its episode that makes scoring impossible. Steps count from 0, the start.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum TrajectoryError {
-    /// It holds no viewpoint.
+    /// The trajectory contains no viewpoint.
     #[error("the trajectory is empty: list its viewpoints from the start on, or only the start if the agent stays")]
     Empty,
-    /// It does not start where its episode does.
+    /// The trajectory does not start where its episode does.
     #[error("the trajectory starts at {found}: it has to start where its episode does, at {expected}")]
     Start {
         /// Its first viewpoint.
         found: String,
-        /// The episode's.
+        /// The first viewpoint of the episode's path.
         expected: ViewpointId,
     },
     /// A viewpoint that the scene does not have.
@@ -61,14 +61,14 @@ pub fn find_problems(
     demand: &EpisodeDemand,
     trajectory: &AgentTrajectory,
 ) -> Vec<TrajectoryError> {
-    let mut wrong = reference_places(distances, demand).err().unwrap_or_default();
+    let mut problems = reference_places(distances, demand).err().unwrap_or_default();
     let names = trajectory.viewpoints.iter().map(ViewpointId::as_str);
     let start = demand.reference.first().and_then(|start| distances.place_number(start.as_str()));
-    wrong.extend(trajectory_places(distances, start, names).err().into_iter().flatten());
-    wrong
+    problems.extend(trajectory_places(distances, start, names).err().into_iter().flatten());
+    problems
 }
 
-/// The places of the annotated path; never empty.
+/// The places (numbers of viewpoints) of the annotated path; never empty.
 pub(super) fn reference_places(
     distances: &SceneDistances,
     demand: &EpisodeDemand,
@@ -76,15 +76,15 @@ pub(super) fn reference_places(
     if demand.reference.is_empty() {
         return Err(vec![TrajectoryError::NoReference]);
     }
-    let mut wrong = Vec::new();
+    let mut problems = Vec::new();
     let mut places = Vec::with_capacity(demand.reference.len());
     for (step, viewpoint) in demand.reference.iter().enumerate() {
         match distances.place_number(viewpoint.as_str()) {
             Some(place) => places.push(place),
-            None => wrong.push(TrajectoryError::UnknownInReference { step, viewpoint: viewpoint.clone() }),
+            None => problems.push(TrajectoryError::UnknownInReference { step, viewpoint: viewpoint.clone() }),
         }
     }
-    if wrong.is_empty() { Ok(places) } else { Err(wrong) }
+    if problems.is_empty() { Ok(places) } else { Err(problems) }
 }
 
 /// The places of a trajectory; never empty, and the first is `start`, where that is known.
@@ -94,12 +94,12 @@ pub(super) fn trajectory_places<'n>(
     names: impl Iterator<Item = &'n str> + Clone,
 ) -> Result<Vec<usize>, Vec<TrajectoryError>> {
     let places: Vec<usize> = names.clone().map(|name| distances.place_number(name).unwrap_or(UNKNOWN_PLACE)).collect();
-    let starts = match (places.first(), start) {
+    let starts_right = match (places.first(), start) {
         (Some(first), Some(start)) => *first == start,
         (first, _) => first.is_some(),
     };
     let is_broken = |hop: &[usize]| hop[0] != hop[1] && !distances.are_joined(hop[0], hop[1]);
-    if starts && !places.contains(&UNKNOWN_PLACE) && !places.windows(2).any(is_broken) {
+    if starts_right && !places.contains(&UNKNOWN_PLACE) && !places.windows(2).any(is_broken) {
         return Ok(places);
     }
     Err(wrong_with(distances, start, &places, &names.collect::<Vec<_>>()))
@@ -113,12 +113,12 @@ fn wrong_with(
     names: &[&str],
 ) -> Vec<TrajectoryError> {
     let unknown = places.iter().zip(names).enumerate().filter(|(_, (place, _))| **place == UNKNOWN_PLACE);
-    let mut wrong: Vec<TrajectoryError> =
+    let mut problems: Vec<TrajectoryError> =
         unknown.map(|(step, (_, name))| TrajectoryError::Unknown { step, viewpoint: (*name).to_owned() }).collect();
     match (places.iter().zip(names).next(), start) {
-        (None, _) => wrong.push(TrajectoryError::Empty),
+        (None, _) => problems.push(TrajectoryError::Empty),
         (Some((first, found)), Some(start)) if *first != start => {
-            wrong.push(TrajectoryError::Start {
+            problems.push(TrajectoryError::Start {
                 found: (*found).to_owned(),
                 expected: distances.place_name(start).clone(),
             });
@@ -127,13 +127,13 @@ fn wrong_with(
     }
     for (at, hop) in places.windows(2).enumerate() {
         // Unknown viewpoints are already in the list, so their hops are not reported again.
-        let is_told = hop.contains(&UNKNOWN_PLACE);
-        if !is_told && hop[0] != hop[1] && !distances.are_joined(hop[0], hop[1]) {
+        let is_reported = hop.contains(&UNKNOWN_PLACE);
+        if !is_reported && hop[0] != hop[1] && !distances.are_joined(hop[0], hop[1]) {
             let [from, to] = [hop[0], hop[1]].map(|place| distances.place_name(place).clone());
-            wrong.push(TrajectoryError::NoEdge { step: at + 1, from, to });
+            problems.push(TrajectoryError::NoEdge { step: at + 1, from, to });
         }
     }
-    wrong
+    problems
 }
 
 /// Marks a viewpoint that the scene does not have. No real place has this number, and the mark is used only within this file.

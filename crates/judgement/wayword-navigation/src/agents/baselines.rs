@@ -72,7 +72,7 @@ fn shortest_walk(graph: &ViewpointGraph, start: &AgentStart, goal: &ViewpointId)
     Ok(follow_nodes(graph, start, usize::MAX, |_, _| rest.next()))
 }
 
-/// Follows `next` until it gives no node, or the hops are used up.
+/// Follows `next`, which gets a node and the heading there and gives the next node, until it gives none or `hops` hops are made.
 pub(super) fn follow_nodes(
     graph: &ViewpointGraph,
     start: &AgentStart,

@@ -68,6 +68,7 @@ impl<'a> MapReader<'a> {
 
     /// The viewpoints of the walk of middle length, among those that fit as well as the best.
     fn middle_walk(&self, fit: &WalkFit, best: usize) -> Vec<usize> {
+        // Scores count as equal if they differ only by rounding.
         let least = fit.score(best) - 1e-9;
         let equal = (1..self.tree.len()).filter(|walk| fit.score(*walk) >= least);
         let length_m =

@@ -23,19 +23,20 @@ pub fn walk_by_phrases(
     directions: &SplitInstruction,
     parameters: &PhraseWalkParameters,
 ) -> Result<AgentWalk, WalkError> {
-    let mut told = directions.phrases.clone();
-    told.push(directions.activity.clone());
+    // The texts to score: the key phrases, then the activity.
+    let mut texts = directions.phrases.clone();
+    texts.push(directions.activity.clone());
     let mut policy = PhrasePolicy::new(parameters, directions.phrases.len());
     let mut steps: Vec<AgentStep> = Vec::new();
     let (mut here, mut heading) = (start.viewpoint.clone(), start.heading);
     let end = loop {
-        let sight = agent_view.look_from(&here, &told)?;
-        let in_hand = policy.current_phrase();
+        let sight = agent_view.look_from(&here, &texts)?;
+        let phrase = policy.current_phrase();
         let is_last = steps.len() >= parameters.max_hops;
         let decision = policy.decide(&here, heading, &sight);
-        let scored = score_views(&sight, in_hand, directions.phrases.len());
+        let views = score_views(&sight, phrase, directions.phrases.len());
         let viewpoint = here.clone();
-        let step = |choice| AgentStep { views: scored, phrase: in_hand, ..AgentStep::new(viewpoint, heading, choice) };
+        let step = |choice| AgentStep { views, phrase, ..AgentStep::new(viewpoint, heading, choice) };
         match decision {
             PhraseDecision::Stop | PhraseDecision::DeadEnd => {
                 steps.push(step(StepChoice::Stop));
@@ -60,7 +61,7 @@ pub fn walk_by_phrases(
     Ok(AgentWalk { steps, end, object, effort: None })
 }
 
-/// Goes back over nodes; all but the last of them are passed without a look. Returns the last, and the heading there.
+/// Goes back over the nodes `over`; all but the last of them are passed without a look. Returns the last, and the heading there.
 fn go_back(
     agent_view: &AgentView<'_>,
     steps: &mut Vec<AgentStep>,
@@ -80,9 +81,10 @@ fn go_back(
     (here, heading)
 }
 
-fn score_views(sight: &NodeSight, in_hand: usize, activity: usize) -> Vec<StepViewScores> {
+/// The scores of the four views for a phrase and for the activity, both given by their index among the scored texts.
+fn score_views(sight: &NodeSight, phrase: usize, activity: usize) -> Vec<StepViewScores> {
     let scored = |view: &crate::sight::SightView| StepViewScores {
-        phrase: view.scores[in_hand],
+        phrase: view.scores[phrase],
         activity: view.scores[activity],
         ways: view.onward.len(),
     };

@@ -18,11 +18,13 @@ pub(crate) struct PhrasePolicy<'p> {
     parameters: &'p PhraseWalkParameters,
     /// Number of key phrases; the activity comes after them.
     phrases: usize,
-    /// The current key phrase.
+    /// The current key phrase, from 0.
     phrase: usize,
+    /// How often the agent has been at each node.
     visits: BTreeMap<ViewpointId, usize>,
     /// The nodes on the way here, without those that the agent left again by going back.
     trail: Vec<ViewpointId>,
+    /// How well the current phrase fitted the best view, for each look since the agent last went back.
     recent: Vec<f32>,
 }
 
@@ -53,48 +55,49 @@ impl<'p> PhrasePolicy<'p> {
     pub(crate) fn decide(&mut self, here: &ViewpointId, heading: Heading, sight: &NodeSight) -> PhraseDecision {
         *self.visits.entry(here.clone()).or_default() += 1;
         self.trail.push(here.clone());
-        let best = |of: usize| sight.views.iter().map(|view| view.scores[of]).fold(f32::NEG_INFINITY, f32::max);
-        let listens = self.phrases - self.phrase <= self.parameters.stop_with_phrases_left;
-        if listens && best(self.phrases) >= self.parameters.stop_threshold {
+        let best = |phrase: usize| sight.views.iter().map(|view| view.scores[phrase]).fold(f32::NEG_INFINITY, f32::max);
+        let may_stop = self.phrases - self.phrase <= self.parameters.stop_with_phrases_left;
+        if may_stop && best(self.phrases) >= self.parameters.stop_threshold {
             return PhraseDecision::Stop;
         }
-        let in_hand = self.phrase;
-        let fit = best(in_hand);
-        if in_hand < self.phrases && fit >= self.parameters.phrase_threshold {
+        let current = self.phrase;
+        let fit = best(current);
+        if current < self.phrases && fit >= self.parameters.phrase_threshold {
             self.phrase += 1;
         }
-        self.decide_back(fit).unwrap_or_else(|| self.decide_onward(heading, sight, in_hand))
+        self.decide_back(fit).unwrap_or_else(|| self.decide_onward(heading, sight, current))
     }
 
     /// Decides to go back if the scores of the last looks are too low, and returns the nodes to go back over.
     fn decide_back(&mut self, fit: f32) -> Option<PhraseDecision> {
         let back = self.parameters.back?;
         self.recent.push(fit);
-        let from = self.recent.len().checked_sub(back.window.max(1))?;
-        let mean = self.recent[from..].iter().sum::<f32>() / back.window.max(1) as f32;
-        let keep = self.trail.len().checked_sub(back.nodes + 1)?;
+        let window_start = self.recent.len().checked_sub(back.window.max(1))?;
+        let mean = self.recent[window_start..].iter().sum::<f32>() / back.window.max(1) as f32;
+        let kept_len = self.trail.len().checked_sub(back.nodes + 1)?;
         if mean >= back.threshold || back.nodes == 0 {
             return None;
         }
         // The mean starts anew with the next look.
         self.recent.clear();
-        // The agent looks again from the last of them, which then joins the trail.
-        let over: Vec<ViewpointId> = self.trail.drain(keep..).rev().skip(1).collect();
+        // The agent looks again from the last of these nodes, which then joins the trail.
+        let over: Vec<ViewpointId> = self.trail.drain(kept_len..).rev().skip(1).collect();
         Some(PhraseDecision::Back(over))
     }
 
     /// Decides to go on, to the nearest neighbour in the best view. Of views with equal scores, the one nearest to straight ahead
     /// is taken.
-    fn decide_onward(&self, heading: Heading, sight: &NodeSight, in_hand: usize) -> PhraseDecision {
+    fn decide_onward(&self, heading: Heading, sight: &NodeSight, phrase: usize) -> PhraseDecision {
         let visits = |id: &ViewpointId| self.visits.get(id).copied().unwrap_or_default();
         let neighbours = || sight.views.iter().flat_map(|view| &view.onward);
-        let least = neighbours().map(visits).min().unwrap_or_default();
-        let may = |id: &&ViewpointId| !self.parameters.shun_visited || visits(id) == least;
+        let fewest = neighbours().map(visits).min().unwrap_or_default();
+        let is_open = |id: &&ViewpointId| !self.parameters.shun_visited || visits(id) == fewest;
         let off_rad = |view: usize| heading.turn_to(CompassPoint::ALL[view].to_heading()).abs();
-        let worth =
-            |(at, view): (usize, &SightView)| Some((at, view.scores[in_hand], view.onward.iter().find(may)?.clone()));
-        let open = sight.views.iter().enumerate().filter_map(worth);
-        let chosen = open.max_by(|a, b| a.1.total_cmp(&b.1).then_with(|| off_rad(b.0).total_cmp(&off_rad(a.0))));
+        let candidate = |(at, view): (usize, &SightView)| {
+            Some((at, view.scores[phrase], view.onward.iter().find(is_open)?.clone()))
+        };
+        let candidates = sight.views.iter().enumerate().filter_map(candidate);
+        let chosen = candidates.max_by(|a, b| a.1.total_cmp(&b.1).then_with(|| off_rad(b.0).total_cmp(&off_rad(a.0))));
         chosen.map_or(PhraseDecision::DeadEnd, |(view, _, to)| PhraseDecision::Onward { view, to })
     }
 }

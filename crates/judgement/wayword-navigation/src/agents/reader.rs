@@ -13,7 +13,7 @@ use wayword_follower::{
     online::{OnwardWeights, WalkerDecision, WalkerSighting, WalkingFollower},
 };
 
-/// Most hops of a walk. The reader normally stops long before.
+/// Most hops of a walk; a walk that would go on ends as [`WalkEnd::Cap`]. The reader normally stops long before.
 const MOST_HOPS: usize = 100;
 
 /// Walks by an instruction, reading all of it. At each node the agent gets only a [`WalkerSighting`].
@@ -28,7 +28,7 @@ pub fn walk_by_reading(
 ) -> Result<AgentWalk, WalkError> {
     let guide = Guide::read_text(beginning_of(text));
     let mut reader = WalkingFollower::new(&guide, OnwardWeights::fitted());
-    walk_by_decisions(agent_view, start, things, |seen| reader.decide_next(seen))
+    walk_by_decisions(agent_view, start, things, |sighting| reader.decide_next(sighting))
 }
 
 /// Walks as `decide` decides, and records the steps.
@@ -41,20 +41,24 @@ fn walk_by_decisions(
     let mut steps: Vec<AgentStep> = Vec::new();
     let (mut here, mut heading) = (start.viewpoint.clone(), start.heading);
     let end = loop {
-        let told = agent_view.surroundings_at(&here, heading, things)?;
-        let seen = &told.sighting;
-        let to = match decide(seen) {
-            WalkerDecision::Go(hop) => told.ways.get(hop),
+        let surroundings = agent_view.surroundings_at(&here, heading, things)?;
+        let sighting = &surroundings.sighting;
+        let to = match decide(sighting) {
+            WalkerDecision::Go(hop) => surroundings.ways.get(hop),
             WalkerDecision::Stop => None,
         };
         let (to, end) = match to {
             Some(_) if steps.len() >= MOST_HOPS => (None, WalkEnd::Cap),
-            None if seen.hops.is_empty() => (None, WalkEnd::DeadEnd),
+            None if sighting.hops.is_empty() => (None, WalkEnd::DeadEnd),
             to => (to, WalkEnd::Stopped),
         };
         let choice = to.map_or(StepChoice::Stop, |to| choice_for_hop(agent_view, &steps, &here, to));
-        let told = SurroundingsSummary { room: seen.room.clone(), ways: seen.hops.len(), things: seen.things.len() };
-        steps.push(AgentStep { told: Some(told), ..AgentStep::new(here.clone(), heading, choice) });
+        let summary = SurroundingsSummary {
+            room: sighting.room.clone(),
+            ways: sighting.hops.len(),
+            things: sighting.things.len(),
+        };
+        steps.push(AgentStep { told: Some(summary), ..AgentStep::new(here.clone(), heading, choice) });
         let Some(to) = to else { break end };
         heading = agent_view.heading_to(&here, to).unwrap_or(heading);
         here = to.clone();

@@ -62,6 +62,7 @@ impl EffortSummary {
         by_item: &OfWalks,
         estimate: impl Fn(BTreeMap<&str, f64>) -> Option<MeanEstimate>,
     ) -> Option<Self> {
+        // The mean of a figure over items; `None` if one walk lacks it.
         let mean = |figure: &dyn Fn(&OfWalk) -> Option<f64>| {
             let mut means = BTreeMap::new();
             for (item, texts) in by_item {
@@ -73,7 +74,7 @@ impl EffortSummary {
         let all = || by_item.values().flat_map(BTreeMap::values);
         let mut ended = BTreeMap::new();
         all().for_each(|walk| *ended.entry(walk.end).or_default() += 1);
-        let sum = |of: fn(&UselessReplies) -> usize| all().map(|walk| of(&walk.effort.useless)).sum();
+        let sum = |count: fn(&UselessReplies) -> usize| all().map(|walk| count(&walk.effort.useless)).sum();
         Some(Self {
             walks: all().count(),
             calls: mean(&|walk| Some(walk.effort.calls as f64))?,

@@ -97,7 +97,7 @@ pub struct InstructionSet {
 #[serde(rename_all = "kebab-case")]
 pub enum AgentKind {
     /// It neither reads nor knows the scene.
-    #[serde(alias = "floor")] // The name in comparisons that were made before.
+    #[serde(alias = "floor")] // The name in files of earlier versions, as "ceiling" below.
     LowerBound,
     /// It reads.
     Agent,
@@ -169,7 +169,7 @@ pub enum ListeningVerdict {
     TooFew,
 }
 
-/// The fewest paths for which a bootstrap interval over paths is reliable.
+/// The fewest paths for which a bootstrap interval over paths is reliable. With fewer, a swap test gives [`ListeningVerdict::TooFew`].
 pub const FEWEST_PATHS: usize = 20;
 
 #[cfg(test)]

@@ -10,10 +10,11 @@ type ScoresByItem = BTreeMap<String, BTreeMap<usize, TrajectoryScore>>;
 /// All scores of a comparison.
 #[derive(Debug, Clone, Default)]
 pub struct WalkScores {
+    /// The scores of all walks, by agent and set.
     scores: BTreeMap<(String, String), ScoresByItem>,
     /// The efforts of walks in which a language model decided, by agent and set.
     efforts: BTreeMap<(String, String), OfWalks>,
-    /// The path of each item.
+    /// The path of each item. Items on one path are not independent, so intervals are clustered by path.
     clusters: BTreeMap<String, String>,
 }
 
@@ -60,14 +61,14 @@ impl WalkScores {
         only: Option<&TextsByItem>,
     ) -> BTreeMap<&str, f64> {
         let scores = self.scores_for_set(agent, set).into_iter().flatten();
-        let wanted =
+        let is_wanted =
             |item: &str, text: &usize| only.is_none_or(|only| only.get(item).is_some_and(|texts| texts.contains(text)));
-        let of_item = |(item, texts): (&'_ String, &BTreeMap<usize, TrajectoryScore>)| {
-            let texts = texts.iter().filter(|(text, _)| wanted(item, text));
+        let mean_figure = |(item, texts): (&'_ String, &BTreeMap<usize, TrajectoryScore>)| {
+            let texts = texts.iter().filter(|(text, _)| is_wanted(item, text));
             let figures: Vec<f64> = texts.filter_map(|(_, score)| score.get(metric, rule)).collect();
             (!figures.is_empty()).then(|| figures.iter().sum::<f64>() / figures.len() as f64)
         };
-        scores.filter_map(|entry| Some((entry.0.as_str(), of_item(entry)?))).collect()
+        scores.filter_map(|entry| Some((entry.0.as_str(), mean_figure(entry)?))).collect()
     }
 
     /// Whether an agent succeeds by the first text of each item, or by the first of those in `only`.

@@ -21,7 +21,7 @@ pub fn empty_set(set: &str) -> String {
     format!("{set}~{EMPTY}")
 }
 
-/// The part of that name after `~`, where swaps have their name.
+/// The part after `~` in the name that [`empty_set`] gives. Swapped sets have the swap's name there.
 pub const EMPTY: &str = "empty";
 
 /// The set name under which walks of agents that do not read are recorded.
@@ -36,8 +36,8 @@ pub struct ComparedAgent {
     pub kind: AgentKind,
     /// Whether it reads instructions.
     pub reads: bool,
-    /// Whether its knowledge may lead it to the goal without its instruction. Then it has two more rows: by an empty text, and by the
-    /// text of another path.
+    /// Whether the agent's knowledge may lead it to the goal without its instruction. Then it has two more rows as lower bounds: by
+    /// an empty text, and by the text of another path.
     pub has_floors: bool,
 }
 
@@ -67,8 +67,8 @@ pub fn compare_agents(
                 table.comparison_row(walker, Some(&set.name), first.map(|first| first.name.as_str()))
             }));
             if let Some(first) = sets.first().filter(|_| walker.has_floors) {
-                let floors = [empty_set(&first.name), swapped_set(&first.name, InstructionSwap::OtherPath)];
-                rows.extend(floors.iter().map(|set| table.comparison_row(walker, Some(set), None)));
+                let extra_sets = [empty_set(&first.name), swapped_set(&first.name, InstructionSwap::OtherPath)];
+                rows.extend(extra_sets.iter().map(|set| table.comparison_row(walker, Some(set), None)));
             }
         } else {
             rows.push(table.comparison_row(walker, None, None));
@@ -83,27 +83,30 @@ pub fn compare_agents(
     AgentComparison { about, sets, rows, swaps: swapped }
 }
 
+/// Computes the parts of a table.
 struct TableBuilder<'a> {
     about: &'a ComparisonInfo,
     results: &'a WalkScores,
 }
 
 impl TableBuilder<'_> {
+    /// The row of an agent and a set (`None` for an agent that does not read), and its difference from the set `first`, if given.
     fn comparison_row(&self, walker: &ComparedAgent, set: Option<&str>, first: Option<&str>) -> ComparisonRow {
-        let kept = set.unwrap_or(UNREAD_SET_NAME);
-        let against = |first: &str| self.row_difference(&walker.name, (kept, None), (first, None));
-        let efforts = self.results.walk_efforts(&walker.name, kept);
+        let recorded = set.unwrap_or(UNREAD_SET_NAME);
+        let against = |first: &str| self.row_difference(&walker.name, (recorded, None), (first, None));
+        let efforts = self.results.walk_efforts(&walker.name, recorded);
         ComparisonRow {
             agent: walker.name.clone(),
             kind: walker.kind,
             set: set.map(str::to_owned),
-            figures: self.mean_figures(&walker.name, kept, None),
+            figures: self.mean_figures(&walker.name, recorded, None),
             against_first: first.map(against),
             effort: efforts
                 .and_then(|efforts| EffortSummary::from_efforts(efforts, |by_item| self.estimate_mean(&by_item))),
         }
     }
 
+    /// The effect of a swap of the set `first` on an agent, from the texts that the swap changed.
     fn swap_effect(&self, walker: &ComparedAgent, first: &str, swap: InstructionSwap) -> SwapEffect {
         let set = swapped_set(first, swap);
         let texts = self.results.texts_walked(&walker.name, &set);
@@ -125,6 +128,7 @@ impl TableBuilder<'_> {
         }
     }
 
+    /// The figures of an agent by a set, over all its texts or those in `only`.
     fn mean_figures(
         &self,
         agent: &str,
@@ -153,14 +157,15 @@ impl TableBuilder<'_> {
         RowDifference { figures, mcnemar: McNemar::from_pairs(pairs) }
     }
 
+    /// Each metric's mean with its interval. `figures` gives a metric's figure for each item.
     fn estimate_metrics<'r>(
         &self,
-        of: impl Fn(TrajectoryMetric) -> BTreeMap<&'r str, f64>,
+        figures: impl Fn(TrajectoryMetric) -> BTreeMap<&'r str, f64>,
     ) -> BTreeMap<TrajectoryMetric, MeanEstimate>
     where
         Self: 'r,
     {
-        let estimate = |metric| Some((metric, self.estimate_mean(&of(metric))?));
+        let estimate = |metric| Some((metric, self.estimate_mean(&figures(metric))?));
         TrajectoryMetric::ALL.into_iter().filter_map(estimate).collect()
     }
 

@@ -11,6 +11,7 @@ use wayword_language::{
 /// A clause, as ranges of tokens without the words and marks that join it to others.
 #[derive(Debug, Clone)]
 pub(super) struct MendedClause {
+    /// The whole clause.
     pub(super) all: Range<usize>,
     /// Without the parts that only describe a place further.
     pub(super) head: Range<usize>,
@@ -21,13 +22,13 @@ pub(super) fn mend_clauses(text: &str, tokens: &[TextToken]) -> Vec<MendedClause
     let ranges = clause_ranges(tokens);
     let mut mended: Vec<MendedClause> = Vec::new();
     for (at, range) in ranges.iter().enumerate() {
-        let goes_on = || {
+        let continues = || {
             let from = at.checked_sub(1).map_or(0, |before| ranges[before].end);
             goes_on(tokens, from..range.start, range)
                 || (at + 1 < ranges.len() && is_adjective(text, tokens, from, range))
         };
         match mended.last_mut() {
-            Some(before) if goes_on() => before.all.end = range.end,
+            Some(before) if continues() => before.all.end = range.end,
             _ => mended.push(MendedClause { all: range.clone(), head: range.clone() }),
         }
     }
@@ -52,16 +53,17 @@ pub(super) fn has_object(tokens: &[TextToken], clause: &Range<usize>) -> bool {
 }
 
 /// Whether a clause continues the one before: no mark ends the one before, and either no word joins the two or the clause begins by
-/// describing a place further.
+/// describing a place further. `between` is the tokens between the two.
 fn goes_on(tokens: &[TextToken], between: Range<usize>, clause: &Range<usize>) -> bool {
     let between = &tokens[between];
-    let ends = |token: &TextToken| matches!(token.word.as_str(), "." | "!" | "?" | "," | ";" | ":");
-    let joined = between.iter().any(TextToken::is_word);
-    let telling = TELLING.contains(&tokens[clause.start].word.as_str());
-    !between.iter().any(ends) && (telling || !joined)
+    let is_mark = |token: &TextToken| matches!(token.word.as_str(), "." | "!" | "?" | "," | ";" | ":");
+    let has_word = between.iter().any(TextToken::is_word);
+    let describes = TELLING.contains(&tokens[clause.start].word.as_str());
+    !between.iter().any(is_mark) && (describes || !has_word)
 }
 
-/// Whether the word that the reader takes for a verb is an adjective, as in "with a white couch and stripey chairs".
+/// Whether the first word of a clause, which the reader takes for a verb, is an adjective: "stripey" in "with a white couch and
+/// stripey chairs". The clause before ends at token `from`.
 fn is_adjective(text: &str, tokens: &[TextToken], from: usize, clause: &Range<usize>) -> bool {
     tokens[from..clause.start].iter().all(|token| token.word == "and")
         && !has_object(tokens, clause)
@@ -91,6 +93,7 @@ pub(super) fn without_joints(tokens: &[TextToken], mut range: Range<usize>) -> R
     range
 }
 
+/// Whether a token is a mark or a word that joins clauses.
 fn is_joint(token: &TextToken) -> bool {
     !token.is_word() || JOINING.contains(&token.word.as_str())
 }

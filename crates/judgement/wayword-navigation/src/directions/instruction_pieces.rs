@@ -10,9 +10,9 @@ use wayword_language::{
     text::{TextToken, split_tokens},
 };
 
-/// Most clauses of a closing task: "empty the bin, wipe the sink and close the door".
+/// Most clauses of a closing task, as in "empty the bin, wipe the sink and close the door". Earlier clauses belong to the way.
 const MOST_TASKS: usize = 3;
-/// Most words of a piece that climbs first and then gets to a place.
+/// Most words of a piece that climbs first and then gets to a place. In a longer one, the climb is left out.
 const MOST_WORDS_OF_CLIMB: usize = 16;
 /// How far before a place its preposition is looked for, words.
 const PREPOSITION_REACH_WORDS: usize = 7;
@@ -104,16 +104,18 @@ impl<'a> InstructionPieces<'a> {
     /// Cuts a clause that goes through one place and on to another: "down the hallway" and "to the kitchen".
     fn cut_clause(&self, clause: &Range<usize>) -> Vec<Range<usize>> {
         let mut cuts = vec![clause.start];
-        let mut before: Option<(usize, &PlaceMention)> = None;
+        // The place before, with the token after it.
+        let mut previous: Option<(usize, &PlaceMention)> = None;
         for (event, place) in self.visible_places(clause) {
+            // A cut is at least one token after the cut before, so that no piece is empty.
             let (start, at) = (cuts.last().map_or(0, |cut| cut + 1), self.first_token(event));
-            if let Some((end, from)) = before {
-                let is_goal = place.link == PlaceLink::Goal && self.leads_on(end, from);
+            if let Some((end, passed)) = previous {
+                let is_goal = place.link == PlaceLink::Goal && self.leads_on(end, passed);
                 let cut =
                     self.going_on(end..at).or_else(|| is_goal.then(|| self.before_goal(end.max(start)..at)).flatten());
                 cuts.extend(cut);
             }
-            before = Some((self.tokens.partition_point(|token| token.span[0] < event.span[1]), place));
+            previous = Some((self.tokens.partition_point(|token| token.span[0] < event.span[1]), place));
         }
         cuts.push(clause.end);
         cuts.windows(2).map(|ends| without_joints(&self.tokens, ends[0]..ends[1])).collect()
@@ -138,7 +140,7 @@ impl<'a> InstructionPieces<'a> {
         (between.start + 1..between.end).find(goes_on)
     }
 
-    /// Where the words that lead to a place begin: its preposition, with the adverbs before that ("all the way to the sofa").
+    /// The token at which the words that lead to a place begin: its preposition, with the adverbs before that ("all the way to the sofa").
     fn before_goal(&self, between: Range<usize>) -> Option<usize> {
         let is_goal =
             |at: &usize| matches!(self.word_at(*at), "to" | "into" | "onto" | "toward" | "towards" | "until" | "till");
@@ -191,12 +193,14 @@ impl<'a> InstructionPieces<'a> {
             && !(2..=4).any(|back| matches!(before(back), "up" | "down" | "climb" | "the" | "those" | "these"))
     }
 
+    /// The events that begin within a piece.
     fn events_in(&self, piece: &Range<usize>) -> impl Iterator<Item = &TextEvent> {
         let [from, to] = self.byte_span(piece);
         let first = self.reading.events.partition_point(|event| event.span[0] < from);
         self.reading.events[first..].iter().take_while(move |event| event.span[0] < to)
     }
 
+    /// The index of an event's first token.
     fn first_token(&self, event: &TextEvent) -> usize {
         self.tokens.partition_point(|token| token.span[0] < event.span[0])
     }
@@ -205,16 +209,19 @@ impl<'a> InstructionPieces<'a> {
         &self.tokens[at].word
     }
 
+    /// The bytes of a range of tokens.
     fn byte_span(&self, range: &Range<usize>) -> [usize; 2] {
         [self.tokens[range.start].span[0], self.tokens[range.end - 1].span[1]]
     }
 
+    /// The text of a range of tokens.
     fn words_in(&self, range: &Range<usize>) -> &'a str {
         let [from, to] = self.byte_span(range);
         &self.text[from..to]
     }
 }
 
+/// Whether an event is about stairs or a storey.
 fn is_climb(what: &EventContent) -> bool {
     matches!(what, EventContent::Climb(_) | EventContent::Steps(_) | EventContent::Storey(_) | EventContent::Floor(_))
 }

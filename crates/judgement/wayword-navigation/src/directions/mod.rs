@@ -36,11 +36,11 @@ pub trait InstructionSplitter: Send + Sync {
     fn split_instructions(&self, instructions: &[&str]) -> Vec<Result<SplitInstruction, ModelError>>;
 }
 
-/// Most key phrases of an instruction; texts by people have up to about ten.
+/// Most key phrases of an instruction; later ones are left out. Texts by people have up to about ten.
 const MOST_PHRASES: usize = 12;
-/// Most words of a phrase or an activity: CLIP reads no more than 77 tokens.
+/// Most words of a phrase or an activity; a longer one is cut. CLIP reads no more than 77 tokens.
 const MOST_WORDS: usize = 50;
-/// Most bytes of a phrase or an activity: a text without spaces is one word.
+/// Most bytes of a phrase or an activity, because a text without spaces is one word; a longer one is cut.
 const MOST_BYTES: usize = 400;
 /// Most bytes of an instruction that are read; texts by people have up to about 2,500.
 const MOST_BYTES_READ: usize = 8_000;
@@ -58,6 +58,7 @@ pub(crate) fn beginning_of(instruction: &str) -> &str {
 /// The beginning of a phrase that is not too long for a grounder.
 fn shorten_phrase(text: &str) -> String {
     let text = first_bytes(text.trim(), MOST_BYTES);
+    // Where a word ends within the text, bytes.
     let end = |word: &str| word.as_ptr() as usize + word.len() - text.as_ptr() as usize;
     let end = text.split_whitespace().take(MOST_WORDS).last().map_or(0, end);
     text[..end].to_owned()

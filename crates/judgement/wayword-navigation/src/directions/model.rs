@@ -30,6 +30,7 @@ impl ByModel {
         ModelError::Failed { model: self.model.name().to_owned(), reason: reason.into() }
     }
 
+    /// The prompt for an instruction; an error if the instruction has no words.
     fn readable_prompt(&self, instruction: &str) -> Result<String, ModelError> {
         let instruction = readable_part(instruction, self.model.name())?;
         split_prompt(instruction).map_err(|error| self.split_error(error.to_string()))
@@ -63,9 +64,11 @@ pub fn split_prompt(instruction: &str) -> Result<String, minijinja::Error> {
     Environment::new().render_str(SPLIT_TEMPLATE, context! { instruction => one_line(instruction) })
 }
 
-/// Why an attempt gave no directions.
+/// Why a request did not split its instruction.
 enum SplitFailure {
+    /// The model failed.
     Model(ModelError),
+    /// The reply cannot be read, for this reason.
     Unreadable(&'static str),
 }
 
@@ -77,24 +80,25 @@ impl InstructionSplitter for ByModel {
     fn split_instructions(&self, instructions: &[&str]) -> Vec<Result<SplitInstruction, ModelError>> {
         let prompts: Vec<Result<String, ModelError>> =
             instructions.iter().map(|text| self.readable_prompt(text)).collect();
+        // The prompts that have no readable reply yet, with the index of each one's instruction.
         let mut open: Vec<(usize, &str)> =
             prompts.iter().enumerate().filter_map(|(at, prompt)| Some((at, prompt.as_deref().ok()?))).collect();
-        let refused = |prompt: &Result<String, ModelError>| match prompt {
+        let unasked = |prompt: &Result<String, ModelError>| match prompt {
             Err(error) => Err(error.clone()),
             Ok(_) => Err(self.split_error("it was not asked")),
         };
-        let mut split: Vec<Result<SplitInstruction, ModelError>> = prompts.iter().map(refused).collect();
+        let mut split: Vec<Result<SplitInstruction, ModelError>> = prompts.iter().map(unasked).collect();
         for replicate in 0..ATTEMPTS {
             if open.is_empty() {
                 break;
             }
-            let asked: Vec<&str> = open.iter().map(|(_, prompt)| *prompt).collect();
+            let texts: Vec<&str> = open.iter().map(|(_, prompt)| *prompt).collect();
             let mut unreadable = Vec::new();
-            for (asked, told) in std::mem::take(&mut open).into_iter().zip(self.ask_model(&asked, replicate)) {
-                split[asked.0] = told.map_err(|trouble| match trouble {
+            for (prompt, answer) in std::mem::take(&mut open).into_iter().zip(self.ask_model(&texts, replicate)) {
+                split[prompt.0] = answer.map_err(|failure| match failure {
                     SplitFailure::Model(error) => error,
                     SplitFailure::Unreadable(reason) => {
-                        unreadable.push(asked);
+                        unreadable.push(prompt);
                         self.split_error(format!("it was asked {ATTEMPTS} times to split an instruction, but {reason}"))
                     }
                 });

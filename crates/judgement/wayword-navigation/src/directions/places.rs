@@ -18,13 +18,13 @@ pub struct NamedPlace {
 #[must_use]
 pub fn named_places(phrase: &str) -> Vec<NamedPlace> {
     let reading = read_instruction(first_bytes(phrase, MOST_BYTES_READ), &BTreeSet::new()).into_claims();
-    let mut named = BTreeSet::new();
-    let place = |what: EventContent| match what {
+    let mut names = BTreeSet::new();
+    let place = |content: EventContent| match content {
         EventContent::Place(place) => Some(NamedPlace { name: place.name, is_room: place.is_room && !place.is_thing }),
         _ => None,
     };
     let all = reading.events.into_iter().filter_map(|event| place(event.what));
-    all.filter(|place| named.insert(place.name.clone())).collect()
+    all.filter(|place| names.insert(place.name.clone())).collect()
 }
 
 #[cfg(test)]

@@ -18,14 +18,14 @@ pub(super) fn read_directions(reply: &str) -> Result<SplitInstruction, &'static 
         let (listed, text) = strip_bullet(line);
         let (is_closing, text) = closing_text(text).map_or((false, text), |task| (true, task));
         let text = strip_marks(text);
-        let says_nothing =
+        let is_empty =
             !text.contains(char::is_alphanumeric) || EMPTY_LINE_WORDS.contains(&text.to_lowercase().as_str());
         if is_closing || awaits_task {
-            if !says_nothing {
+            if !is_empty {
                 return Ok(SplitInstruction { phrases, activity: shorten_phrase(text) });
             }
             awaits_task = true;
-        } else if listed && !says_nothing && phrases.len() < MOST_PHRASES {
+        } else if listed && !is_empty && phrases.len() < MOST_PHRASES {
             phrases.push(shorten_phrase(text));
         }
     }

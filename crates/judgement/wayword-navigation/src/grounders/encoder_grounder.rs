@@ -8,6 +8,7 @@ use std::{
 };
 use wayword_core::{ModelError, ObjectId, ObjectLabel, PhraseGrounder, TextEncoder, View};
 
+/// The vector of a text, of length 1.
 type TextVector = Arc<[f32]>;
 
 /// Scores a phrase on a view by the label that is most similar to it: the cosine of an encoder's vectors. A view without labels
@@ -18,6 +19,7 @@ type TextVector = Arc<[f32]>;
 pub struct EncoderGrounder {
     sees: GrounderScope,
     encoder: Arc<dyn TextEncoder>,
+    /// The vectors of all texts that were encoded so far.
     vectors: Mutex<BTreeMap<String, TextVector>>,
 }
 
@@ -68,6 +70,7 @@ impl EncoderGrounder {
     }
 }
 
+/// The cosine of the vectors of two texts; 0 if one has none.
 fn cosine(vectors: &BTreeMap<String, TextVector>, a: &str, b: &str) -> f32 {
     let (Some(a), Some(b)) = (vectors.get(a), vectors.get(b)) else { return 0.0 };
     a.iter().zip(b.iter()).map(|(a, b)| a * b).sum()
@@ -92,11 +95,11 @@ impl PhraseGrounder for EncoderGrounder {
         let names: Vec<Result<Vec<&str>, ModelError>> = views.iter().map(|view| self.view_names(view)).collect();
         let texts = names.iter().flatten().flatten().copied().chain(parts.iter().flatten().map(String::as_str));
         let vectors = self.text_vectors(&texts.collect());
-        let of_view = |names: Result<Vec<&str>, ModelError>| {
+        let view_scores = |names: Result<Vec<&str>, ModelError>| {
             let (names, vectors) = (names?, vectors.as_ref().map_err(Clone::clone)?);
             Ok(parts.iter().map(|parts| score_names(vectors, parts, &names)).collect())
         };
-        names.into_iter().map(of_view).collect()
+        names.into_iter().map(view_scores).collect()
     }
 
     fn point_to_object(&self, views: &[&View], phrase: &str) -> Result<Option<ObjectId>, ModelError> {

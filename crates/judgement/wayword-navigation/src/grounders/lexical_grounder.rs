@@ -16,6 +16,7 @@ const AKIN_SCORE: f32 = 0.8;
 /// none scores 0 everywhere.
 pub struct LexicalGrounder {
     sees: GrounderScope,
+    /// The places that each phrase names, so that a phrase is read once.
     read: Mutex<BTreeMap<String, Arc<[NamedPlace]>>>,
 }
 
@@ -37,12 +38,12 @@ impl LexicalGrounder {
 
     fn score_view(&self, view: &View, places: &[NamedPlace]) -> Result<f32, ModelError> {
         let (labels, room) = labels_of(view, self.name())?;
-        let named = |place: &NamedPlace| {
+        let place_fit = |place: &NamedPlace| {
             let by_room = room.filter(|_| self.sees == GrounderScope::Views).map_or(0.0, |room| room_fits(room, place));
             labels.iter().map(|label| name_fit(&label.name, place)).fold(by_room, f32::max)
         };
-        let wanted: Vec<f32> = places.iter().filter(|place| self.can_see(place)).map(named).collect();
-        Ok(if wanted.is_empty() { 0.0 } else { wanted.iter().sum::<f32>() / wanted.len() as f32 })
+        let fits: Vec<f32> = places.iter().filter(|place| self.can_see(place)).map(place_fit).collect();
+        Ok(if fits.is_empty() { 0.0 } else { fits.iter().sum::<f32>() / fits.len() as f32 })
     }
 
     /// Whether a place is of a kind that this grounder can see.
@@ -51,6 +52,7 @@ impl LexicalGrounder {
     }
 }
 
+/// How well the name of a label fits a place, in [0, 1].
 fn name_fit(name: &str, place: &NamedPlace) -> f32 {
     if normalise_name(name) == normalise_name(&place.name) {
         1.0
@@ -61,6 +63,7 @@ fn name_fit(name: &str, place: &NamedPlace) -> f32 {
     }
 }
 
+/// 1 if a view's room is the room that a phrase names, else 0.
 fn room_fits(room: &str, place: &NamedPlace) -> f32 {
     if place.is_room && same_room(room, &place.name) { 1.0 } else { 0.0 }
 }
@@ -78,7 +81,7 @@ impl PhraseGrounder for LexicalGrounder {
         views.iter().map(|view| places.iter().map(|places| self.score_view(view, places)).collect()).collect()
     }
 
-    /// The nearest of those that fit best.
+    /// The object with the label that fits the phrase best; of several, the nearest.
     fn point_to_object(&self, views: &[&View], phrase: &str) -> Result<Option<ObjectId>, ModelError> {
         let places = self.places_in_phrase(phrase);
         let mut best: Option<(f32, f64, &ObjectLabel)> = None;

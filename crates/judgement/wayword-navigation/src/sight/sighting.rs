@@ -54,6 +54,7 @@ impl AgentView<'_> {
         let around = self.cached_views(here)?;
         let (ways, hops) = self.ways_from(here, heading);
         let nearest = |direction: Heading| WalkerHop::nearest_hop(&hops, heading, direction);
+        // The name of each thing, and the index of the way nearest to its direction.
         let mut found: Vec<(String, usize)> = Vec::new();
         match things {
             ThingSource::Labels => {

@@ -3,8 +3,11 @@
 /// How a word is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum LetterCase {
+    /// "left".
     Lower,
+    /// "Left".
     Title,
+    /// "LEFT".
     Upper,
 }
 
@@ -44,7 +47,7 @@ pub(super) fn uncapitalise_first(text: &str) -> String {
     }
 }
 
-/// A text with some spans replaced; the spans are in order and apart.
+/// A text with some spans (bytes) replaced; the spans are in order and do not overlap.
 pub(super) fn replace_spans(text: &str, edits: &[([usize; 2], String)]) -> String {
     let mut new = String::with_capacity(text.len());
     let mut from = 0;

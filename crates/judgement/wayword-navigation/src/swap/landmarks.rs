@@ -68,10 +68,10 @@ const REPLACEMENT_ROOMS: [&str; 14] = [
 ];
 /// Most rounds of reading and replacing. One round is not enough, because the reader finds some names only after others are replaced.
 const MAX_REPLACEMENT_ROUNDS: usize = 3;
-/// How far before a place its own names are looked for ("bathroom" of "bathroom door"), bytes.
+/// How far before a name the names that specify it are looked for ("bathroom" in "bathroom door"), bytes.
 const REACH_BYTES: usize = 60;
 
-/// Most different names of a text; texts by people have up to about 30.
+/// Most different names of a text; a text with more is not swapped. Texts by people have up to about 30.
 const MOST_NAMES: usize = 60;
 
 /// The text with each of its things and rooms replaced by another of the kind that it does not name, equal names by
@@ -124,6 +124,7 @@ fn find_names(text: &str) -> Vec<NameMention> {
     all
 }
 
+/// Whether the lexicon has a name for a thing or a room.
 fn is_known(name: &str) -> bool {
     find_thing(name).is_some() || room_name(name).is_some()
 }
@@ -135,7 +136,7 @@ fn ends_in_joint(name: &str) -> bool {
     matches!(last, "via" | "thru" | "passed") || (last.ends_with("ing") && last.len() > 5)
 }
 
-/// The name of the lexicon that ends a text, and where it begins.
+/// The name with which a text ends, if the lexicon has it, and the byte at which the name begins.
 fn right_before(text: &str) -> Option<(usize, String)> {
     let from = text.ceil_char_boundary(text.len().saturating_sub(REACH_BYTES));
     let last = read_instruction(&text[from..], &BTreeSet::new()).events.pop()?;
@@ -144,11 +145,14 @@ fn right_before(text: &str) -> Option<(usize, String)> {
     (is_known(&place.name) && !gap.is_empty() && gap.trim().is_empty()).then_some((from + last.span[0], place.name))
 }
 
-/// The replacements of one text: the free names, the text's own names, and the pairs chosen so far.
+/// The replacements of names in one text.
 struct LandmarkReplacements {
+    /// Names that can replace others, in random order.
     things: Vec<&'static str>,
     rooms: Vec<&'static str>,
+    /// The names that the text itself has, to be replaced.
     old: BTreeSet<String>,
+    /// The replacement chosen for each name so far.
     given: BTreeMap<String, &'static str>,
 }
 
@@ -161,18 +165,19 @@ impl LandmarkReplacements {
         Self { things, rooms, old: BTreeSet::new(), given: BTreeMap::new() }
     }
 
-    /// Remembers that the text names these, except for the replacements.
+    /// Remembers names of the text as old, except for those that are replacements.
     fn avoid_names(&mut self, named: &[NameMention]) {
         let names = named.iter().flat_map(|named| named.tells_which.iter().chain([&named.name]));
         let given: Vec<&str> = self.given.values().copied().collect();
         self.old.extend(names.filter(|name| !given.contains(&name.as_str())).cloned());
     }
 
+    /// Whether a name, or one that specifies it, may mean something that the text itself named.
     fn is_old(&self, named: &NameMention) -> bool {
         named.tells_which.iter().chain([&named.name]).any(|name| self.conflicts_with(name))
     }
 
-    /// Whether a name may mean what the text named.
+    /// Whether a name may mean something that the text itself named.
     fn conflicts_with(&self, name: &str) -> bool {
         self.old.iter().any(|old| names_agree(old, name) || same_room(old, name))
     }
@@ -199,8 +204,9 @@ impl LandmarkReplacements {
         let other = self.instead_of(named)?;
         let before = &text[..from];
         let word = before.trim_end().rsplit(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
-        let number = if is_plural(word, &text[from..to], &named.name) { to_plural(other) } else { other.to_owned() };
-        let name = ([from, to], LetterCase::for_text(&text[from..to]).apply_to(&number));
+        let replacement =
+            if is_plural(word, &text[from..to], &named.name) { to_plural(other) } else { other.to_owned() };
+        let name = ([from, to], LetterCase::for_text(&text[from..to]).apply_to(&replacement));
         let start = before.trim_end().len() - word.len();
         if !word.eq_ignore_ascii_case("a") && !word.eq_ignore_ascii_case("an") {
             return Some(vec![name]);
@@ -210,7 +216,7 @@ impl LandmarkReplacements {
     }
 }
 
-/// Whether a name is written in the plural. "The stairs" are one flight, "three stairs" are not.
+/// Whether a name is written in the plural. `before` is the word before it: "the stairs" are one flight, "three stairs" are not.
 fn is_plural(before: &str, written: &str, name: &str) -> bool {
     let last = written.rsplit(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_lowercase();
     let is_flight = find_thing(name).is_some_and(|thing| thing.class == ThingClass::Stairs);

@@ -29,6 +29,7 @@ fn draw_order(count: usize, seed: u64, item: &str) -> Option<Vec<usize>> {
     Some(order)
 }
 
+/// The sentences in another order, each with a capital letter and a closing mark.
 fn of_sentences(sentences: &[&str], order: &[usize]) -> String {
     let whole = |at: &usize| {
         let sentence = capitalise_first(sentences[*at]);
@@ -38,6 +39,7 @@ fn of_sentences(sentences: &[&str], order: &[usize]) -> String {
     order.iter().map(whole).collect::<Vec<_>>().join(" ")
 }
 
+/// The clauses in another order as one sentence ("a, b and c"), with the closing mark of the text.
 fn of_clauses(text: &str, clauses: &[&str], order: &[usize]) -> String {
     let is_capitalised = capitalise_first(clauses[0]) == clauses[0];
     let clause = |at: &usize| if *at == 0 { uncapitalise_first(clauses[0]) } else { clauses[*at].to_owned() };
@@ -55,8 +57,8 @@ fn split_sentences(text: &str) -> Vec<&str> {
     let mut from = 0;
     for (at, _) in text.match_indices(['.', '!', '?']) {
         let is_digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
-        let within = is_digit(text[..at].chars().next_back()) && is_digit(text[at + 1..].chars().next());
-        if !within && text[from..at].contains(char::is_alphanumeric) {
+        let is_in_number = is_digit(text[..at].chars().next_back()) && is_digit(text[at + 1..].chars().next());
+        if !is_in_number && text[from..at].contains(char::is_alphanumeric) {
             sentences.push(text[from..=at].trim());
             from = at + 1;
         }

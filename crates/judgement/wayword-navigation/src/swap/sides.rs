@@ -14,6 +14,7 @@ use wayword_language::{
 
 /// Words that name a direction, each with its opposite.
 const SIDE_PAIRS: [[&str; 2]; 3] = [["left", "right"], ["leftward", "rightward"], ["leftwards", "rightwards"]];
+/// Words for up and down, each with its opposite.
 const LEVEL_PAIRS: [[&str; 2]; 5] =
     [["up", "down"], ["upstairs", "downstairs"], ["ascend", "descend"], ["ascending", "descending"], ["top", "bottom"]];
 
@@ -30,20 +31,24 @@ pub(super) fn swap_directions(text: &str) -> Option<String> {
     (!edits.is_empty()).then(|| replace_spans(text, &edits))
 }
 
+/// A text with its tokens. The methods find tokens by their index.
 struct TextTokens<'a> {
     text: &'a str,
     tokens: Vec<TextToken>,
 }
 
 impl<'a> TextTokens<'a> {
+    /// The word of a token in lower case; empty behind the last token.
     fn word_at(&self, at: usize) -> &str {
         self.tokens.get(at).map_or("", |token| token.word.as_str())
     }
 
+    /// The word of the token that is `back` tokens before `at`; empty before the first token.
     fn word_before(&self, at: usize, back: usize) -> &str {
         at.checked_sub(back).map_or("", |at| self.word_at(at))
     }
 
+    /// A token as the text writes it, in its letter case.
     fn written_at(&self, at: usize) -> &'a str {
         let [from, to] = self.tokens[at].span;
         &self.text[from..to]
@@ -73,37 +78,39 @@ impl<'a> TextTokens<'a> {
             return (turns.contains(&at) || self.tells_place(at)).then_some(other);
         }
         if let Some(other) = other_of_pair(&LEVEL_PAIRS, word) {
-            let tells = match word {
+            let is_level = match word {
                 "up" | "down" => self.is_climb(at),
                 "top" | "bottom" if self.word_at(at + 1) == "of" => self.leads_to_stairs(at + 2),
                 "top" | "bottom" => (1..=4).any(|back| is_stairs(self.word_before(at, back))),
                 _ => true,
             };
-            return tells.then_some(other);
+            return is_level.then_some(other);
         }
         self.opposite_course(at)
     }
 
-    /// Swaps "turn around" and "go straight", word by word, if they are a whole clause.
+    /// The word to write at a token in order to swap "turn around" and "go straight", where these two words are a whole clause.
     fn opposite_course(&self, at: usize) -> Option<&'static str> {
-        let alone = |from: usize| {
+        let is_clause = |from: usize| {
             let begins = from == 0 || self.is_joint(from - 1);
             begins && (from + 2 >= self.tokens.len() || self.is_joint(from + 2))
         };
         match (self.word_before(at, 1), self.word_at(at), self.word_at(at + 1)) {
-            (_, "turn", "around") if alone(at) => Some("go"),
-            (_, "go", "straight") if alone(at) => Some("turn"),
-            ("turn", "around", _) if alone(at - 1) => Some("straight"),
-            ("go", "straight", _) if alone(at - 1) => Some("around"),
+            (_, "turn", "around") if is_clause(at) => Some("go"),
+            (_, "go", "straight") if is_clause(at) => Some("turn"),
+            ("turn", "around", _) if is_clause(at - 1) => Some("straight"),
+            ("go", "straight", _) if is_clause(at - 1) => Some("around"),
             _ => None,
         }
     }
 
+    /// Whether a token separates two clauses: a mark, "and" or "then".
     fn is_joint(&self, at: usize) -> bool {
         !self.tokens[at].is_word() || matches!(self.word_at(at), "and" | "then")
     }
 
-    /// "On the left", "to the left of the sofa", "the left door", "left and right", but not "right before the sofa".
+    /// Whether the word for a side gives a place: "on the left", "to the left of the sofa", "the left door", "left and right", but
+    /// not "right before the sofa".
     fn tells_place(&self, at: usize) -> bool {
         let is_side = |word: &str| other_of_pair(&SIDE_PAIRS, word).is_some();
         let listed = matches!(self.word_before(at, 1), "and" | "or") && is_side(self.word_before(at, 2)) && at > 2;
@@ -113,7 +120,8 @@ impl<'a> TextTokens<'a> {
             || (listed && self.tells_place(at - 2))
     }
 
-    /// "Up the stairs", "up to the second floor", "the stairs up", "go up.", but not "down the hallway".
+    /// Whether "up" or "down" means a climb: "up the stairs", "up to the second floor", "the stairs up", "go up.", but not "down the
+    /// hallway".
     fn is_climb(&self, at: usize) -> bool {
         let behind_stairs = (1..=3).any(|back| is_stairs(self.word_before(at, back)));
         let ends = at + 1 >= self.tokens.len() || self.is_joint(at + 1);
@@ -124,18 +132,19 @@ impl<'a> TextTokens<'a> {
             || (ends && GOING.contains(&self.word_before(at, 1)))
     }
 
+    /// Whether the noun phrase that begins at a token ends in stairs or a floor.
     fn leads_to_stairs(&self, from: usize) -> bool {
         self.leads_to(from, |word| is_stairs(word) || is_floor(word))
     }
 
-    /// Whether the noun phrase that begins at a token ends in a word for which `is_end` is true.
+    /// Whether the noun phrase that begins at a token ends in a word for which `is_end` is true, within six words.
     fn leads_to(&self, from: usize, is_end: impl Fn(&str) -> bool) -> bool {
         let skips = |word: &str| BEFORE_STAIRS.contains(&word) || word.bytes().all(|byte| byte.is_ascii_digit());
         let end = (from..from + 6).find(|at| is_end(self.word_at(*at)) || !skips(self.word_at(*at)));
         end.is_some_and(|at| is_end(self.word_at(at)))
     }
 
-    /// The edits that write another word at a token, in its letter case and with its article. None if a second swap could not
+    /// The edits that write another word at a token, in its letter case and with its article. Empty if a second swap could not
     /// restore the spelling, as in "lEft".
     fn edits_at(&self, at: usize, word: &str) -> Vec<([usize; 2], String)> {
         let written = self.written_at(at);
@@ -145,6 +154,7 @@ impl<'a> TextTokens<'a> {
         }
         let edit = (self.tokens[at].span, case.apply_to(word));
         let before = at.checked_sub(1).filter(|before| matches!(self.word_at(*before), "a" | "an"));
+        // Of the words that are swapped, only these need a different article: "an upstairs room", "a downstairs room".
         let Some(before) = before.filter(|_| matches!(word, "upstairs" | "downstairs")) else { return vec![edit] };
         let pair = match (self.written_at(before), case) {
             ("a" | "an", LetterCase::Lower | LetterCase::Title) => ["an", "a"],

@@ -35,13 +35,14 @@ pub enum DoseKind {
 struct DoseProperties {
     name: &'static str,
     unit: &'static str,
+    /// The value that changes nothing.
     unchanged: Option<f64>,
     range: (f64, f64),
     example: &'static str,
 }
 
 impl DoseKind {
-    /// All of them.
+    /// All kinds of doses, in the order in which they are explained.
     pub const ALL: [Self; 13] = [
         Self::CameraHeight,
         Self::FieldOfView,

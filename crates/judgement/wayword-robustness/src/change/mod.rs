@@ -17,7 +17,8 @@ use wayword_core::seed::derive_seed;
 /// The name of the change to another platform.
 const PLATFORM_CHANGE_NAME: &str = "platform";
 
-/// One change of a world, its pictures or its paths. As text it is what [`Change::parse_list`] reads, with one dose.
+/// One change of a world, its pictures or its paths. Its text is `NAME`, `NAME=DOSE` or `platform=SPEC`, as
+/// [`Change::parse_list`] reads it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Change {
@@ -82,15 +83,15 @@ impl Change {
         self.dose_kind().and_then(DoseKind::unchanged_value)
     }
 
-    /// How strong the change is, from 0 to 1: the distance of the dose from [`unchanged_dose`](Self::unchanged_dose), divided by the distance
-    /// of the end of the range on the same side.
+    /// How strong the change is, from 0 to 1: the distance of the dose from [`unchanged_dose`](Self::unchanged_dose), divided by the
+    /// distance of the end of the range on the same side.
     #[must_use]
     pub fn dose_strength(&self) -> Option<f64> {
         let Self::By(dose, value) = self else { return None };
         let (unchanged, (low, high)) = (dose.unchanged_value()?, dose.value_range());
         let end = if *value < unchanged { low } else { high };
-        let way = (end - unchanged).abs();
-        Some(if way > 0.0 { ((value - unchanged) / way).abs().min(1.0) } else { 0.0 })
+        let reach = (end - unchanged).abs();
+        Some(if reach > 0.0 { ((value - unchanged) / reach).abs().min(1.0) } else { 0.0 })
     }
 
     /// A name for its files and folders, unique among changes: "camera-height-m-0.3".

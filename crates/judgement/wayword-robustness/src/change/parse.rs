@@ -19,21 +19,21 @@ pub enum ChangeError {
     NeedlessDose {
         /// The change.
         change: WholeChange,
-        /// What was given.
+        /// The dose that was given.
         given: String,
     },
     /// A dose is not a number.
     #[error("{}: {text:?} is not a number; give numbers between {} and {} {}, as in {}={}", dose.name(), dose.value_range().0, dose.value_range().1, dose.unit(), dose.name(), dose.example_values())]
     NotANumber {
-        /// What it is for.
+        /// The kind of the dose.
         dose: DoseKind,
-        /// What was given.
+        /// The text that was given.
         text: String,
     },
     /// A number that is too small or too large.
     #[error("{}: {value} is not between {} and {} {}; give numbers as in {}={}", dose.name(), dose.value_range().0, dose.value_range().1, dose.unit(), dose.name(), dose.example_values())]
     OutOfRange {
-        /// What it is for.
+        /// The kind of the dose.
         dose: DoseKind,
         /// The number.
         value: f64,
@@ -41,7 +41,7 @@ pub enum ChangeError {
     /// A number with a fraction, where only whole ones have a meaning.
     #[error("{}: {value} is not a whole number; give numbers as in {}={}", dose.name(), dose.name(), dose.example_values())]
     NotWhole {
-        /// What it is for.
+        /// The kind of the dose.
         dose: DoseKind,
         /// The number.
         value: f64,
@@ -49,7 +49,7 @@ pub enum ChangeError {
     /// The same number twice.
     #[error("{}: {value} is given twice; leave one out", dose.name())]
     Twice {
-        /// What it is for.
+        /// The kind of the dose.
         dose: DoseKind,
         /// The number.
         value: f64,
@@ -60,7 +60,7 @@ pub enum ChangeError {
     /// Several changes where there is room for one.
     #[error("{text:?} is {count} changes where one was expected: give one number")]
     Several {
-        /// What was given.
+        /// The text that was given.
         text: String,
         /// How many changes it is.
         count: usize,

@@ -23,24 +23,24 @@ pub enum SightSource {
 pub struct ChangeSetting<'a> {
     /// The platform's name.
     pub platform: &'a str,
-    /// Who sees.
+    /// Who names the things in its views.
     pub sees: SightSource,
-    /// Whether the frames of its paths have poses.
+    /// Whether the frames of the platform's paths have poses.
     pub has_poses: bool,
-    /// Whether it can render a view from any pose, and is not limited to existing pictures.
+    /// Whether the platform can render a view from any pose, and is not limited to existing pictures.
     pub draws: bool,
-    /// Whether it has views only from the viewpoints of a graph, but in all directions from each.
+    /// Whether the platform has views only from the viewpoints of a graph, but in all directions from each.
     pub graph: bool,
 }
 
 impl Change {
     /// Why the change cannot be used for this run, in one sentence; `None` if it can.
     #[must_use]
-    pub fn refusal_reason(&self, there: &ChangeSetting<'_>) -> Option<String> {
+    pub fn refusal_reason(&self, setting: &ChangeSetting<'_>) -> Option<String> {
         let why = match self {
-            Self::Platform(spec) => OtherPlatform::from_spec(spec).refusal_reason(there),
-            Self::Whole(whole) => whole.refusal_reason(there),
-            Self::By(dose, value) => dose.refusal_reason(*value, there),
+            Self::Platform(spec) => OtherPlatform::from_spec(spec).refusal_reason(setting),
+            Self::Whole(whole) => whole.refusal_reason(setting),
+            Self::By(dose, value) => dose.refusal_reason(*value, setting),
         };
         why.map(|why| format!("{self} means nothing here: {why}"))
     }
@@ -51,9 +51,9 @@ impl Change {
 pub struct OtherPlatform<'a> {
     /// Its name.
     pub name: &'a str,
-    /// Its folder or file of data.
+    /// Its folder or file of data, behind `:`.
     pub data: Option<&'a str>,
-    /// Its address, if it is already running.
+    /// Its address, behind `@`, if it is already running.
     pub at: Option<&'a str>,
 }
 
@@ -66,19 +66,19 @@ impl<'a> OtherPlatform<'a> {
         Self { name, data, at }
     }
 
-    fn refusal_reason(&self, there: &ChangeSetting<'_>) -> Option<String> {
+    fn refusal_reason(&self, setting: &ChangeSetting<'_>) -> Option<String> {
         let Self { name, data, at } = *self;
-        let is_house = there.platform == "house";
+        let is_house = setting.platform == "house";
         Some(match name {
-            _ if !there.has_poses => {
+            _ if !setting.has_poses => {
                 "the frames have no poses, so nobody knows where they are on another platform".to_owned()
             }
-            _ if name == there.platform && data.is_none() && at.is_none() => "the run was made there".to_owned(),
-            "recording" if there.sees == SightSource::Labels => {
+            _ if name == setting.platform && data.is_none() && at.is_none() => "the run was made there".to_owned(),
+            "recording" if setting.sees == SightSource::Labels => {
                 "a recording has no labels; a scripted eye (--eye) or a model has to see".to_owned()
             }
             "recording" if data.is_some() => "the run's own paths are filmed; leave out the data".to_owned(),
-            "recording" if !there.draws => "the platform has no pictures along the paths to film".to_owned(),
+            "recording" if !setting.draws => "the platform has no pictures along the paths to film".to_owned(),
             "habitat" if data.is_none() && !is_house => {
                 "only generated houses are saved for it; name the data of the same scenes, as in habitat:DIR".to_owned()
             }
@@ -92,13 +92,13 @@ impl<'a> OtherPlatform<'a> {
 }
 
 impl WholeChange {
-    fn refusal_reason(self, there: &ChangeSetting<'_>) -> Option<String> {
+    fn refusal_reason(self, setting: &ChangeSetting<'_>) -> Option<String> {
         match self {
-            Self::Mirror | Self::Turn | Self::Reverse if !there.has_poses => Some(no_poses("directions", there)),
-            Self::Reverse if there.is_recorded() => {
-                Some(format!("platform {} has no pictures of the way back", there.platform))
+            Self::Mirror | Self::Turn | Self::Reverse if !setting.has_poses => Some(no_poses("directions", setting)),
+            Self::Reverse if setting.is_recorded() => {
+                Some(format!("platform {} has no pictures of the way back", setting.platform))
             }
-            Self::Remove | Self::Add | Self::Material if there.sees == SightSource::Pictures => Some(
+            Self::Remove | Self::Add | Self::Material if setting.sees == SightSource::Pictures => Some(
                 "it changes what is listed and not the pictures, which are what the model sees; use labels or the scripted eye"
                     .to_owned(),
             ),
@@ -108,20 +108,23 @@ impl WholeChange {
 }
 
 impl DoseKind {
-    fn refusal_reason(self, value: f64, there: &ChangeSetting<'_>) -> Option<String> {
+    fn refusal_reason(self, value: f64, setting: &ChangeSetting<'_>) -> Option<String> {
         match self {
-            Self::CameraHeight | Self::FieldOfView | Self::Pitch | Self::Roll => (!there.draws).then(|| {
-                format!("the pictures of platform {} were taken before, by a camera that is as it was", there.platform)
+            Self::CameraHeight | Self::FieldOfView | Self::Pitch | Self::Roll => (!setting.draws).then(|| {
+                format!(
+                    "the pictures of platform {} were taken before, by a camera that is as it was",
+                    setting.platform
+                )
             }),
-            Self::Exposure | Self::ColourTemperature | Self::Blur | Self::Noise | Self::JpegQuality => (there.sees
+            Self::Exposure | Self::ColourTemperature | Self::Blur | Self::Noise | Self::JpegQuality => (setting.sees
                 == SightSource::Labels)
                 .then(|| "it changes the pictures, and labels are not read from pictures".to_owned()),
             Self::DroppedFrames => None,
-            Self::FrameSpacing if !there.has_poses => Some(no_poses("distances", there)),
-            Self::FrameSpacing => there.finer_than_there_is(value),
-            Self::HeadingNoise | Self::StartHeading if !there.has_poses => Some(no_poses("headings", there)),
-            Self::StartHeading if there.is_recorded() => {
-                Some(format!("platform {} has no pictures of other directions", there.platform))
+            Self::FrameSpacing if !setting.has_poses => Some(no_poses("distances", setting)),
+            Self::FrameSpacing => setting.finer_than_there_is(value),
+            Self::HeadingNoise | Self::StartHeading if !setting.has_poses => Some(no_poses("headings", setting)),
+            Self::StartHeading if setting.is_recorded() => {
+                Some(format!("platform {} has no pictures of other directions", setting.platform))
             }
             Self::HeadingNoise | Self::StartHeading => None,
         }
@@ -129,11 +132,12 @@ impl DoseKind {
 }
 
 impl ChangeSetting<'_> {
-    /// Whether its pictures were taken one by one along a path, as in a recording.
+    /// Whether the platform's pictures were taken one by one along a path, as in a recording.
     fn is_recorded(&self) -> bool {
         !self.draws && !self.graph
     }
 
+    /// Why frames cannot be so close together; `None` if they can.
     fn finer_than_there_is(&self, spacing_m: f64) -> Option<String> {
         let (own_m, from) = match (self.graph, self.draws) {
             (true, _) => (BETWEEN_VIEWPOINTS_M, "viewpoints"),
@@ -149,6 +153,7 @@ impl ChangeSetting<'_> {
     }
 }
 
-fn no_poses(of: &str, there: &ChangeSetting<'_>) -> String {
-    format!("the frames of platform {} have no poses, so that no {of} of the path are known", there.platform)
+/// The reason for a refusal on a platform without poses: a quantity, such as headings, is not known there.
+fn no_poses(quantity: &str, setting: &ChangeSetting<'_>) -> String {
+    format!("the frames of platform {} have no poses, so that no {quantity} of the path are known", setting.platform)
 }

@@ -18,7 +18,7 @@ pub enum WholeChange {
 }
 
 impl WholeChange {
-    /// All of them.
+    /// All changes without a dose.
     pub const ALL: [Self; 6] = [Self::Mirror, Self::Turn, Self::Remove, Self::Add, Self::Material, Self::Reverse];
 
     /// Its name.

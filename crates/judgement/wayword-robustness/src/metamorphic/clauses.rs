@@ -35,6 +35,7 @@ impl FramedClause {
 pub(super) fn clauses_with_frames(written: AnnotatedText<'_>) -> Vec<FramedClause> {
     let tokens = split_tokens(written.text);
     let numbers = reading::clause_numbers(&tokens);
+    // For each clause: its number, its words, and its byte range.
     let mut parts: Vec<(usize, Vec<&str>, [usize; 2])> = Vec::new();
     for (token, number) in tokens.iter().zip(numbers) {
         match parts.last_mut() {
@@ -46,43 +47,44 @@ pub(super) fn clauses_with_frames(written: AnnotatedText<'_>) -> Vec<FramedClaus
         }
     }
     let stops = stop_positions(written.text);
-    let mut told: Vec<ClauseDraft> = Vec::new();
+    let mut drafts: Vec<ClauseDraft> = Vec::new();
     for (_, words, span) in parts {
-        let own: Vec<&str> = words.into_iter().skip_while(|word| is_joint(word)).collect();
-        if own.is_empty() {
+        let content: Vec<&str> = words.into_iter().skip_while(|word| is_joint(word)).collect();
+        if content.is_empty() {
             continue;
         }
-        let here = || written.mentions.iter().filter(|mention| (span[0]..span[1]).contains(&mention.span[0]));
-        let last = here().next_back().map(|mention| mention.kind);
-        let first_of = |mention: &TextMention| match mention.kind {
+        let mentions_here = || written.mentions.iter().filter(|mention| (span[0]..span[1]).contains(&mention.span[0]));
+        let last = mentions_here().next_back().map(|mention| mention.kind);
+        let first_frame = |mention: &TextMention| match mention.kind {
             MentionKind::Room => mention.frame.saturating_sub(1),
             _ => mention.frame,
         };
-        let range = here().map(first_of).min().zip(here().map(|mention| mention.frame).max());
-        let tells_stop = stops.iter().any(|stop| (span[0]..span[1]).contains(stop));
-        told.push(match tells_stop {
+        let range = mentions_here().map(first_frame).min().zip(mentions_here().map(|mention| mention.frame).max());
+        let is_stop = stops.iter().any(|stop| (span[0]..span[1]).contains(stop));
+        drafts.push(match is_stop {
             true => ClauseDraft {
-                words: own.join(" "),
+                words: content.join(" "),
                 range: Some((written.last_frame, written.last_frame)),
                 speaks_of: ClauseEnding::Motion,
             },
-            false => ClauseDraft { words: own.join(" "), range, speaks_of: ClauseEnding::from_last_mention(last) },
+            false => ClauseDraft { words: content.join(" "), range, speaks_of: ClauseEnding::from_last_mention(last) },
         });
     }
-    (0..told.len())
+    (0..drafts.len())
         .map(|at| {
-            let before = told[..at].iter().rev().find_map(|told| told.range).map_or(0, |(_, last)| last);
-            let behind = told[at + 1..].iter().find_map(|told| told.range).map_or(usize::MAX, |(first, _)| first);
-            let mut later = told[at + 1..].iter().filter(|told| told.speaks_of == ClauseEnding::Motion);
-            let fixed = later.find_map(|told| told.range).map_or(usize::MAX, |(_, last)| last);
-            let (first, last) = match told[at].range {
+            // A clause without mentions is about frames between those of its neighbours.
+            let before = drafts[..at].iter().rev().find_map(|draft| draft.range).map_or(0, |(_, last)| last);
+            let behind = drafts[at + 1..].iter().find_map(|draft| draft.range).map_or(usize::MAX, |(first, _)| first);
+            let mut later = drafts[at + 1..].iter().filter(|draft| draft.speaks_of == ClauseEnding::Motion);
+            let next_motion = later.find_map(|draft| draft.range).map_or(usize::MAX, |(_, last)| last);
+            let (first, last) = match drafts[at].range {
                 // A mention of a thing has the first frame that shows it, but the walker may reach it only later.
-                Some((first, last)) if told[at].speaks_of == ClauseEnding::Thing => (first, last.max(fixed)),
+                Some((first, last)) if drafts[at].speaks_of == ClauseEnding::Thing => (first, last.max(next_motion)),
                 Some(range) => range,
                 None => (before.min(behind), before.max(behind)),
             };
-            let ends_with_thing = told[at].speaks_of == ClauseEnding::Thing;
-            FramedClause { words: told[at].words.clone(), frames: first..=last, ends_with_thing }
+            let ends_with_thing = drafts[at].speaks_of == ClauseEnding::Thing;
+            FramedClause { words: drafts[at].words.clone(), frames: first..=last, ends_with_thing }
         })
         .collect()
 }
@@ -93,19 +95,23 @@ fn stop_positions(text: &str) -> Vec<usize> {
     events.into_iter().filter(|event| event.what == EventContent::Stop).map(|event| event.span[0]).collect()
 }
 
-/// A clause before its range is final: its words, the first and last frame of its mentions, and the kind of its last mention.
+/// A clause before its range is final.
 struct ClauseDraft {
     words: String,
+    /// The first and the last frame of its mentions; `None` without mentions.
     range: Option<(usize, usize)>,
+    /// The kind of its last mention.
     speaks_of: ClauseEnding,
 }
 
 /// The kind of a clause's last mention.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ClauseEnding {
+    /// A landmark.
     Thing,
     /// A turn, a climb or a stop. Its frame is known exactly.
     Motion,
+    /// Anything else, or no mention.
     Other,
 }
 
@@ -119,6 +125,7 @@ impl ClauseEnding {
     }
 }
 
+/// Whether a word only joins clauses: a conjunction or a punctuation mark.
 fn is_joint(word: &str) -> bool {
     matches!(word, "and" | "then") || !word.starts_with(char::is_alphanumeric)
 }
@@ -138,22 +145,23 @@ pub(super) fn find_unexpected_clause(
     after: &[FramedClause],
     may_change: &[usize],
 ) -> Option<UnexpectedClause> {
-    let kept = in_both(before, after, may_change);
+    let shared = in_both(before, after, may_change);
+    // The clauses between two shared ones are compared; the ends of both texts close the last gap.
     let ends = [(before.len(), after.len())];
     let (mut from, mut to) = (0, 0);
-    for (next_from, next_to) in kept.into_iter().chain(ends) {
+    for (next_from, next_to) in shared.into_iter().chain(ends) {
         let (gone, new) = (&before[from..next_from], &after[to..next_to]);
-        let may = |clause: &&FramedClause| clause.speaks_of(may_change);
+        let may_differ = |clause: &&FramedClause| clause.speaks_of(may_change);
         let is_swap = gone.len() == new.len();
         // One text may mention a turn or a place together with a thing, and the other one without it.
-        let stands_for_one = |clause: &&FramedClause, others: &[FramedClause]| {
-            is_swap && !clause.ends_with_thing && others.iter().all(|other| may(&other))
+        let is_rewording = |clause: &&FramedClause, others: &[FramedClause]| {
+            is_swap && !clause.ends_with_thing && others.iter().all(|other| may_differ(&other))
         };
-        if let Some(lost) = gone.iter().find(|clause| !may(clause) && !stands_for_one(clause, new)) {
+        if let Some(lost) = gone.iter().find(|clause| !may_differ(clause) && !is_rewording(clause, new)) {
             return Some(UnexpectedClause::Lost(lost.words.clone()));
         }
-        if let Some(come) = new.iter().find(|clause| !may(clause) && !stands_for_one(clause, gone)) {
-            return Some(UnexpectedClause::New(come.words.clone()));
+        if let Some(added) = new.iter().find(|clause| !may_differ(clause) && !is_rewording(clause, gone)) {
+            return Some(UnexpectedClause::New(added.words.clone()));
         }
         (from, to) = (next_from + 1, next_to + 1);
     }

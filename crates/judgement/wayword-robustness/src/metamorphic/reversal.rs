@@ -33,7 +33,7 @@ pub fn check_reversed_path(base: AnnotatedText<'_>, changed: AnnotatedText<'_>) 
         ));
     }
     let rooms = rooms_of_both(&there.rooms, &back.rooms, base.last_frame);
-    let is_known = |one: &String, other: &String| {
+    let is_order_known = |one: &String, other: &String| {
         let is_apart = |rooms: &[WayRoom]| are_rooms_apart(rooms, one, other).unwrap_or(true);
         is_apart(&there.rooms) && is_apart(&back.rooms)
     };
@@ -41,7 +41,7 @@ pub fn check_reversed_path(base: AnnotatedText<'_>, changed: AnnotatedText<'_>) 
         let place = |name: &String| back.iter().position(|other| other == name);
         let mut pairs =
             there.iter().enumerate().flat_map(|(at, one)| there[at + 1..].iter().map(move |other| (one, other)));
-        if pairs.any(|(one, other)| place(one) < place(other) && is_known(one, other)) {
+        if pairs.any(|(one, other)| place(one) < place(other) && is_order_known(one, other)) {
             return ExpectationOutcome::Differs(format!("there one gets by {there:?}, and back by {back:?}: {whole}"));
         }
     }
@@ -61,33 +61,38 @@ struct WayDescription {
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct WayRoom {
     name: String,
+    /// `None` if no mention of the checks covers the words.
     frame: Option<usize>,
 }
 
 impl WayDescription {
     fn from_text(written: AnnotatedText<'_>) -> Self {
-        let (mut told, mut stops) = (Self::default(), false);
+        let (mut way, mut has_stopped) = (Self::default(), false);
         for event in read_instruction(written.text, &BTreeSet::new()).events.into_iter().filter(|event| !event.denied) {
-            told.turns.extend(turn_told(&event.what));
+            way.turns.extend(turn_told(&event.what));
             match event.what {
-                EventContent::Stop => stops = true,
-                EventContent::Climb(climb) => told.climbs.push(climb),
-                EventContent::Floor(floor) => told.floors.extend(floor.number.map(|number| number.to_string())),
+                EventContent::Stop => has_stopped = true,
+                EventContent::Climb(climb) => way.climbs.push(climb),
+                EventContent::Floor(floor) => way.floors.extend(floor.number.map(|number| number.to_string())),
                 EventContent::Place(place) if place.is_room => {
                     let name = room_name(&place.name).unwrap_or(&place.name).to_owned();
                     // Stairs are already counted as a climb.
-                    if name != "stairs" && told.rooms.last().is_none_or(|room| room.name != name) {
-                        let is_it =
+                    if name != "stairs" && way.rooms.last().is_none_or(|room| room.name != name) {
+                        let overlaps_event =
                             |mention: &&TextMention| mention.span[0] < event.span[1] && event.span[0] < mention.span[1];
-                        let here = written.mentions.iter().find(is_it);
-                        let frame = if stops { Some(written.last_frame) } else { here.map(|mention| mention.frame) };
-                        told.rooms.push(WayRoom { name, frame });
+                        let mention_here = written.mentions.iter().find(overlaps_event);
+                        let frame = if has_stopped {
+                            Some(written.last_frame)
+                        } else {
+                            mention_here.map(|mention| mention.frame)
+                        };
+                        way.rooms.push(WayRoom { name, frame });
                     }
                 }
                 _ => {}
             }
         }
-        told
+        way
     }
 }
 
@@ -95,17 +100,17 @@ impl WayDescription {
 /// name, these are two different rooms, and the name is left out.
 fn rooms_of_both(there: &[WayRoom], back: &[WayRoom], last_frame: usize) -> [Vec<String>; 2] {
     let names = |rooms: &[WayRoom]| rooms.iter().map(|room| room.name.clone()).collect::<Vec<String>>();
-    let from_the_start = |room: &WayRoom| Some((room.name.clone(), last_frame.saturating_sub(room.frame?)));
-    let back_frames: Vec<(String, usize)> = back.iter().filter_map(from_the_start).collect();
+    let frame_from_start = |room: &WayRoom| Some((room.name.clone(), last_frame.saturating_sub(room.frame?)));
+    let back_frames: Vec<(String, usize)> = back.iter().filter_map(frame_from_start).collect();
     let frames: Vec<(String, usize)> = there.iter().filter_map(|room| Some((room.name.clone(), room.frame?))).collect();
-    let is_one = |name: &String| {
+    let is_same_room = |name: &String| {
         let frame = |rooms: &[(String, usize)]| rooms.iter().find(|(other, _)| other == name).map(|(_, frame)| *frame);
         let Some((one, other)) = frame(&frames).zip(frame(&back_frames)) else { return true };
         let between = one.min(other)..=one.max(other);
         let passes = |(other, frame): &(String, usize)| other != name && between.contains(frame);
         one.abs_diff(other) <= 1 || !frames.iter().chain(&back_frames).any(passes)
     };
-    names_in_both(&names(there), &names(back)).map(|names| names.into_iter().filter(is_one).collect())
+    names_in_both(&names(there), &names(back)).map(|names| names.into_iter().filter(is_same_room).collect())
 }
 
 /// Whether a text mentions two rooms at frames that are not neighbours, if the frames are known. At neighbouring frames the order is
@@ -124,6 +129,7 @@ fn names_in_both(there: &[String], back: &[String]) -> [Vec<String>; 2] {
     [shared(there), shared(back)]
 }
 
+/// The side of a turn on the way back.
 fn side_back(side: Side) -> Side {
     match side {
         Side::Left => Side::Right,
@@ -132,6 +138,7 @@ fn side_back(side: Side) -> Side {
     }
 }
 
+/// The climb on the way back.
 fn climb_back(climb: ClimbDirection) -> ClimbDirection {
     match climb {
         ClimbDirection::Up => ClimbDirection::Down,

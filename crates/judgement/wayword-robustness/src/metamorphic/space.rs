@@ -17,7 +17,7 @@ pub fn check_mirrored_world(base: AnnotatedText<'_>, changed: AnnotatedText<'_>)
 
 /// Endings after "left" or "right" that still make a word for a side ("rightmost", "left-hand").
 const OF_SIDES: [&str; 6] = ["", "most", "hand", "ward", "wards", "side"];
-/// Words before which "right" means "just" ("right before the stairs").
+/// Words after "right" with which it means "just" and no side ("right before the stairs").
 const JUST_BEFORE: [&str; 10] =
     ["before", "next", "behind", "beside", "outside", "inside", "there", "here", "away", "across"];
 
@@ -28,7 +28,7 @@ fn with_sides_swapped(text: &str) -> String {
     for (at, token) in tokens.iter().enumerate() {
         let word = &text[token.span[0]..token.span[1]];
         let next = tokens.get(at + 1).map_or("", |next| next.word.as_str());
-        // In "turn right before the stairs" it means the side after all.
+        // In "turn right before the stairs" the word "right" means the side after all.
         let is_turn = at > 0 && matches!(tokens[at - 1].word.as_str(), "turn" | "go" | "the" | "a" | "your");
         let is_just = token.word == "right" && JUST_BEFORE.contains(&next) && !is_turn;
         swapped.push_str(&text[from..token.span[0]]);

@@ -24,15 +24,15 @@ pub struct ChangedThing<'a> {
 pub fn check_removed_thing(
     base: AnnotatedText<'_>,
     changed: AnnotatedText<'_>,
-    gone: ChangedThing<'_>,
+    removed: ChangedThing<'_>,
 ) -> ExpectationOutcome {
-    if !names_thing(base, gone.name) {
+    if !names_thing(base, removed.name) {
         return ExpectationOutcome::NotTold;
     }
-    if names_thing(changed, gone.name) {
-        return ExpectationOutcome::Differs(format!("the text still tells the {}: \"{}\"", gone.name, changed.text));
+    if names_thing(changed, removed.name) {
+        return ExpectationOutcome::Differs(format!("the text still tells the {}: \"{}\"", removed.name, changed.text));
     }
-    unexpected_difference(base, changed, gone).map_or(ExpectationOutcome::Holds, ExpectationOutcome::Differs)
+    unexpected_difference(base, changed, removed).map_or(ExpectationOutcome::Holds, ExpectationOutcome::Differs)
 }
 
 /// Checks that only clauses about frames that see the added thing differ.
@@ -40,11 +40,11 @@ pub fn check_removed_thing(
 pub fn check_added_thing(
     base: AnnotatedText<'_>,
     changed: AnnotatedText<'_>,
-    come: ChangedThing<'_>,
+    added: ChangedThing<'_>,
 ) -> ExpectationOutcome {
-    match unexpected_difference(base, changed, come) {
+    match unexpected_difference(base, changed, added) {
         Some(why) => ExpectationOutcome::Differs(why),
-        None if names_thing(changed, come.name) => ExpectationOutcome::Holds,
+        None if names_thing(changed, added.name) => ExpectationOutcome::Holds,
         None => ExpectationOutcome::NotTold,
     }
 }
@@ -69,8 +69,9 @@ fn unexpected_difference(
 fn names_thing(written: AnnotatedText<'_>, name: &str) -> bool {
     let is_thing =
         |mention: &&wayword_core::TextMention| matches!(mention.kind, MentionKind::Landmark | MentionKind::Target);
-    let mut said = written.mentions.iter().filter(is_thing);
-    said.any(|mention| written.text.get(mention.span[0]..mention.span[1]).is_some_and(|words| names_agree(words, name)))
+    let mut thing_mentions = written.mentions.iter().filter(is_thing);
+    thing_mentions
+        .any(|mention| written.text.get(mention.span[0]..mention.span[1]).is_some_and(|words| names_agree(words, name)))
 }
 
 /// Checks that the text has the word for the new colour or material in place of the old one, with the right article ("a red", "an
@@ -84,22 +85,23 @@ pub fn check_changed_material(
 ) -> ExpectationOutcome {
     let (before, after) = (split_tokens(base.text), split_tokens(changed.text));
     let (old, new): (Vec<TextToken>, Vec<TextToken>) = (split_tokens(old), split_tokens(new));
+    // The tokens of each text that are not compared yet.
     let (mut was, mut is) = (before.as_slice(), after.as_slice());
-    let mut is_told = false;
+    let mut is_mentioned = false;
     while let ([one, ..], [other, ..]) = (was, is) {
         if begins_with(was, &old) && begins_with(is, &new) {
-            is_told = true;
+            is_mentioned = true;
             (was, is) = (&was[old.len()..], &is[new.len()..]);
             continue;
         }
-        let takes_article = begins_with(&was[1..], &old) && begins_with(&is[1..], &new);
-        let is_article = takes_article && [one, other].iter().all(|token| matches!(token.word.as_str(), "a" | "an"));
+        let precedes_colour = begins_with(&was[1..], &old) && begins_with(&is[1..], &new);
+        let is_article = precedes_colour && [one, other].iter().all(|token| matches!(token.word.as_str(), "a" | "an"));
         if base.text[one.span[0]..one.span[1]] != changed.text[other.span[0]..other.span[1]] && !is_article {
             break;
         }
         (was, is) = (&was[1..], &is[1..]);
     }
-    match is_told {
+    match is_mentioned {
         _ if !was.is_empty() || !is.is_empty() => {
             ExpectationOutcome::Differs(format!("\"{}\" became \"{}\"", base.text, changed.text))
         }

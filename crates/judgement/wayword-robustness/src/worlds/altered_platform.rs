@@ -28,7 +28,7 @@ pub trait WorldAlteration: Send + Sync {
         before
     }
 
-    /// The inverse of [`heading_after`](Self::heading_after).
+    /// Maps a direction back: the inverse of [`heading_after`](Self::heading_after).
     fn heading_before(&self, after: Heading) -> Heading {
         after
     }
@@ -106,6 +106,7 @@ impl<P: Platform, A: WorldAlteration> AlteredPlatform<P, A> {
         Self { platform, alter }
     }
 
+    /// The altered view. `look` asks the original platform for a view, with or without a picture.
     fn altered_view(
         &self,
         scene: &SceneId,
@@ -124,7 +125,7 @@ impl<P: Platform, A: WorldAlteration> AlteredPlatform<P, A> {
     }
 }
 
-/// It has no `inner`: nothing of the original world may be passed on without a look at the alteration.
+/// `inner` keeps its default: nothing of the original world may be reached past the alteration.
 impl<P: Platform, A: WorldAlteration> Platform for AlteredPlatform<P, A> {
     fn name(&self) -> &'static str {
         self.platform.name()
@@ -230,6 +231,7 @@ pub(super) fn frame_key(frame: &Frame) -> String {
     format!("{x:x} {y:x} {z:x} {}", viewpoint.as_ref().map_or("", ViewpointId::as_str))
 }
 
+/// The graph with the positions of the altered world.
 fn graph_after(before: &ViewpointGraph, alter: &impl WorldAlteration) -> Result<ViewpointGraph, GraphError> {
     let mut after = ViewpointGraph::default();
     for id in before.viewpoints() {

@@ -15,7 +15,7 @@ const ADDED_AT_M: (f64, f64) = (1.2, 0.9);
 const ADDED_BELOW_M: f64 = 0.8;
 /// Largest distance from which an added thing is visible, metres.
 const SEEN_M: f64 = 4.0;
-/// Most words of a colour.
+/// Most words of a colour. So many words before a thing's name are searched for one.
 const COLOUR_WORDS: usize = 2;
 /// Colours to give to a thing: the first one that neither it nor a namesake has is taken.
 const NEW_COLOURS: [&str; 5] = ["purple", "orange", "pink", "turquoise", "red"];
@@ -27,7 +27,7 @@ pub struct PathLabels(Vec<Vec<ObjectLabel>>);
 /// A text with its mentions and its path, for which a thing is to be changed.
 #[derive(Debug, Clone, Copy)]
 pub struct PathText<'a> {
-    /// Its words.
+    /// The text.
     pub text: &'a str,
     /// Its statements, each with its frame.
     pub mentions: &'a [TextMention],
@@ -61,22 +61,22 @@ impl PathLabels {
 
     /// The landmarks that a text mentions and that have a label at the frame of the mention. The target is left out.
     #[must_use]
-    pub fn mentioned_things(&self, telling: PathText<'_>) -> Vec<MentionedThing> {
-        let PathText { text, mentions, path } = telling;
+    pub fn mentioned_things(&self, path_text: PathText<'_>) -> Vec<MentionedThing> {
+        let PathText { text, mentions, path } = path_text;
         let is_target = |name: &str| path.target.as_ref().is_some_and(|target| names_agree(&target.name, name));
         let landmarks = mentions.iter().filter(|mention| mention.kind == MentionKind::Landmark);
-        let told = landmarks.filter_map(|mention| {
+        let things = landmarks.filter_map(|mention| {
             let words = text.get(mention.span[0]..mention.span[1])?;
             let label = self.0.get(mention.frame)?.iter().find(|label| names_agree(&label.name, words))?;
             let from = text[..mention.span[0]].rmatch_indices(' ').nth(COLOUR_WORDS).map_or(0, |(at, _)| at + 1);
             Some(self.find_thing(words, &label.name, &text[from..mention.span[1]]))
         });
-        told.filter(|thing| can_go(&thing.name) && !is_target(&thing.name)).collect()
+        things.filter(|thing| can_go(&thing.name) && !is_target(&thing.name)).collect()
     }
 
-    /// Collects the objects of a name along the path. `words` are the text's name for it, and `said` has in addition the few words before
-    /// them, in which the colour is looked for.
-    fn find_thing(&self, words: &str, name: &str, said: &str) -> MentionedThing {
+    /// Collects the objects of a name along the path. `words` are the text's name for it, and `phrase` has in addition the few words
+    /// before them, in which the colour is looked for.
+    fn find_thing(&self, words: &str, name: &str, phrase: &str) -> MentionedThing {
         let (mut objects, mut seen_from, mut colours) = (BTreeSet::new(), Vec::new(), BTreeSet::new());
         for (frame, labels) in self.0.iter().enumerate() {
             let alike: Vec<&ObjectLabel> = labels.iter().filter(|label| names_agree(&label.name, name)).collect();
@@ -87,8 +87,8 @@ impl PathLabels {
             colours.extend(alike.iter().filter_map(|label| label.colour.clone()));
         }
         // "Dark brown" is not "brown".
-        let is_said = |colour: &&String| format!(" {said} ").contains(&format!(" {colour} "));
-        let colour = colours.iter().filter(is_said).max_by_key(|colour| colour.len()).cloned();
+        let is_in_phrase = |colour: &&String| format!(" {phrase} ").contains(&format!(" {colour} "));
+        let colour = colours.iter().filter(is_in_phrase).max_by_key(|colour| colour.len()).cloned();
         MentionedThing { words: words.to_owned(), name: name.to_owned(), objects, seen_from, colour }
     }
 
@@ -106,9 +106,9 @@ impl PathLabels {
 
     /// Draws a thing that the text mentions, and returns it with the change that removes it and its namesakes.
     #[must_use]
-    pub fn remove_thing(&self, telling: PathText<'_>, seed: u64) -> Option<(MentionedThing, ThingRemoval)> {
-        let told = self.mentioned_things(telling);
-        let thing = told.get(draw_index(seed, "remove", telling.path, told.len())?)?.clone();
+    pub fn remove_thing(&self, path_text: PathText<'_>, seed: u64) -> Option<(MentionedThing, ThingRemoval)> {
+        let things = self.mentioned_things(path_text);
+        let thing = things.get(draw_index(seed, "remove", path_text.path, things.len())?)?.clone();
         let objects = thing.objects.clone();
         Some((thing, ThingRemoval { objects }))
     }
@@ -116,10 +116,10 @@ impl PathLabels {
     /// Draws a thing with a colour in the text, and returns it with the change that gives it and its namesakes of that colour another
     /// one, which no namesake has.
     #[must_use]
-    pub fn recolour_thing(&self, telling: PathText<'_>, seed: u64) -> Option<(MentionedThing, ThingRecolouring)> {
-        let told: Vec<MentionedThing> =
-            self.mentioned_things(telling).into_iter().filter(|thing| thing.colour.is_some()).collect();
-        let thing = told.get(draw_index(seed, "material", telling.path, told.len())?)?.clone();
+    pub fn recolour_thing(&self, path_text: PathText<'_>, seed: u64) -> Option<(MentionedThing, ThingRecolouring)> {
+        let things: Vec<MentionedThing> =
+            self.mentioned_things(path_text).into_iter().filter(|thing| thing.colour.is_some()).collect();
+        let thing = things.get(draw_index(seed, "material", path_text.path, things.len())?)?.clone();
         let colour = NEW_COLOURS.iter().find(|colour| !self.has_colour(&thing.name, colour))?;
         let objects = self.of_colour(&thing.name, thing.colour.as_deref()?);
         Some((thing, ThingRecolouring { objects, colour: (*colour).to_owned() }))
@@ -132,9 +132,9 @@ impl PathLabels {
         let name = (*ADDED_THING_NAMES.iter().find(is_new)?).to_owned();
         let frame = path.frames.get(draw_index(seed, "add", path, path.frames.len())?)?;
         let (ahead_m, right_m) = ADDED_AT_M;
-        let to = frame.pose.heading;
-        let beside = to.turned_by(std::f64::consts::FRAC_PI_2).unit_vector() * right_m;
-        let position = frame.pose.position + to.unit_vector() * ahead_m + beside - DVec3::Z * ADDED_BELOW_M;
+        let facing = frame.pose.heading;
+        let beside = facing.turned_by(std::f64::consts::FRAC_PI_2).unit_vector() * right_m;
+        let position = frame.pose.position + facing.unit_vector() * ahead_m + beside - DVec3::Z * ADDED_BELOW_M;
         let is_near = |frame: &Frame| frame.pose.position.distance(position) <= SEEN_M;
         let seen_from: Vec<usize> = (0..path.frames.len()).filter(|at| is_near(&path.frames[*at])).collect();
         let object = ObjectId::new(format!("added-{name}")).ok()?;
@@ -162,8 +162,8 @@ pub fn can_go(name: &str) -> bool {
     find_thing(name).is_none_or(|thing| !is_built_in(thing.class))
 }
 
-/// Draws an index below `of` by the seed and the path's id; `None` if `of` is 0.
-fn draw_index(seed: u64, purpose: &str, path: &Path, of: usize) -> Option<usize> {
+/// Draws an index below `count` by the seed and the path's id; `None` if `count` is 0.
+fn draw_index(seed: u64, purpose: &str, path: &Path, count: usize) -> Option<usize> {
     let number = derive_seed(seed, &["robustness", purpose, &path.id]);
-    number.checked_rem(of as u64).and_then(|at| usize::try_from(at).ok())
+    number.checked_rem(count as u64).and_then(|at| usize::try_from(at).ok())
 }

@@ -15,8 +15,8 @@ use wayword_core::{
     SceneCatalogue, SceneFiles, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
 
-/// How good a scripted eye is, as a function of the strength of a change ([`Change::dose_strength`](crate::Change::dose_strength)): 0 without a
-/// change, 1 at the end of the dose's range.
+/// How good a scripted eye is, as a function of the strength of a change ([`Change::dose_strength`](crate::Change::dose_strength)): 0
+/// without a change, 1 at the end of the dose's range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EyeQuality {
     /// Share of the labels that it reports at strength 0.
@@ -89,33 +89,35 @@ impl<P: Platform, O: Platform> ScriptedEye<P, O> {
         self
     }
 
-    /// Makes the eye's view from the view of `pictures`; `look` asks the oracle. A blank view stays as it is: no camera looked there.
+    /// Makes the eye's view from `picture_view`, which is the view of `pictures`; `look` asks the oracle. A blank view stays as it is:
+    /// no camera looked there.
     fn eye_view(
         &self,
         scene: &SceneId,
         from: &Frame,
-        shown: View,
+        picture_view: View,
         look: impl Fn(&SceneId, ViewGaze) -> Result<View, PlatformError>,
     ) -> Result<View, PlatformError> {
-        if shown.is_blank() {
-            return Ok(shown);
+        if picture_view.is_blank() {
+            return Ok(picture_view);
         }
         let scene = self.oracle_scene_of.get(scene).unwrap_or(scene);
-        let gaze = ViewGaze { heading: shown.pose.heading, horizontal_fov_rad: shown.horizontal_fov_rad };
-        let known = look(scene, gaze)?;
-        let Some(truth) = known.ground_truth().cloned() else {
-            return Ok(View::new(shown.pose, shown.horizontal_fov_rad, shown.image, None));
+        let gaze = ViewGaze { heading: picture_view.pose.heading, horizontal_fov_rad: picture_view.horizontal_fov_rad };
+        let oracle_view = look(scene, gaze)?;
+        let Some(truth) = oracle_view.ground_truth().cloned() else {
+            return Ok(View::new(picture_view.pose, picture_view.horizontal_fov_rad, picture_view.image, None));
         };
         let draws = EyeDraws { seed: self.seed, scene, viewpoint: from.viewpoint.as_ref() };
         let labels = if self.eye.guesses_sides {
-            sides::guess_sides(&draws, from, gaze, &known, |gaze| look(scene, gaze))?
+            sides::guess_sides(&draws, from, gaze, &oracle_view, |gaze| look(scene, gaze))?
         } else {
             truth.labels
         };
         let labels = labels.into_iter().filter_map(|label| self.answer_label(&draws, label));
-        let labels = drop_unfitting_boxes(labels.collect(), known.image.as_deref(), shown.image.as_deref());
+        let labels =
+            drop_unfitting_boxes(labels.collect(), oracle_view.image.as_deref(), picture_view.image.as_deref());
         let truth = GroundTruth { labels, ..truth };
-        Ok(View::new(shown.pose, shown.horizontal_fov_rad, shown.image, Some(truth)))
+        Ok(View::new(picture_view.pose, picture_view.horizontal_fov_rad, picture_view.image, Some(truth)))
     }
 
     /// The label that the eye reports; `None` if it misses it.

@@ -9,8 +9,9 @@ use wayword_core::{
     DMat3, DVec3, DepthImage, Frame, GroundTruth, Image, ObjectLabel, PlatformError, SceneId, View, ViewGaze,
 };
 
-/// Largest pitch and roll of a camera, degrees.
+/// Largest pitch of a camera, up or down, degrees.
 const MOST_PITCH_DEG: f64 = 30.0;
+/// Largest roll of a camera, to either side, degrees.
 const MOST_ROLL_DEG: f64 = 45.0;
 
 /// The widest level view that is requested, radians. Platforms cannot render wider ones.
@@ -53,7 +54,7 @@ impl CameraTilt {
     /// When the pitch is more than 30 degrees or the roll more than 45, in either direction, or one is no finite
     /// number.
     pub fn new(pitch_deg: f64, roll_deg: f64) -> Result<Self, TiltError> {
-        let within = |deg: f64, most: f64| (-most..=most).contains(&deg);
+        let within = |deg: f64, limit: f64| (-limit..=limit).contains(&deg);
         if !within(pitch_deg, MOST_PITCH_DEG) {
             return Err(TiltError::Pitch(pitch_deg));
         }
@@ -83,6 +84,7 @@ impl CameraTilt {
         }
         let half = libm::tan(fov_rad.min(WIDEST_RAD) / 2.0);
         let level_from_tilted = self.level_from_tilted();
+        // The level view has to reach each corner of the tilted picture: tangent of half the width that this needs.
         let mut reach = half;
         for (right, up) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
             let ray = level_from_tilted * DVec3::new(right * half, up * half * PICTURE_ASPECT_RATIO, -1.0);

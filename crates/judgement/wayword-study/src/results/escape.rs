@@ -1,6 +1,6 @@
 //! Escapes text from participants and files, so that it cannot act as markup, a formula or a command in any output format.
 
-/// Longest name in a table, characters. Longer ones, which files may contain, are cut off.
+/// Longest name in a table, characters. A longer one, which a file may contain, is cut off.
 const MOST_NAME_CHARS: usize = 80;
 
 /// Replaces characters that act instead of being seen: control characters, and those that reverse the direction of the text around
@@ -28,10 +28,12 @@ pub(super) fn to_table_name(text: &str) -> String {
     }
 }
 
+/// Whether a character acts instead of being seen: a control, a change of the text's direction, or an invisible separator.
 fn is_active(c: char) -> bool {
-    let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{061c}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    let breaks = matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}');
-    c.is_control() || turns || breaks
+    let is_direction =
+        matches!(c, '\u{200e}' | '\u{200f}' | '\u{061c}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let is_separator = matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}');
+    c.is_control() || is_direction || is_separator
 }
 
 /// Escapes text for Markdown, on one line.
@@ -59,8 +61,8 @@ pub(super) fn escape_latex(text: &str) -> String {
 /// A spreadsheet would compute a cell that begins like a formula (ASVS 5.0, 1.2.10), so that cell gets an apostrophe in front. A cell
 /// that already begins with an apostrophe gets one as well, so that a reader of the file can always take exactly one away.
 pub(super) fn escape_csv_cell(text: &str) -> String {
-    let begins = |c: char| matches!(c, '=' | '+' | '-' | '@' | '＝' | '＋' | '－' | '＠' | '−' | '\'');
-    let is_formula = text.starts_with(['\t', '\r', '\n', '\0']) || text.trim_start().starts_with(begins);
+    let begins_formula = |c: char| matches!(c, '=' | '+' | '-' | '@' | '＝' | '＋' | '－' | '＠' | '−' | '\'');
+    let is_formula = text.starts_with(['\t', '\r', '\n', '\0']) || text.trim_start().starts_with(begins_formula);
     let text = format!("{}{}", if is_formula { "'" } else { "" }, strip_active_characters(text));
     if text.contains([',', '"', '\n', '\'', ';', '\t']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
 }

@@ -1,7 +1,7 @@
 //! Collects the answers from which the figures are computed, and decides which participants count.
 //!
-//! An [`AnsweredItem`] is one item with its answer. For the figures it becomes one [`TextJudgement`] for each text that it judges, so a comparison
-//! of two texts becomes two.
+//! An [`AnsweredItem`] is one item with its answer. For the figures it becomes one [`TextJudgement`] for each text that it judges, so a
+//! comparison of two texts becomes two.
 
 use super::{names::ParticipantNames, walks::WalkScorer};
 use crate::{ItemSlot, PairChoice, Participant, ParticipantAnswer, ParticipantStatus, SlotState, StudyData, StudyItem};
@@ -13,22 +13,28 @@ use wayword_metrics::TrajectoryScore;
 pub(super) struct TextJudgement<'a> {
     /// Index of the participant in [`StudyData`].
     pub(super) person: usize,
+    /// Number of the item's route.
     pub(super) route: u32,
     /// Index of the text's condition in the plan.
     pub(super) condition: usize,
     /// The chosen levels, from 1 to 5, one for each question or statement.
     pub(super) levels: &'a [u8],
+    /// The metrics of the walk, in the mode of following.
     pub(super) walk: Option<&'a TrajectoryScore>,
+    /// Seconds to the answer, see [`AnsweredItem::answer_seconds`].
     pub(super) seconds: Option<f64>,
+    /// In a walk: how often a button was pressed.
     pub(super) presses: Option<u32>,
     /// In a comparison: 1 if this text was preferred, 0.5 if neither was, else 0.
     pub(super) gain: Option<f64>,
+    /// In a comparison: whether neither text was good.
     pub(super) both_bad: Option<bool>,
 }
 
 /// An item that a participant answered. Practice items are not among them.
 #[derive(Debug, Clone)]
 pub(super) struct AnsweredItem<'a> {
+    /// Index of the participant in [`StudyData`].
     pub(super) person: usize,
     pub(super) participant: &'a Participant,
     pub(super) slot: &'a ItemSlot,
@@ -46,14 +52,14 @@ pub(super) fn collect_answers<'a>(
     let people: BTreeMap<&str, (usize, &Participant)> =
         data.participants.iter().enumerate().map(|(at, person)| (person.id.as_str(), (at, person))).collect();
     let mut walks = WalkScorer::new(data);
-    let (mut all, mut problems) = (Vec::new(), Vec::new());
-    let mut strangers = 0usize;
+    let (mut collected, mut problems) = (Vec::new(), Vec::new());
+    let mut unmatched = 0usize;
     for slot in data.slots.iter().filter(|slot| slot.state == SlotState::Answered && slot.position.is_some()) {
         let item = data.items.get(slot.item as usize).filter(|item| !item.is_practice);
         let (Some(&(person, participant)), Some(item), Some(answer)) =
             (people.get(slot.participant.as_str()), item, slot.answer.as_ref())
         else {
-            strangers += 1;
+            unmatched += 1;
             continue;
         };
         let score = match (answer, walks.score_walk(item.route, &slot.moves)) {
@@ -65,13 +71,13 @@ pub(super) fn collect_answers<'a>(
             }
             _ => None,
         };
-        all.push(AnsweredItem { person, participant, slot, item, answer, score });
+        collected.push(AnsweredItem { person, participant, slot, item, answer, score });
     }
-    if strangers > 0 {
-        problems.push(format!("{strangers} answers name no participant or item of the study; they are in no figure"));
+    if unmatched > 0 {
+        problems.push(format!("{unmatched} answers name no participant or item of the study; they are in no figure"));
     }
-    all.sort_by_key(|one| (one.person, one.slot.position, one.item.id));
-    (all, problems)
+    collected.sort_by_key(|one| (one.person, one.slot.position, one.item.id));
+    (collected, problems)
 }
 
 /// A pause longer than this between two actions counts as an absence, and the time of the answer is then not known.
@@ -88,8 +94,8 @@ impl AnsweredItem<'_> {
         let mut times = vec![self.slot.given_ms];
         times.extend(self.slot.moves.iter().map(|step| step.at_ms));
         times.push(end);
-        let is_at_it = times.windows(2).all(|pair| (0..=AWAY_MS).contains(&(pair[1] - pair[0])));
-        is_at_it.then(|| seconds_between(self.slot.given_ms, end))
+        let is_present = times.windows(2).all(|pair| (0..=AWAY_MS).contains(&(pair[1] - pair[0])));
+        is_present.then(|| seconds_between(self.slot.given_ms, end))
     }
 
     /// In a walk: how often the participant pressed a button, to move or to look around.
@@ -102,6 +108,7 @@ impl AnsweredItem<'_> {
         }
     }
 
+    /// The levels that were chosen, one for each statement or question. A comparison has none.
     pub(super) fn chosen_levels(&self) -> &[u8] {
         match self.answer {
             ParticipantAnswer::Follow { statements, .. } => statements,
@@ -126,13 +133,13 @@ impl AnsweredItem<'_> {
 
     /// Index of the condition of one of the item's texts.
     pub(super) fn condition_of_text(&self, data: &StudyData, text: usize) -> Option<usize> {
-        let told = self.item.texts.get(text)?;
-        data.plan.conditions.iter().position(|condition| condition.name == told.condition)
+        let judged = self.item.texts.get(text)?;
+        data.plan.conditions.iter().position(|condition| condition.name == judged.condition)
     }
 
     /// Splits the answer into judgements, one for each text that was judged.
     pub(super) fn text_judgements(&self, data: &StudyData) -> Vec<TextJudgement<'_>> {
-        let of_text = |text: usize| {
+        let judge_text = |text: usize| {
             let (gain, both_bad) = match self.answer {
                 ParticipantAnswer::Pair { choice } => {
                     let gain = self.preferred_text().map_or(0.5, |preferred| f64::from(u8::from(preferred == text)));
@@ -153,7 +160,7 @@ impl AnsweredItem<'_> {
             })
         };
         let texts = if matches!(self.answer, ParticipantAnswer::Pair { .. }) { 2 } else { 1 };
-        (0..texts).filter_map(of_text).collect()
+        (0..texts).filter_map(judge_text).collect()
     }
 }
 
@@ -172,6 +179,7 @@ pub(super) enum ParticipantFilter {
 }
 
 impl ParticipantFilter {
+    /// Whether a participant counts. `most_failed` is how many failed attention checks are tolerated.
     pub(super) fn accepts_participant(self, participant: &Participant, most_failed: usize) -> bool {
         let failed = participant.attention.iter().filter(|check| !check.passed).count();
         match self {

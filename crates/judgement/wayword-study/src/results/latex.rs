@@ -18,7 +18,7 @@ const LATEX_HEADER_COMMENT: &str = "% \\usepackage{booktabs}; names beyond Latin
 
 /// If a table has more text columns than this, they get a fixed width, in which their lines break.
 const MOST_WHOLE: usize = 3;
-/// A table with longer rows than this is set in a smaller font.
+/// A table with longer rows than this, characters, is set in a smaller font.
 const MOST_CHARS: usize = 60;
 
 /// The results as LaTeX tables; they need the package `booktabs`.
@@ -28,14 +28,17 @@ pub(super) fn render_latex(results: &StudyReport) -> String {
     for version in &results.versions {
         add_figure_tables(&mut page, results, version);
         add_difference_tables(&mut page, results, version);
-        let all = tables::paper_table(results, version).into_iter().chain(tables::pair_tables(version));
-        for one in all.chain(tables::level_tables(results, version, false)).chain([tables::agreement_table(version)]) {
-            add_table(&mut page, &one, Some(version.rule));
+        let version_tables = tables::paper_table(results, version).into_iter().chain(tables::pair_tables(version));
+        for table in version_tables
+            .chain(tables::level_tables(results, version, false))
+            .chain([tables::agreement_table(version)])
+        {
+            add_table(&mut page, &table, Some(version.rule));
         }
     }
     let by_position = tables::handout_table("Drop-off by position", "Position", &results.people.by_position);
-    for one in [tables::submission_table(results), tables::attention_table(results), by_position] {
-        add_table(&mut page, &one, None);
+    for table in [tables::submission_table(results), tables::attention_table(results), by_position] {
+        add_table(&mut page, &table, None);
     }
     if let Some(wording) = tables::wording_table(results) {
         add_table(&mut page, &wording, None);
@@ -45,19 +48,22 @@ pub(super) fn render_latex(results: &StudyReport) -> String {
 
 /// A column of a table of figures: a condition.
 struct LatexColumn<'a> {
+    /// The two lines of its heading.
     heads: [String; 2],
+    /// By the name of the figure: the value, its interval, and the method of the interval.
     figures: BTreeMap<&'a str, (f64, Option<&'a ConfidenceInterval>, IntervalMethod)>,
     /// Answers, persons, routes.
     counts: Option<[usize; 3]>,
 }
 
+/// Tables with the figures of each condition.
 fn add_figure_tables(page: &mut String, results: &StudyReport, version: &ResultVersion) {
     let columns = version.rows.iter().map(|row| LatexColumn {
         heads: [escape::to_table_name(&row.condition), control_label(row.kind).to_owned()],
         figures: row
             .figures
             .iter()
-            .map(|(name, one)| (*name, (one.value, one.interval.as_ref(), one.method)))
+            .map(|(name, figure)| (*name, (figure.value, figure.interval.as_ref(), figure.method)))
             .collect(),
         counts: Some([row.answers, row.persons, row.items]),
     });
@@ -65,17 +71,18 @@ fn add_figure_tables(page: &mut String, results: &StudyReport, version: &ResultV
     add_compact_tables(page, results, &columns.collect::<Vec<_>>(), &caption);
 }
 
+/// Tables with each condition minus the first one, if there are differences.
 fn add_difference_tables(page: &mut String, results: &StudyReport, version: &ResultVersion) {
     let Some(first) = version.differences.first() else { return };
-    let kind_of = |less: &ConditionDifference| {
-        version.rows.iter().find(|row| row.condition == less.condition).map_or("", |row| control_label(row.kind))
+    let kind_of = |difference: &ConditionDifference| {
+        version.rows.iter().find(|row| row.condition == difference.condition).map_or("", |row| control_label(row.kind))
     };
-    let columns = version.differences.iter().map(|less| LatexColumn {
-        heads: [escape::to_table_name(&less.condition), kind_of(less).to_owned()],
-        figures: less
+    let columns = version.differences.iter().map(|difference| LatexColumn {
+        heads: [escape::to_table_name(&difference.condition), kind_of(difference).to_owned()],
+        figures: difference
             .figures
             .iter()
-            .map(|(name, one)| (*name, (one.value, one.interval.as_ref(), one.method)))
+            .map(|(name, figure)| (*name, (figure.value, figure.interval.as_ref(), figure.method)))
             .collect(),
         counts: None,
     });
@@ -172,17 +179,18 @@ fn end_table(page: &mut String, caption: &str) {
     );
 }
 
+/// A table in LaTeX. `rule` is a sentence about which answers count; it goes into the caption.
 fn add_table(page: &mut String, table: &ResultTable, rule: Option<&str>) {
     if table.rows.is_empty() {
         return;
     }
-    let texts = table.heads.iter().filter(|head| !head.is_number).count();
+    let text_columns = table.heads.iter().filter(|head| !head.is_number).count();
     let is_wide = row_width_chars(table) > MOST_CHARS;
-    let column = |(at, is_number): (usize, bool)| match texts {
+    let column = |(at, is_number): (usize, bool)| match text_columns {
         _ if is_number => "r".to_owned(),
         _ if is_wide && at == 0 => "p{.22\\linewidth}".to_owned(),
         0..=MOST_WHOLE => "l".to_owned(),
-        _ => format!("p{{{:.2}\\linewidth}}", 0.7 / texts as f64),
+        _ => format!("p{{{:.2}\\linewidth}}", 0.7 / text_columns as f64),
     };
     let columns: String = table.heads.iter().map(|head| head.is_number).enumerate().map(column).collect();
     let heads: Vec<String> = table.heads.iter().map(|head| escaped(&head.text)).collect();

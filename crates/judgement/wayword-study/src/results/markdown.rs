@@ -25,12 +25,13 @@ pub(super) fn render_markdown(results: &StudyReport, sheets: &[DataSheet]) -> St
         let counts = format!("{} answers of {} persons.", version.answers, version.persons);
         append_text(&mut page, format_args!("## {title}\n\n{} {counts}\n\n", escaped(version.rule)));
         let paper = tables::paper_table(results, version);
-        let all = paper.into_iter().chain(tables::pair_tables(version)).chain([tables::figure_table(results, version)]);
-        for one in all.chain(tables::difference_table(results, version)) {
-            add_table(&mut page, 3, &one);
+        let version_tables =
+            paper.into_iter().chain(tables::pair_tables(version)).chain([tables::figure_table(results, version)]);
+        for table in version_tables.chain(tables::difference_table(results, version)) {
+            add_table(&mut page, 3, &table);
         }
-        for one in tables::level_tables(results, version, true).iter().chain([&tables::agreement_table(version)]) {
-            add_table(&mut page, 3, one);
+        for table in tables::level_tables(results, version, true).iter().chain([&tables::agreement_table(version)]) {
+            add_table(&mut page, 3, table);
         }
     }
     page.push_str("## People\n\n");
@@ -53,6 +54,7 @@ pub(super) fn render_markdown(results: &StudyReport, sheets: &[DataSheet]) -> St
     page
 }
 
+/// A table in Markdown. `depth` is the level of its heading.
 fn add_table(page: &mut String, depth: usize, table: &ResultTable) {
     append_text(page, format_args!("{} {}\n\n", "#".repeat(depth), escaped(&table.title)));
     if !table.rows.is_empty() {

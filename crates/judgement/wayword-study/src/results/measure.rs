@@ -21,6 +21,7 @@ pub struct StudyMeasure {
     pub meaning: &'static str,
     /// The lowest and the highest value that one answer can give; `None` where there is no bound.
     pub range: [Option<f64>; 2],
+    /// The part of an answer from which its value is read.
     #[serde(skip)]
     of: MeasureSource,
 }
@@ -54,8 +55,11 @@ pub enum MeasureUnit {
 /// Which part of an answer the value is read from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum MeasureSource {
+    /// A metric of the walk.
     Walk(WalkFigure),
+    /// The time to the answer.
     Seconds,
+    /// How often a button was pressed.
     Presses,
     /// The level that was given to the question with this index.
     Level(usize),
@@ -69,7 +73,7 @@ enum MeasureSource {
     BothBad,
 }
 
-/// A metric of a walk.
+/// A metric of a walk. The measures below explain each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum WalkFigure {
     Success,
@@ -83,14 +87,14 @@ enum WalkFigure {
 
 impl WalkFigure {
     fn score_value(self, score: &TrajectoryScore) -> Option<f64> {
-        let yes = |is: bool| f64::from(u8::from(is));
+        let one_or_zero = |is: bool| f64::from(u8::from(is));
         match self {
-            Self::Success => Some(yes(score.distance.success)),
+            Self::Success => Some(one_or_zero(score.distance.success)),
             Self::Spl => Some(score.distance.spl),
             Self::NavigationErrorM => score.navigation_error_m,
             Self::Ndtw => Some(score.ndtw),
             Self::Sdtw => Some(score.distance.sdtw),
-            Self::OracleSuccess => Some(yes(score.distance.oracle_success)),
+            Self::OracleSuccess => Some(one_or_zero(score.distance.oracle_success)),
             Self::LengthM => Some(score.length_m),
         }
     }
@@ -108,18 +112,18 @@ impl StudyMeasure {
     }
 
     /// The value of this figure for one judgement; `None` if the judgement has none.
-    pub(super) fn judgement_value(&self, given: &TextJudgement<'_>) -> Option<f64> {
-        let level = |at: usize| given.levels.get(at).copied();
-        let yes = |is: bool| f64::from(u8::from(is));
+    pub(super) fn judgement_value(&self, judgement: &TextJudgement<'_>) -> Option<f64> {
+        let level = |at: usize| judgement.levels.get(at).copied();
+        let one_or_zero = |is: bool| f64::from(u8::from(is));
         match self.of {
-            MeasureSource::Walk(figure) => given.walk.and_then(|score| figure.score_value(score)),
-            MeasureSource::Seconds => given.seconds,
-            MeasureSource::Presses => given.presses.map(f64::from),
+            MeasureSource::Walk(figure) => judgement.walk.and_then(|score| figure.score_value(score)),
+            MeasureSource::Seconds => judgement.seconds,
+            MeasureSource::Presses => judgement.presses.map(f64::from),
             MeasureSource::Level(at) => level(at).map(f64::from),
-            MeasureSource::AtLeast(at, least) => level(at).map(|level| yes(level >= least)),
-            MeasureSource::AtMost(at, most) => level(at).map(|level| yes(level <= most)),
-            MeasureSource::Gain => given.gain,
-            MeasureSource::BothBad => given.both_bad.map(yes),
+            MeasureSource::AtLeast(at, least) => level(at).map(|level| one_or_zero(level >= least)),
+            MeasureSource::AtMost(at, most) => level(at).map(|level| one_or_zero(level <= most)),
+            MeasureSource::Gain => judgement.gain,
+            MeasureSource::BothBad => judgement.both_bad.map(one_or_zero),
         }
     }
 
@@ -152,6 +156,7 @@ impl StudyMeasure {
 /// The names of the figures that count levels as arXiv 2403.11487 does. The meanings below call it "the paper".
 pub(super) const OF_THE_PAPER: [&str; 4] = ["similar_low", "accurate_high", "ghosts_any", "reachable_high"];
 
+/// A measure with the range that its unit implies.
 const fn new_measure(
     name: &'static str,
     label: &'static str,
@@ -187,10 +192,12 @@ const fn mean_measure(
     new_measure(name, label, MeasureKind::Mean, unit, meaning, of)
 }
 
+/// The mean level of the question with index `at`.
 const fn level_measure(name: &'static str, label: &'static str, meaning: &'static str, at: usize) -> StudyMeasure {
     mean_measure(name, label, MeasureUnit::Level, meaning, MeasureSource::Level(at))
 }
 
+/// The meaning of each share of agreement with a statement.
 const AGREEMENT_SHARE_MEANING: &str = "share of level 4 or 5 (agree, strongly agree)";
 
 const FOLLOW_MEASURES: [StudyMeasure; 15] = [

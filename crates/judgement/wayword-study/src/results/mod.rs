@@ -47,9 +47,9 @@ pub struct StudyReport {
     pub format: &'static str,
     /// The version of Wayword that made it.
     pub wayword: &'static str,
-    /// What the study is called.
+    /// The title of the study.
     pub title: String,
-    /// What people did.
+    /// The task of the participants.
     pub mode: StudyTask,
     /// The style of the texts.
     pub style: String,
@@ -102,7 +102,7 @@ pub fn compute_results(data: &StudyData, now_ms: i64) -> Result<StudyReport, Stu
     let names = ParticipantNames::new(data);
     let (answered, problems) = judgements::collect_answers(data, &names);
     let most_failed = data.settings.most_failed();
-    let version = |whose| ResultVersion::new(data, &answered, whose, most_failed);
+    let version = |filter| ResultVersion::new(data, &answered, filter, most_failed);
     let people = ParticipantSummary::new(data, &names, &answered, now_ms);
     let sources = SheetSources { data, names: &names, answered: &answered, most_failed };
     let sheets = sources.all_sheets(&people);

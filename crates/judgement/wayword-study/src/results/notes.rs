@@ -45,16 +45,16 @@ pub(super) fn collect_warnings(results: &StudyReport) -> Vec<String> {
 
 /// The names of the methods by which any interval of the tables was computed.
 fn used_method_names(versions: &[ResultVersion]) -> BTreeSet<&'static str> {
-    let of_rows = versions
+    let row_methods = versions
         .iter()
         .flat_map(|version| &version.rows)
         .flat_map(|row| row.figures.values().map(|figure| figure.method));
-    let less = versions.iter().flat_map(|version| &version.differences);
-    let of_less = less.flat_map(|less| less.figures.values().map(|figure| figure.method));
+    let differences = versions.iter().flat_map(|version| &version.differences);
+    let difference_methods = differences.flat_map(|difference| difference.figures.values().map(|figure| figure.method));
     let pairs = versions.iter().filter_map(|version| version.pairs.as_ref());
-    let of_pairs =
+    let pair_methods =
         pairs.flat_map(|pairs| pairs.rows.iter().filter_map(|row| row.share.as_ref()).map(|share| share.method));
-    of_rows.chain(of_less).chain(of_pairs).map(number_format::method_name).collect()
+    row_methods.chain(difference_methods).chain(pair_methods).map(number_format::method_name).collect()
 }
 
 /// The methods by which intervals were computed, in the order in which the notes explain them.

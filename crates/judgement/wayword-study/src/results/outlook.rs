@@ -13,7 +13,7 @@ use wayword_metrics::{DetectableShareDifference, detectable_difference};
 /// The needs of a planned study, and the smallest differences that it detects. `study plan` prints this.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StudyOutlook {
-    /// What people do.
+    /// The task of the participants.
     pub mode: StudyTask,
     /// How many items each condition has; an item of two texts counts for both.
     pub conditions: Vec<PlannedCondition>,
@@ -33,7 +33,7 @@ pub struct StudyOutlook {
     pub minutes: u32,
     /// The statistical power for which the detectable differences are computed.
     pub power: f64,
-    /// The significance level of the two-sided test for which they are computed.
+    /// The significance level of the two-sided test for which the detectable differences are computed.
     pub significance: f64,
     /// The share around which the two conditions are assumed to lie.
     pub base_share: f64,
@@ -55,7 +55,7 @@ pub struct PlannedCondition {
 /// The smallest difference that a study detects, under one assumption of how much persons and routes differ.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DetectableDifference {
-    /// How much they differ: `none`, `middle` or `large`.
+    /// How much persons and routes differ: `none`, `middle` or `large`.
     pub effects: &'static str,
     /// The standard deviation of persons, and of routes, on the logit scale.
     pub sd: f64,
@@ -70,7 +70,9 @@ pub struct DetectableDifference {
 
 /// Three assumptions of how much persons and routes differ: a name, and the standard deviation on the logit scale.
 const LOGIT_SPREADS: [(&str, f64); 3] = [("none", 0.0), ("middle", 0.75), ("large", 1.5)];
+/// The share of studies that find a difference of the detectable size.
 const TEST_POWER: f64 = 0.8;
+/// The significance level of the two-sided test.
 const TEST_SIGNIFICANCE: f64 = 0.05;
 /// The assumed share. Around a half, a difference is hardest to detect.
 const BASE_SHARE: f64 = 0.5;
@@ -80,7 +82,7 @@ impl StudyOutlook {
     #[must_use]
     pub fn new(plan: &StudyDesign, settings: &StudySettings, items: &[StudyItem]) -> Self {
         let items: Vec<&StudyItem> = items.iter().filter(|item| !item.is_practice).collect();
-        let has = |item: &StudyItem, name: &str| item.texts.iter().any(|told| told.condition == name);
+        let has = |item: &StudyItem, name: &str| item.texts.iter().any(|text| text.condition == name);
         let conditions = plan.conditions.iter().map(|condition| PlannedCondition {
             condition: condition.name.clone(),
             kind: condition.kind,
@@ -116,48 +118,51 @@ impl StudyOutlook {
         let found: Option<DetectableShareDifference> =
             plan.and_then(|plan| detectable_difference(&plan, TEST_POWER, TEST_SIGNIFICANCE));
         // One share against a half has half the variance of a difference between two.
-        let of_one = if self.mode == StudyTask::Pair { std::f64::consts::FRAC_1_SQRT_2 } else { 1.0 };
+        let share_factor = if self.mode == StudyTask::Pair { std::f64::consts::FRAC_1_SQRT_2 } else { 1.0 };
         DetectableDifference {
             effects,
             sd,
-            difference: found.map(|found| of_one * found.difference),
+            difference: found.map(|found| share_factor * found.difference),
             answers: found.map(|found| found.answers_per_condition),
             design_effect: found.map(|found| found.design_effect),
         }
     }
 
-    /// The power calculation for two conditions, with their share of the answers.
+    /// The plan of the power calculation for the first two conditions, with their share of the answers.
     fn of_two(&self, sd: f64, items: &[&StudyItem]) -> Option<wayword_metrics::PowerPlan> {
         let [first, second] = self.conditions.get(..2)? else { return None };
         let routes = |name: &str| -> BTreeSet<u32> {
-            let of = |item: &&&StudyItem| item.texts.iter().any(|told| told.condition == name);
-            items.iter().filter(of).map(|item| item.route).collect()
+            let has_condition = |item: &&&StudyItem| item.texts.iter().any(|text| text.condition == name);
+            items.iter().filter(has_condition).map(|item| item.route).collect()
         };
         let (first, second) = (routes(&first.condition), routes(&second.condition));
         let shared = first.intersection(&second).count();
         let all = first.union(&second).count();
-        let each = 2.0 * self.per_participant as f64 / self.conditions.len() as f64;
+        // A person's answers to texts of these two conditions.
+        let answers_each = 2.0 * self.per_participant as f64 / self.conditions.len() as f64;
         Some(wayword_metrics::PowerPlan {
-            persons: (self.participants as f64 * each.min(1.0)).round() as usize,
+            persons: (self.participants as f64 * answers_each.min(1.0)).round() as usize,
             items: all,
-            answers_per_person: (each.round() as usize).max(1),
+            answers_per_person: (answers_each.round() as usize).max(1),
             base_share: BASE_SHARE,
             person_sd: sd,
             item_sd: sd,
-            persons_see_both: each >= 2.0,
+            persons_see_both: answers_each >= 2.0,
             items_in_both: 2 * shared > all,
         })
     }
 
-    /// The power calculation for comparisons of two conditions. It is one share, which has half the variance of a difference between two.
+    /// The plan of the power calculation for comparisons of two conditions. Its result is one share. The calculation expects two groups,
+    /// so it gets the persons and the routes twice.
     fn of_pairs(&self, sd: f64) -> Option<wayword_metrics::PowerPlan> {
         let conditions = self.conditions.len();
         let pairs = (conditions * conditions.saturating_sub(1) / 2).max(1);
-        let each = self.per_participant as f64 / pairs as f64;
+        // A person's comparisons of these two conditions.
+        let answers_each = self.per_participant as f64 / pairs as f64;
         (conditions > 1).then(|| wayword_metrics::PowerPlan {
-            persons: 2 * (self.participants as f64 * each.min(1.0)).round() as usize,
+            persons: 2 * (self.participants as f64 * answers_each.min(1.0)).round() as usize,
             items: 2 * self.routes,
-            answers_per_person: (each.round() as usize).max(1),
+            answers_per_person: (answers_each.round() as usize).max(1),
             base_share: BASE_SHARE,
             person_sd: sd,
             item_sd: sd,
@@ -194,9 +199,10 @@ impl fmt::Display for StudyOutlook {
             }
         };
         writeln!(f, "\nThe smallest {what},\nthat 4 of 5 such studies find (two-sided test at 5 %):")?;
-        for found in &self.detectable {
-            let points = found.difference.map_or_else(|| "none".to_owned(), |share| format_number(100.0 * share, 0));
-            let words = match found.effects {
+        for detectable in &self.detectable {
+            let points =
+                detectable.difference.map_or_else(|| "none".to_owned(), |share| format_number(100.0 * share, 0));
+            let words = match detectable.effects {
                 "none" => "if persons and routes are all alike",
                 "middle" => "if they differ (standard deviation 0.75 on the logit scale)",
                 _ => "if they differ much (1.5)",

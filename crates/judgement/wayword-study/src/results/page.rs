@@ -10,7 +10,7 @@ use crate::StudyError;
 use minijinja::{AutoEscape, Environment, UndefinedBehavior, context};
 use serde::Serialize;
 
-/// A version as the template takes it.
+/// The figures under one rule of which participants count, as `version.html` takes them.
 #[derive(Debug, Serialize)]
 struct VersionView {
     name: &'static str,
@@ -18,16 +18,19 @@ struct VersionView {
     rule: String,
     paper: Option<ResultTable>,
     forests: Vec<ForestPlot>,
+    /// Plots of each condition minus the first one.
     less: Vec<ForestPlot>,
+    /// The name of the first condition.
     minus: String,
     bars: Vec<LevelBars>,
     matrix: Option<WinMatrix>,
     pairs: Vec<ResultTable>,
     agreement: ResultTable,
+    /// Tables that are shown only when a reader unfolds them.
     folded: Vec<ResultTable>,
 }
 
-/// A file as the template takes it.
+/// A CSV file with its columns, as the template of the codebook takes it.
 #[derive(Debug, Serialize)]
 struct FileView {
     file: &'static str,
@@ -49,7 +52,7 @@ impl VersionView {
             paper: tables::paper_table(results, version),
             forests: plot::figure_plots(results, version),
             less: plot::difference_plots(results, version),
-            minus: version.differences.first().map_or_else(String::new, |less| escape::to_table_name(&less.minus)),
+            minus: version.differences.first().map_or_else(String::new, |first| escape::to_table_name(&first.minus)),
             bars: plot::level_bars(results, version),
             matrix: plot::win_matrix(version),
             pairs: tables::pair_tables(version),

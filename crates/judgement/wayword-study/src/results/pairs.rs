@@ -22,9 +22,9 @@ pub struct PairResults {
 /// The comparisons between two conditions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PairRow {
-    /// The one that comes first in the plan.
+    /// The condition that comes first in the plan.
     pub first: String,
-    /// The other one.
+    /// The other condition.
     pub second: String,
     /// How often the first one was preferred.
     pub first_wins: usize,
@@ -46,9 +46,9 @@ pub enum ConditionStrengths {
     Known(BradleyTerry<String>),
     /// Why there are none.
     Unknown {
-        /// In words.
+        /// The reason in words.
         why: String,
-        /// As a value.
+        /// The reason as a value.
         reason: NoStrength,
     },
 }
@@ -57,7 +57,7 @@ pub enum ConditionStrengths {
 struct PairAnswer<'a> {
     answered: &'a AnsweredItem<'a>,
     choice: PairChoice,
-    /// As shown: A, then B.
+    /// The conditions of the texts as they were shown: A, then B.
     conditions: [usize; 2],
 }
 
@@ -86,6 +86,7 @@ impl<'a> PairAnswer<'a> {
         (conditions[0] != conditions[1]).then_some(Self { answered, choice: *choice, conditions })
     }
 
+    /// Whether it compares these two conditions, in either order.
     fn is_about(&self, both: [usize; 2]) -> bool {
         self.conditions == both || self.conditions == [both[1], both[0]]
     }
@@ -112,22 +113,23 @@ impl<'a> PairAnswer<'a> {
     }
 }
 
+/// The row of two conditions; `None` if they were never compared.
 fn pair_row(data: &StudyData, compared: &[PairAnswer<'_>], both: [usize; 2]) -> Option<PairRow> {
-    let own: Vec<&PairAnswer<'_>> = compared.iter().filter(|one| one.is_about(both)).collect();
+    let matching: Vec<&PairAnswer<'_>> = compared.iter().filter(|one| one.is_about(both)).collect();
     let gain = |one: &&PairAnswer<'_>| {
         one.answer_with_value(one.winning_condition().map_or(0.5, |winner| f64::from(u8::from(winner == both[0]))))
     };
-    let wins = |condition| own.iter().filter(|one| one.winning_condition() == Some(condition)).count();
-    let chosen = |choice| own.iter().filter(|one| one.choice == choice).count();
+    let wins = |condition| matching.iter().filter(|one| one.winning_condition() == Some(condition)).count();
+    let chosen = |choice| matching.iter().filter(|one| one.choice == choice).count();
     let name = |at: usize| data.plan.conditions[at].name.clone();
-    (!own.is_empty()).then(|| PairRow {
+    (!matching.is_empty()).then(|| PairRow {
         first: name(both[0]),
         second: name(both[1]),
         first_wins: wins(both[0]),
         second_wins: wins(both[1]),
         ties: chosen(PairChoice::Tie),
         both_bad: chosen(PairChoice::Bad),
-        share: answer_share(&own.iter().map(gain).collect::<Vec<_>>(), CONFIDENCE_LEVEL),
+        share: answer_share(&matching.iter().map(gain).collect::<Vec<_>>(), CONFIDENCE_LEVEL),
     })
 }
 

@@ -37,9 +37,9 @@ pub struct ParticipantSummary {
     pub misunderstood: [usize; 3],
     /// What became of the items, by their position in the sequence of a participant.
     pub by_position: Vec<HandoutCounts>,
-    /// The same by condition.
+    /// What became of the items, by condition.
     pub by_condition: Vec<HandoutCounts>,
-    /// The same by item.
+    /// What became of the items, by item.
     pub by_item: Vec<HandoutCounts>,
     /// The attention checks.
     pub attention: AttentionSummary,
@@ -106,7 +106,8 @@ impl ParticipantSummary {
         // Participants who left at the questions have neither understood the task nor failed to.
         let is_known = |person: &&Participant| person.understood || person.status == ParticipantStatus::ScreenedOut;
         let known = || people.iter().filter(is_known);
-        let times = |times: usize| known().filter(|person| person.misunderstood.min(2) as usize == times).count();
+        let count_with_wrong_tries =
+            |tries: usize| known().filter(|person| person.misunderstood.min(2) as usize == tries).count();
         let tally = HandoutTally::new(data, answered);
         Self {
             consented: people.len(),
@@ -120,7 +121,7 @@ impl ParticipantSummary {
             lease_s: data.settings.lease_s,
             median_minutes: median(minutes),
             announced_minutes: data.settings.minutes,
-            misunderstood: [0, 1, 2].map(times),
+            misunderstood: [0, 1, 2].map(count_with_wrong_tries),
             by_position: tally.by_position(),
             by_condition: tally.by_condition(),
             by_item: tally.by_item(),
@@ -150,6 +151,7 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
 /// Counts handed-out items by position, condition and item.
 struct HandoutTally<'a> {
     data: &'a StudyData,
+    /// The slots with their positions. Practice is left out.
     slots: Vec<(&'a ItemSlot, u32)>,
     /// The seconds of an answer, by participant and item.
     seconds: BTreeMap<(&'a str, u32), f64>,
@@ -163,39 +165,41 @@ impl<'a> HandoutTally<'a> {
         Self { data, slots, seconds: answered.iter().filter_map(time).collect() }
     }
 
-    fn count_handouts(&self, of: String, slots: impl Iterator<Item = &'a ItemSlot>) -> HandoutCounts {
-        let mut given = HandoutCounts { of, ..HandoutCounts::default() };
+    /// Counts the slots of a group: of a position, a condition or an item.
+    fn count_handouts(&self, group: String, slots: impl Iterator<Item = &'a ItemSlot>) -> HandoutCounts {
+        let mut counts = HandoutCounts { of: group, ..HandoutCounts::default() };
         let mut times = Vec::new();
         for slot in slots {
-            given.given += 1;
+            counts.given += 1;
             match slot.state {
-                SlotState::Answered => given.answered += 1,
-                SlotState::Returned => given.returned += 1,
-                SlotState::Live => given.live += 1,
+                SlotState::Answered => counts.answered += 1,
+                SlotState::Returned => counts.returned += 1,
+                SlotState::Live => counts.live += 1,
             }
             times.extend(self.seconds.get(&(slot.participant.as_str(), slot.item)));
         }
-        given.median_seconds = median(times);
-        given
+        counts.median_seconds = median(times);
+        counts
     }
 
     fn by_position(&self) -> Vec<HandoutCounts> {
         let last = self.slots.iter().map(|(_, position)| *position + 1).max().unwrap_or(0);
-        let at = |place: u32| self.slots.iter().filter(move |(_, position)| *position == place).map(|(slot, _)| *slot);
+        let slots_at =
+            |place: u32| self.slots.iter().filter(move |(_, position)| *position == place).map(|(slot, _)| *slot);
         // The bound keeps the table small if a damaged store contains an impossible position.
-        (0..last.min(10_000)).map(|place| self.count_handouts((place + 1).to_string(), at(place))).collect()
+        (0..last.min(10_000)).map(|place| self.count_handouts((place + 1).to_string(), slots_at(place))).collect()
     }
 
     fn by_condition(&self) -> Vec<HandoutCounts> {
         let has = |slot: &ItemSlot, name: &str| {
             let item = self.data.items.get(slot.item as usize);
-            item.is_some_and(|item| item.texts.iter().any(|told| told.condition == name))
+            item.is_some_and(|item| item.texts.iter().any(|text| text.condition == name))
         };
-        let of = |name: &str| {
+        let for_condition = |name: &str| {
             let slots = self.slots.iter().map(|(slot, _)| *slot).filter(|slot| has(slot, name));
             self.count_handouts(name.to_owned(), slots)
         };
-        self.data.plan.conditions.iter().map(|condition| of(&condition.name)).collect()
+        self.data.plan.conditions.iter().map(|condition| for_condition(&condition.name)).collect()
     }
 
     fn by_item(&self) -> Vec<HandoutCounts> {
@@ -204,8 +208,8 @@ impl<'a> HandoutTally<'a> {
             slots.entry(slot.item).or_default().push(slot);
         }
         let items = self.data.items.iter().filter(|item| !item.is_practice);
-        let of = |id: u32| self.count_handouts(id.to_string(), slots.get(&id).into_iter().flatten().copied());
-        items.map(|item| of(item.id)).collect()
+        let for_item = |id: u32| self.count_handouts(id.to_string(), slots.get(&id).into_iter().flatten().copied());
+        items.map(|item| for_item(item.id)).collect()
     }
 }
 

@@ -20,17 +20,24 @@ pub(super) struct ForestPlot {
     caption: String,
 }
 
+/// The figure of one condition in a forest plot.
 #[derive(Debug, Serialize)]
 struct ForestPlotRow {
+    /// Its id in the page, to which the description is tied.
     id: String,
     label: String,
     is_control: bool,
+    /// Position of the dot.
     at: f64,
     /// Both ends of the interval; `None` if there is no interval.
     whisker: Option<[f64; 2]>,
+    /// Whether the dot is filled. A difference that may be 0 has an empty one.
     is_filled: bool,
+    /// The value and its interval as text.
     figure: String,
+    /// The counts behind the figure, and the method of its interval.
     counts: String,
+    /// All of it as a sentence, for those who cannot see the plot.
     description: String,
 }
 
@@ -69,6 +76,7 @@ impl PlotAxis {
         Self { low: -2.0 * step, high: 2.0 * step, step }
     }
 
+    /// The position of a value, per cent of the plot's width.
     fn place_percent(&self, value: f64) -> f64 {
         let along = (value.clamp(self.low, self.high) - self.low) / (self.high - self.low);
         ((PLOT_MARGIN_PERCENT + along * (100.0 - 2.0 * PLOT_MARGIN_PERCENT)) * 100.0).round() / 100.0
@@ -89,6 +97,7 @@ impl PlotAxis {
     }
 }
 
+/// The factor between a value and its display: shares are shown in per cent.
 fn display_factor(measure: &StudyMeasure) -> f64 {
     if measure.unit == MeasureUnit::PerCent { 100.0 } else { 1.0 }
 }
@@ -97,12 +106,12 @@ fn largest_magnitude(ends: &[f64]) -> f64 {
     ends.iter().copied().filter(|end| end.is_finite()).map(f64::abs).fold(0.0, f64::max)
 }
 
-/// A quarter of the smallest round number that is at least `most`.
-fn quarter_of_round_number(most: f64) -> f64 {
+/// A quarter of the smallest round number that is at least `bound`.
+fn quarter_of_round_number(bound: f64) -> f64 {
     let round = [
         0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 250.0, 500.0, 1000.0, 10_000.0,
     ];
-    round.into_iter().find(|step| 4.0 * step >= most).unwrap_or(100_000.0)
+    round.into_iter().find(|step| 4.0 * step >= bound).unwrap_or(100_000.0)
 }
 
 /// One plot for each measure for which any condition has a figure.
@@ -152,38 +161,43 @@ pub(super) fn figure_plots(results: &StudyReport, version: &ResultVersion) -> Ve
 /// One plot of the differences to the first condition for each measure that has any.
 pub(super) fn difference_plots(results: &StudyReport, version: &ResultVersion) -> Vec<ForestPlot> {
     let forest = |measure: &StudyMeasure| {
-        let figures: Vec<_> =
-            version.differences.iter().filter_map(|less| Some((less, less.figures.get(measure.name)?))).collect();
+        let figures: Vec<_> = version
+            .differences
+            .iter()
+            .filter_map(|difference| Some((difference, difference.figures.get(measure.name)?)))
+            .collect();
         let ends: Vec<f64> =
             figures.iter().flat_map(|(_, figure)| with_ends(figure.value, figure.interval.as_ref())).collect();
         let axis = (!figures.is_empty()).then(|| PlotAxis::around_zero(&ends))?;
-        let row =
-            |(at, (less, figure)): (usize, &(&super::ConditionDifference, &wayword_metrics::FigureDifference))| {
-                let shown = figure_text(measure, figure.value, figure.interval.as_ref());
-                let kind = version
-                    .rows
-                    .iter()
-                    .find(|row| row.condition == less.condition)
-                    .map_or(crate::ConditionKind::Run, |row| row.kind);
-                let label = tables::condition_title(&less.condition, kind);
-                let beside_zero =
-                    |interval: &wayword_metrics::ConfidenceInterval| interval.low > 0.0 || interval.high < 0.0;
-                let counts = number_format::method_name(figure.method).to_owned();
-                ForestPlotRow {
-                    id: format!("d-{}-{}-{at}", version.name, measure.name),
-                    description: format!("{label} minus {}: {shown}. {counts}.", to_table_name(&less.minus)),
-                    label,
-                    is_control: kind != crate::ConditionKind::Run,
-                    at: axis.place_percent(figure.value),
-                    whisker: figure
-                        .interval
-                        .as_ref()
-                        .map(|interval| [axis.place_percent(interval.low), axis.place_percent(interval.high)]),
-                    is_filled: figure.interval.as_ref().is_some_and(beside_zero),
-                    figure: shown,
-                    counts,
-                }
-            };
+        let row = |(at, (difference, figure)): (
+            usize,
+            &(&super::ConditionDifference, &wayword_metrics::FigureDifference),
+        )| {
+            let shown = figure_text(measure, figure.value, figure.interval.as_ref());
+            let kind = version
+                .rows
+                .iter()
+                .find(|row| row.condition == difference.condition)
+                .map_or(crate::ConditionKind::Run, |row| row.kind);
+            let label = tables::condition_title(&difference.condition, kind);
+            let beside_zero =
+                |interval: &wayword_metrics::ConfidenceInterval| interval.low > 0.0 || interval.high < 0.0;
+            let counts = number_format::method_name(figure.method).to_owned();
+            ForestPlotRow {
+                id: format!("d-{}-{}-{at}", version.name, measure.name),
+                description: format!("{label} minus {}: {shown}. {counts}.", to_table_name(&difference.minus)),
+                label,
+                is_control: kind != crate::ConditionKind::Run,
+                at: axis.place_percent(figure.value),
+                whisker: figure
+                    .interval
+                    .as_ref()
+                    .map(|interval| [axis.place_percent(interval.low), axis.place_percent(interval.high)]),
+                is_filled: figure.interval.as_ref().is_some_and(beside_zero),
+                figure: shown,
+                counts,
+            }
+        };
         let unit = if measure.unit == MeasureUnit::PerCent {
             format!("{}, points", measure.label)
         } else {
@@ -200,6 +214,7 @@ pub(super) fn difference_plots(results: &StudyReport, version: &ResultVersion) -
     results.measures.iter().filter_map(forest).collect()
 }
 
+/// A value and the ends of its interval.
 fn with_ends(value: f64, interval: Option<&wayword_metrics::ConfidenceInterval>) -> Vec<f64> {
     std::iter::once(value).chain(interval.into_iter().flat_map(|interval| [interval.low, interval.high])).collect()
 }
@@ -244,11 +259,13 @@ struct BarSegment {
     label: String,
 }
 
-/// Width of a digit on a phone, per cent of a bar of levels, and of a narrow bar in the matrix.
+/// Width of a digit on a phone, per cent of the width of a bar of levels.
 const DIGIT_WIDTH_PERCENT: f64 = 4.0;
+/// Width of a digit on a phone, per cent of the width of a bar in the matrix, which is narrower.
 const NARROW_DIGIT: f64 = 6.0;
 
-fn bar_segments(counts: &[usize], digit: f64) -> Vec<BarSegment> {
+/// The pieces of a bar, one for each count above 0. `digit_percent` is the width of a digit, per cent of the bar.
+fn bar_segments(counts: &[usize], digit_percent: f64) -> Vec<BarSegment> {
     let all: usize = counts.iter().sum();
     let share = |count: usize| 100.0 * count as f64 / all.max(1) as f64;
     let round = |place: f64| (place * 100.0).round() / 100.0;
@@ -257,7 +274,7 @@ fn bar_segments(counts: &[usize], digit: f64) -> Vec<BarSegment> {
         let at = share(before);
         before += count;
         let number = count.to_string();
-        let label = if share(*count) < digit * (number.len() + 1) as f64 { String::new() } else { number };
+        let label = if share(*count) < digit_percent * (number.len() + 1) as f64 { String::new() } else { number };
         (*count > 0).then(|| BarSegment { class, at: round(at), width: round(share(*count)), label })
     };
     (1..).zip(counts).filter_map(&mut part).collect()
@@ -265,7 +282,7 @@ fn bar_segments(counts: &[usize], digit: f64) -> Vec<BarSegment> {
 
 /// One plot of levels for each question.
 pub(super) fn level_bars(results: &StudyReport, version: &ResultVersion) -> Vec<LevelBars> {
-    let of = |scale: &crate::wording::RatingScale| LevelBars {
+    let bars = |scale: &crate::wording::RatingScale| LevelBars {
         title: scale.text.to_owned(),
         levels: (1..).zip(scale.levels).map(|(level, word): (u8, &str)| format!("{level} {word}")).collect(),
         rows: version
@@ -276,11 +293,11 @@ pub(super) fn level_bars(results: &StudyReport, version: &ResultVersion) -> Vec<
                 let counts = row.levels.get(scale.name)?;
                 let answers: usize = counts.iter().sum();
                 let label = tables::condition_title(&row.condition, row.kind);
-                let told: Vec<String> =
+                let level_counts: Vec<String> =
                     counts.iter().zip(scale.levels).map(|(count, word)| format!("{word} {count}")).collect();
                 (answers > 0).then(|| BarRow {
                     id: format!("b-{}-{}-{at}", version.name, scale.name),
-                    description: format!("{label}: {}.", told.join(", ")),
+                    description: format!("{label}: {}.", level_counts.join(", ")),
                     label,
                     parts: bar_segments(counts, DIGIT_WIDTH_PERCENT),
                     answers,
@@ -288,7 +305,7 @@ pub(super) fn level_bars(results: &StudyReport, version: &ResultVersion) -> Vec<
             })
             .collect(),
     };
-    results.scales.iter().map(of).filter(|bars| !bars.rows.is_empty()).collect()
+    results.scales.iter().map(bars).filter(|bars| !bars.rows.is_empty()).collect()
 }
 
 /// How often each condition wins against each other one.
@@ -366,7 +383,7 @@ pub(super) struct DropOff {
     description: String,
 }
 
-/// The plot's inner size and its margins.
+/// The inner size of the drop-off plot and its margins, in the units of its SVG.
 const PLOT_WIDTH: f64 = 300.0;
 const PLOT_HEIGHT: f64 = 140.0;
 const PLOT_LEFT_MARGIN: f64 = 34.0;
@@ -380,14 +397,14 @@ pub(super) fn drop_off(rows: &[HandoutCounts]) -> Option<DropOff> {
     let round = |place: f64| (place * 10.0).round() / 10.0;
     let x = |at: usize| round(PLOT_LEFT_MARGIN + PLOT_WIDTH * at as f64 / last);
     let y = |count: f64| round(PLOT_TOP_MARGIN + PLOT_HEIGHT * (1.0 - count / top));
-    let line = |of: &dyn Fn(&HandoutCounts) -> usize| {
+    let line = |count: &dyn Fn(&HandoutCounts) -> usize| {
         let points: Vec<String> =
-            rows.iter().enumerate().map(|(at, row)| format!("{} {}", x(at), y(of(row) as f64))).collect();
+            rows.iter().enumerate().map(|(at, row)| format!("{} {}", x(at), y(count(row) as f64))).collect();
         format!("M{}", points.join("L"))
     };
-    let every = rows.len().div_ceil(10).max(1);
+    let label_step = rows.len().div_ceil(10).max(1);
     let across =
-        (0..rows.len()).filter(|at| at % every == 0).map(|at| AxisTick { at: x(at), label: (at + 1).to_string() });
+        (0..rows.len()).filter(|at| at % label_step == 0).map(|at| AxisTick { at: x(at), label: (at + 1).to_string() });
     let up = (0..=4)
         .map(|at| AxisTick { at: y(top / 4.0 * f64::from(at)), label: format_number(top / 4.0 * f64::from(at), 0) });
     let ends = |row: &HandoutCounts| format!("{} were given one and {} answered it", row.given, row.answered);

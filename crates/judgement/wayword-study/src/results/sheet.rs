@@ -19,6 +19,7 @@ pub(super) struct SheetColumn {
 pub(super) enum SheetCell {
     /// No value.
     Empty,
+    /// A whole number.
     Whole(i64),
     /// A number and how many digits after the point it is written with.
     Number(f64, usize),

@@ -21,7 +21,9 @@ pub(super) struct SheetSources<'a> {
     pub(super) most_failed: usize,
 }
 
+/// From when the times in the files count, for the meanings of columns.
 const SINCE_CONSENT: &str = "after the participant's consent";
+/// The possible values of a column with a status.
 const STATUSES: &str = "started, complete, withdrawn, screened_out, attention_failed";
 const YES_NO_VALUES: &str = "1 yes, 0 no";
 
@@ -74,8 +76,8 @@ impl SheetSources<'_> {
     fn answer_row(&self, one: &AnsweredItem<'_>) -> Vec<SheetCell> {
         let since = |at_ms| SheetCell::Number(seconds_between(one.participant.consented_ms, at_ms), 3);
         let route = self.data.routes.get(one.item.route as usize);
-        let is_in = |whose: ParticipantFilter| {
-            SheetCell::yes_or_no(whose.accepts_participant(one.participant, self.most_failed))
+        let is_in = |filter: ParticipantFilter| {
+            SheetCell::yes_or_no(filter.accepts_participant(one.participant, self.most_failed))
         };
         let mut cells = vec![
             SheetCell::text(self.names.name_for_id(&one.participant.id)),
@@ -89,8 +91,9 @@ impl SheetSources<'_> {
             is_in(ParticipantFilter::Everybody),
             is_in(ParticipantFilter::Finished),
         ];
-        let condition =
-            |text: usize| one.item.texts.get(text).map_or(SheetCell::Empty, |told| SheetCell::text(&told.condition));
+        let condition = |text: usize| {
+            one.item.texts.get(text).map_or(SheetCell::Empty, |judged| SheetCell::text(&judged.condition))
+        };
         let levels = one.chosen_levels().iter().map(|level| SheetCell::Whole(i64::from(*level)));
         match one.answer {
             ParticipantAnswer::Follow { looks, .. } => {
@@ -192,8 +195,8 @@ impl SheetSources<'_> {
             *given += 1;
             *answered += usize::from(slot.state == SlotState::Answered);
         }
-        let of = |person: &Participant| counts.get(person.id.as_str()).copied().unwrap_or_default();
-        sheet.rows = people.into_iter().map(|person| self.submission_row(person, of(person))).collect();
+        let slot_counts = |person: &Participant| counts.get(person.id.as_str()).copied().unwrap_or_default();
+        sheet.rows = people.into_iter().map(|person| self.submission_row(person, slot_counts(person))).collect();
         sheet
     }
 
@@ -202,7 +205,7 @@ impl SheetSources<'_> {
             person.attention.iter().filter(|check| !check.passed).map(|check| (check.number + 1).to_string()).collect();
         let since = |at_ms| SheetCell::Number(seconds_between(person.consented_ms, at_ms), 3);
         let is_in =
-            |whose: ParticipantFilter| SheetCell::yes_or_no(whose.accepts_participant(person, self.most_failed));
+            |filter: ParticipantFilter| SheetCell::yes_or_no(filter.accepts_participant(person, self.most_failed));
         vec![
             SheetCell::text(self.names.name_for_id(&person.id)),
             SheetCell::text(person.status.name()),
@@ -243,17 +246,17 @@ impl SheetSources<'_> {
         let items = self.data.items.iter().filter(|item| !item.is_practice);
         for (item, handed) in items.zip(&people.by_item) {
             let route = self.data.routes.get(item.route as usize);
-            for (number, told) in (1..).zip(&item.texts) {
-                let kind = self.data.plan.conditions.iter().find(|condition| condition.name == told.condition);
+            for (number, item_text) in (1..).zip(&item.texts) {
+                let kind = self.data.plan.conditions.iter().find(|condition| condition.name == item_text.condition);
                 sheet.rows.push(vec![
                     SheetCell::Whole(i64::from(item.id)),
                     route.map_or(SheetCell::Empty, |route| SheetCell::text(&route.name)),
                     route.map_or(SheetCell::Empty, |route| SheetCell::text(route.scene.as_str())),
                     SheetCell::Whole(number),
-                    SheetCell::text(&told.condition),
+                    SheetCell::text(&item_text.condition),
                     kind.map_or(SheetCell::Empty, |condition| SheetCell::text(kind_name(condition.kind))),
-                    SheetCell::text(&told.text),
-                    SheetCell::Whole(i64::try_from(told.marks.len()).unwrap_or(i64::MAX)),
+                    SheetCell::text(&item_text.text),
+                    SheetCell::Whole(i64::try_from(item_text.marks.len()).unwrap_or(i64::MAX)),
                     SheetCell::count(handed.given),
                     SheetCell::count(handed.answered),
                     SheetCell::count(handed.returned),
@@ -297,7 +300,7 @@ fn level_columns(scales: &[RatingScale]) -> impl Iterator<Item = SheetColumn> {
 }
 
 fn follow_columns() -> Vec<SheetColumn> {
-    let of_walk = |measure: &'static StudyMeasure| {
+    let walk_column = |measure: &'static StudyMeasure| {
         let values = match figure_digits(measure) {
             0 => YES_NO_VALUES,
             3 => "number; empty where there is no way",
@@ -311,7 +314,7 @@ fn follow_columns() -> Vec<SheetColumn> {
         )
     };
     let mut columns = vec![condition_column()];
-    columns.extend(StudyMeasure::walk_measures().map(of_walk));
+    columns.extend(StudyMeasure::walk_measures().map(walk_column));
     columns.extend([
         sheet_column("moves", "moves from one viewpoint to the next", "", "number"),
         sheet_column("looks", "turns to look, as the page counted them", "", "number"),

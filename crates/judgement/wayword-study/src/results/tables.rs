@@ -99,29 +99,34 @@ pub(super) fn difference_table(results: &StudyReport, version: &ResultVersion) -
         last.is_number = false;
     }
     for measure in results.measures {
-        for (at, less) in version.differences.iter().enumerate() {
+        for (at, difference) in version.differences.iter().enumerate() {
             let heading = if at == 0 { measure.heading_with_unit() } else { String::new() };
-            table.add_row(at == 0, difference_row(measure, less, heading, kind_of(version, &less.condition)));
+            table.add_row(
+                at == 0,
+                difference_row(measure, difference, heading, kind_of(version, &difference.condition)),
+            );
         }
     }
     Some(table)
 }
 
+/// The kind of a condition, by its name.
 fn kind_of(version: &ResultVersion, condition: &str) -> ConditionKind {
     version.rows.iter().find(|row| row.condition == condition).map_or(ConditionKind::Run, |row| row.kind)
 }
 
+/// The cells of one figure of a condition minus the first one.
 fn difference_row(
     measure: &StudyMeasure,
-    less: &ConditionDifference,
+    difference: &ConditionDifference,
     heading: String,
     kind: ConditionKind,
 ) -> [String; 5] {
-    let figure = less.figures.get(measure.name);
+    let figure = difference.figures.get(measure.name);
     let nothing = || NO_FIGURE.to_owned();
     [
         heading,
-        condition_title(&less.condition, kind),
+        condition_title(&difference.condition, kind),
         figure.map_or_else(nothing, |figure| number_format::format_value(measure, figure.value)),
         figure.map_or_else(nothing, |figure| number_format::format_interval(measure, figure.interval.as_ref())),
         figure.map_or_else(nothing, |figure| number_format::method_name(figure.method).to_owned()),
@@ -130,6 +135,7 @@ fn difference_row(
 
 /// The shares that arXiv 2403.11487 reports for its 30 people, as counts. Its 16.5 % is not a share of 30; the nearest is 5 of 30.
 const THE_PAPER: [f64; 4] = [13.0, 25.0, 5.0, 22.0];
+/// How many people answered in that paper, each about one item.
 const OF_PEOPLE: f64 = 30.0;
 
 /// The four questions evaluated as the paper does it, with the paper's own figures in the last row. `None` unless the mode is rating.
@@ -154,7 +160,7 @@ pub(super) fn paper_table(results: &StudyReport, version: &ResultVersion) -> Opt
         });
         table.add_row(false, std::iter::once(condition_title(&row.condition, row.kind)).chain(figures));
     }
-    let told = measures.iter().zip(THE_PAPER).map(|(measure, count)| {
+    let paper_figures = measures.iter().zip(THE_PAPER).map(|(measure, count)| {
         let interval = wilson_interval(count, OF_PEOPLE, results.level);
         format!(
             "{} {}",
@@ -162,7 +168,7 @@ pub(super) fn paper_table(results: &StudyReport, version: &ResultVersion) -> Opt
             number_format::format_interval(measure, interval.as_ref())
         )
     });
-    table.add_row(true, std::iter::once("arXiv 2403.11487: 30 people, one item each".to_owned()).chain(told));
+    table.add_row(true, std::iter::once("arXiv 2403.11487: 30 people, one item each".to_owned()).chain(paper_figures));
     table.notes.push(
         "The wording and the scale of the paper's questions are lost, and it showed no text of people or of another path beside. So \
          the last row tells how far its own figures reach (Wilson's interval of 30 answers), not what to expect here."

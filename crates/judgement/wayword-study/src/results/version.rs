@@ -62,7 +62,7 @@ pub struct ConditionRow {
 pub struct ConditionDifference {
     /// The condition.
     pub condition: String,
-    /// The first one.
+    /// The first condition, which is subtracted.
     pub minus: String,
     /// The differences, by the name of the figure.
     pub figures: BTreeMap<&'static str, FigureDifference>,
@@ -84,19 +84,19 @@ impl ResultVersion {
     pub(super) fn new(
         data: &StudyData,
         answered: &[AnsweredItem<'_>],
-        whose: ParticipantFilter,
+        filter: ParticipantFilter,
         most_failed: usize,
     ) -> Self {
-        let taken: Vec<&AnsweredItem<'_>> =
-            answered.iter().filter(|one| whose.accepts_participant(one.participant, most_failed)).collect();
-        let given: Vec<TextJudgement<'_>> = taken.iter().flat_map(|one| one.text_judgements(data)).collect();
+        let counted: Vec<&AnsweredItem<'_>> =
+            answered.iter().filter(|one| filter.accepts_participant(one.participant, most_failed)).collect();
+        let judgements: Vec<TextJudgement<'_>> = counted.iter().flat_map(|one| one.text_judgements(data)).collect();
         let measures = StudyMeasure::for_mode(data.plan.mode);
         let scales = super::scales_for_mode(data.plan.mode);
         let rows =
-            (0..data.plan.conditions.len()).map(|at| condition_row(data, &given, at, measures, scales)).collect();
+            (0..data.plan.conditions.len()).map(|at| condition_row(data, &judgements, at, measures, scales)).collect();
         let is_pair = data.plan.mode == StudyTask::Pair;
         let others = if is_pair { 0..0 } else { 1..data.plan.conditions.len() };
-        let (name, rule) = match whose {
+        let (name, rule) = match filter {
             ParticipantFilter::Everybody => (
                 "everybody",
                 "All answers, also of those who did not finish or failed attention checks; none of those who were screened out.",
@@ -108,16 +108,17 @@ impl ResultVersion {
         Self {
             name,
             rule,
-            persons: taken.iter().map(|one| one.person).collect::<BTreeSet<_>>().len(),
-            answers: taken.len(),
+            persons: counted.iter().map(|one| one.person).collect::<BTreeSet<_>>().len(),
+            answers: counted.len(),
             rows,
-            differences: others.map(|at| condition_difference(data, &given, at, measures)).collect(),
-            agreement: question_agreements(data, &taken, scales),
-            pairs: is_pair.then(|| PairResults::new(data, &taken)),
+            differences: others.map(|at| condition_difference(data, &judgements, at, measures)).collect(),
+            agreement: question_agreements(data, &counted, scales),
+            pairs: is_pair.then(|| PairResults::new(data, &counted)),
         }
     }
 }
 
+/// The figures of the condition with index `at` in the plan.
 fn condition_row(
     data: &StudyData,
     given: &[TextJudgement<'_>],
@@ -156,14 +157,15 @@ fn condition_row(
     }
 }
 
+/// The figures of the condition with index `at`, minus those of the first one.
 fn condition_difference(
     data: &StudyData,
     given: &[TextJudgement<'_>],
     at: usize,
     measures: &[StudyMeasure],
 ) -> ConditionDifference {
-    let of = |at: usize| given.iter().filter(move |one| one.condition == at).collect::<Vec<_>>();
-    let (this, first) = (of(at), of(0));
+    let judgements_of = |at: usize| given.iter().filter(move |one| one.condition == at).collect::<Vec<_>>();
+    let (this, first) = (judgements_of(at), judgements_of(0));
     let difference = |measure: &StudyMeasure| {
         let (this, first) = (measure_values(&this, measure), measure_values(&first, measure));
         let difference = match measure.kind {
@@ -225,7 +227,7 @@ fn question_agreements(
             alpha: alpha(&values, wayword_metrics::AnswerScale::Nominal),
         }];
     }
-    let of = |(number, scale): (usize, &'static RatingScale)| {
+    let agreement_on = |(number, scale): (usize, &'static RatingScale)| {
         let value = |one: &&AnsweredItem<'_>| {
             let value = f64::from(*one.chosen_levels().get(number)?);
             Some(StudyAnswer { person: one.person, item: one.item.id, value })
@@ -233,7 +235,7 @@ fn question_agreements(
         let values: Vec<StudyAnswer<usize, u32>> = taken.iter().filter_map(value).collect();
         QuestionAgreement { name: scale.name, alpha: alpha(&values, wayword_metrics::AnswerScale::Ordinal) }
     };
-    scales.iter().enumerate().map(of).collect()
+    scales.iter().enumerate().map(agreement_on).collect()
 }
 
 /// A choice as a number that does not depend on the sides: the item's first text, its second, a tie, both bad.

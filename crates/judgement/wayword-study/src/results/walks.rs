@@ -40,14 +40,15 @@ impl<'a> WalkScorer<'a> {
         self.data.routes.get(route as usize).ok_or_else(|| format!("the study has no route {route}"))
     }
 
+    /// The distances between the viewpoints of a scene. They are computed at the first call.
     fn scene_distances(&mut self, scene: &'a SceneId) -> Result<&SceneDistances, String> {
         let data = self.data;
-        let made = self.scenes.entry(scene).or_insert_with(|| {
+        let distances = self.scenes.entry(scene).or_insert_with(|| {
             let ground = data.scenes.iter().find(|other| other.scene == *scene);
             let graph = ground.ok_or("the study has no such scene")?.to_graph().map_err(|error| error.to_string())?;
             Ok(SceneDistances::new(&graph))
         });
-        made.as_ref().map_err(Clone::clone)
+        distances.as_ref().map_err(Clone::clone)
     }
 }
 

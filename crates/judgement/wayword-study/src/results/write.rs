@@ -43,11 +43,11 @@ impl StudyReport {
 /// Writes a file under a temporary name and renames it, so that a crash leaves either the old file or the complete new one.
 fn write_file(folder: &Path, name: &str, text: &str) -> Result<PathBuf, StudyError> {
     let place = folder.join(name);
-    let beside = folder.join(format!(".{name}.part"));
-    let written = fs::File::create(&beside).and_then(|mut file| {
+    let temporary = folder.join(format!(".{name}.part"));
+    let written = fs::File::create(&temporary).and_then(|mut file| {
         file.write_all(text.as_bytes())?;
         file.sync_all()?;
-        fs::rename(&beside, &place)
+        fs::rename(&temporary, &place)
     });
     written.map_err(StudyError::io_error(&place, "write"))?;
     Ok(place)

@@ -15,9 +15,9 @@ pub(super) struct StudyCookies {
 }
 
 impl StudyCookies {
-    fn cookie_name(self, what: &'static str) -> String {
+    fn cookie_name(self, base_name: &'static str) -> String {
         // A browser takes a `__Host-` cookie only from the host itself, over TLS.
-        if self.is_secure { format!("__Host-{what}") } else { what.to_owned() }
+        if self.is_secure { format!("__Host-{base_name}") } else { base_name.to_owned() }
     }
 
     /// The session's token.
@@ -31,7 +31,7 @@ impl StudyCookies {
         serde_json::from_slice(&bytes).ok()
     }
 
-    /// Sets the session's token. It outlives the browser, so that a participant can go on tomorrow.
+    /// Sets the session's token for 7 days. It outlives the browser, so that a participant can go on tomorrow.
     pub(super) fn set_session(self, token: &str) -> Option<HeaderValue> {
         self.cookie_header("session", token, "; Max-Age=604800")
     }
@@ -52,19 +52,20 @@ impl StudyCookies {
         self.cookie_header("session", "", "; Max-Age=0")
     }
 
-    fn cookie_header(self, what: &'static str, value: &str, age: &str) -> Option<HeaderValue> {
+    fn cookie_header(self, base_name: &'static str, value: &str, age: &str) -> Option<HeaderValue> {
         let secure = if self.is_secure { "; Secure" } else { "" };
         // Lax, not Strict: a recruiter's link comes from another site, and must find the session.
-        let text = format!("{}={value}; Path=/; HttpOnly; SameSite=Lax{secure}{age}", self.cookie_name(what));
+        let text = format!("{}={value}; Path=/; HttpOnly; SameSite=Lax{secure}{age}", self.cookie_name(base_name));
         HeaderValue::from_str(&text).ok()
     }
 }
 
+/// The value of a cookie, unless it is empty or too long. A request may have several cookie lines with several pairs each.
 fn cookie_value(headers: &HeaderMap, name: &str) -> Option<String> {
-    let all = headers.get_all(header::COOKIE).iter().filter_map(|line| line.to_str().ok());
-    let pairs = all.flat_map(|line| line.split(';')).filter_map(|pair| pair.trim().split_once('='));
-    let mut found = pairs.filter(|(key, _)| *key == name).map(|(_, value)| value);
-    found.next().filter(|value| !value.is_empty() && value.len() <= MAX_COOKIE_BYTES).map(str::to_owned)
+    let lines = headers.get_all(header::COOKIE).iter().filter_map(|line| line.to_str().ok());
+    let pairs = lines.flat_map(|line| line.split(';')).filter_map(|pair| pair.trim().split_once('='));
+    let mut values = pairs.filter(|(key, _)| *key == name).map(|(_, value)| value);
+    values.next().filter(|value| !value.is_empty() && value.len() <= MAX_COOKIE_BYTES).map(str::to_owned)
 }
 
 #[cfg(test)]

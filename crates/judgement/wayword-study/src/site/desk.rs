@@ -1,4 +1,4 @@
-//! The one thread that writes to the store for all requests.
+//! The desk: the one thread that writes to the store for all requests.
 //!
 //! Each transaction waits for the disk, which takes milliseconds. So the thread puts all requests that wait at the same time into one
 //! transaction (a group commit), and answers each of them only when the transaction is on disk.
@@ -15,7 +15,7 @@ use tokio::sync::oneshot;
 
 /// Most requests in one transaction.
 const MAX_BATCH_REQUESTS: usize = 64;
-/// Most requests in the queue.
+/// Most requests in the queue. A further one fails with [`DeskBusyError`].
 const MAX_WAITING_REQUESTS: usize = 1024;
 
 /// The store cannot take the request now: trying again is safe.
@@ -24,10 +24,12 @@ pub(crate) struct DeskBusyError;
 
 /// Sends the reply to the request. The argument is true if the transaction is on disk.
 type ReplyDelivery = Box<dyn FnOnce(bool) + Send>;
+/// The database work of one request. It returns whether its changes are kept, and how its reply is sent.
 type DeskJob = Box<dyn FnOnce(&StudyTransaction<'_>) -> (bool, ReplyDelivery) + Send>;
 
 /// A message to the thread.
 enum DeskTask {
+    /// Do the work of a request.
     Ask(DeskJob),
     /// Empty the log after a deletion.
     Sweep,
@@ -52,8 +54,8 @@ impl StudyDesk {
             .spawn(move || {
                 while let Ok(first) = waiting.recv() {
                     let (mut batch, mut is_sweep) = (Vec::new(), false);
-                    for one in std::iter::once(first).chain(waiting.try_iter().take(MAX_BATCH_REQUESTS - 1)) {
-                        match one {
+                    for task in std::iter::once(first).chain(waiting.try_iter().take(MAX_BATCH_REQUESTS - 1)) {
+                        match task {
                             DeskTask::Ask(job) => batch.push(job),
                             DeskTask::Sweep => is_sweep = true,
                         }
@@ -74,14 +76,14 @@ impl StudyDesk {
         let _ = self.jobs.try_send(DeskTask::Sweep);
     }
 
-    /// Runs `work` in a transaction, and returns its result when that is on disk. After `Err(Busy)` nothing was written.
+    /// Runs `work` in a transaction, and returns its result when that is on disk. After an error nothing was written.
     pub(crate) async fn ask_store<T: Send + 'static>(
         &self,
         work: impl FnOnce(&StudyTransaction<'_>) -> Result<T, StudyError> + Send + 'static,
     ) -> Result<T, DeskBusyError> {
         let (reply, answer) = oneshot::channel();
-        let job: DeskJob = Box::new(move |book| {
-            let done = work(book);
+        let job: DeskJob = Box::new(move |transaction| {
+            let done = work(transaction);
             let is_good = done.is_ok();
             let deliver: ReplyDelivery = Box::new(move |is_kept| {
                 // The request may have been given up, and then needs no reply.
@@ -94,14 +96,15 @@ impl StudyDesk {
     }
 }
 
+/// Does the work of all jobs in one transaction, and sends the replies when it is on disk.
 fn run_batch(store: &mut StudyStore, study: &Study, batch: Vec<DeskJob>) {
     let mut replies: Vec<(bool, ReplyDelivery)> = Vec::new();
-    let kept = store.write_batch(study, batch.into_iter(), |job, book| {
-        let (is_good, deliver) = job(book);
+    let committed = store.write_batch(study, batch.into_iter(), |job, transaction| {
+        let (is_good, deliver) = job(transaction);
         replies.push((is_good, deliver));
         is_good
     });
     for (is_good, deliver) in replies {
-        deliver(kept.is_ok() && is_good);
+        deliver(committed.is_ok() && is_good);
     }
 }

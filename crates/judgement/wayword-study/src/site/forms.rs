@@ -14,9 +14,9 @@ pub(super) type FormFields = BTreeMap<String, String>;
 /// # Errors
 /// A message for the participant that names the missing part.
 pub(super) fn read_comprehension(fields: &FormFields, questions: usize) -> Result<ParticipantInput, &'static str> {
-    let all = (0..questions).map(|at| number_field(fields, &format!("q{at}"))).collect::<Option<Vec<usize>>>();
+    let choices = (0..questions).map(|at| number_field(fields, &format!("q{at}"))).collect::<Option<Vec<usize>>>();
     let attempt = number_field(fields, "try").unwrap_or(0);
-    Ok(ParticipantInput::Understood { attempt, answers: all.ok_or("Please answer every question.")? })
+    Ok(ParticipantInput::Understood { attempt, answers: choices.ok_or("Please answer every question.")? })
 }
 
 pub(super) fn own_text(fields: &FormFields) -> Result<ParticipantInput, &'static str> {
@@ -83,6 +83,7 @@ fn slot_field(fields: &FormFields) -> Result<String, &'static str> {
     fields.get("slot").cloned().ok_or("This page is old. Please load it again.")
 }
 
+/// Reads levels from 1 to 5 from the fields `s0`, `s1` and so on, where `s` is `letter`. `None` if one is missing or wrong.
 fn level_fields<const N: usize>(fields: &FormFields, letter: char) -> Option<[u8; N]> {
     let mut levels = [0; N];
     for (at, level) in levels.iter_mut().enumerate() {

@@ -27,9 +27,9 @@ use tokio::{
 use tokio_rustls::TlsAcceptor;
 use tower_service::Service as _;
 
-/// Most connections at once. More wait for one to end.
+/// Most connections at once. A further one is closed, so that none waits without limit.
 const MAX_CONNECTIONS: usize = 1024;
-/// Most picture files that are read at once.
+/// Most picture files that are read at once. Further requests for pictures wait.
 const MAX_PICTURE_READS: usize = 64;
 /// How long a TLS handshake or the head of a request may take.
 const HEAD_TIMEOUT: Duration = Duration::from_secs(10);
@@ -39,7 +39,7 @@ const CONNECTION_LIFETIME: Duration = Duration::from_secs(300);
 const SHUTDOWN_GRACE: Duration = Duration::from_secs(5);
 /// How often the caller is asked whether to stop.
 const STOP_POLL_INTERVAL: Duration = Duration::from_millis(100);
-/// Largest head of a request, bytes.
+/// Largest head of a request, bytes. A connection with a larger one is closed.
 const MOST_HEAD: usize = 16 * 1024;
 
 /// How the site can be reached.
@@ -132,6 +132,7 @@ pub fn serve_study(
     served
 }
 
+/// Refuses addresses and settings with which answers could be read along, or participants would lack a contact or a code.
 fn check_listen_options(study: &Study, listen: &ListenOptions) -> Result<(), StudyError> {
     let is_loopback = listen.address.ip().is_loopback();
     if !is_loopback && listen.security == SiteSecurity::Loopback {
@@ -169,18 +170,20 @@ fn reachable_host(listen: IpAddr) -> IpAddr {
     }
     // Connecting a UDP socket sends no packet; it only makes the system choose which of its own addresses it would send from. The
     // target is an address reserved for documentation (RFC 5737).
-    let own = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))
+    let local = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))
         .and_then(|socket| socket.connect(("192.0.2.1", 9)).and_then(|()| socket.local_addr()));
-    own.map_or(IpAddr::V4(Ipv4Addr::LOCALHOST), |own| own.ip())
+    local.map_or(IpAddr::V4(Ipv4Addr::LOCALHOST), |local| local.ip())
 }
 
+/// Serves each new connection in a task, until `should_stop` returns true. Then it asks all connections to end, and waits for them.
 async fn accept_connections(
     listener: TcpListener,
     acceptor: Option<TlsAcceptor>,
     router: Router,
     should_stop: impl Fn() -> bool,
 ) {
-    let places = Arc::new(Semaphore::new(MAX_CONNECTIONS));
+    let free_connections = Arc::new(Semaphore::new(MAX_CONNECTIONS));
+    // Each connection holds a receiver, so the channel closes when the last connection has ended.
     let (end, ending) = watch::channel(());
     let mut poll = time::interval(STOP_POLL_INTERVAL);
     loop {
@@ -200,14 +203,14 @@ async fn accept_connections(
                 }
             },
         };
-        let Ok(place) = Arc::clone(&places).try_acquire_owned() else {
-            // No place: the connection is dropped, so that none waits without limit.
+        let Ok(permit) = Arc::clone(&free_connections).try_acquire_owned() else {
+            // No permit: the connection is dropped, so that none waits without limit.
             continue;
         };
         let (acceptor, router, ending) = (acceptor.clone(), router.clone(), ending.clone());
         tokio::spawn(async move {
             handle_connection(stream, acceptor, router, ending).await;
-            drop(place);
+            drop(permit);
         });
     }
     drop(ending);
@@ -215,6 +218,7 @@ async fn accept_connections(
     let _ = time::timeout(SHUTDOWN_GRACE, end.closed()).await;
 }
 
+/// Serves one connection, after a TLS handshake if there is an acceptor.
 async fn handle_connection(
     stream: TcpStream,
     acceptor: Option<TlsAcceptor>,

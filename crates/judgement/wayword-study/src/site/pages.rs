@@ -13,6 +13,7 @@ use crate::{
 use minijinja::{Environment, Value, context};
 use wayword_core::{Heading, ViewpointId, doubt::split_at_doubts, hex_text};
 
+/// The templates by their names. They are part of the program.
 const TEMPLATES: [(&str, &str); 13] = [
     ("base.html", include_str!("pages/base.html")),
     ("parts.html", include_str!("pages/parts.html")),
@@ -95,28 +96,35 @@ fn template_error(error: &minijinja::Error) -> StudyError {
 }
 
 impl StudyPage {
-    fn new(study: &Study, name: &'static str, around: &PageContext, can_withdraw: bool, own: Value) -> Self {
+    /// A page with the template `name`. `page_values` are for this page alone; those that all pages have are added.
+    fn new(
+        study: &Study,
+        name: &'static str,
+        page_context: &PageContext,
+        can_withdraw: bool,
+        page_values: Value,
+    ) -> Self {
         let settings = &study.settings;
         let shared = context! {
             page => name,
             study => context! {
                 title => settings.title, contact => settings.contact, retention => settings.retention, minutes => settings.minutes,
             },
-            who => around.who,
-            error => around.error,
-            given => around.given,
+            who => page_context.who,
+            error => page_context.error,
+            given => page_context.given,
             text_lang => Some(&settings.text_language).filter(|tag| !tag.is_empty()),
             can_withdraw,
         };
-        Self { name, values: context! { ..own, ..shared } }
+        Self { name, values: context! { ..page_values, ..shared } }
     }
 
     /// The page on which people consent.
-    pub(super) fn consent_page(study: &Study, around: &PageContext) -> Self {
+    pub(super) fn consent_page(study: &Study, page_context: &PageContext) -> Self {
         let own = context! {
             paragraphs => study.settings.about, agreement => study.settings.agreement, version => consent_version(study),
         };
-        Self::new(study, "consent", around, false, own)
+        Self::new(study, "consent", page_context, false, own)
     }
 
     /// A page with a message only.
@@ -125,8 +133,8 @@ impl StudyPage {
     }
 
     /// The page that asks a participant who wants to stop what shall happen to the answers.
-    pub(super) fn withdraw_page(study: &Study, around: &PageContext) -> Self {
-        Self::new(study, "withdraw", around, false, Value::UNDEFINED)
+    pub(super) fn withdraw_page(study: &Study, page_context: &PageContext) -> Self {
+        Self::new(study, "withdraw", page_context, false, Value::UNDEFINED)
     }
 
     /// The last page for visitors who did not consent, and for participants after their answers were deleted.
@@ -136,37 +144,56 @@ impl StudyPage {
         Self::end_page(study, &PageContext::default(), outcome, code, 0, false)
     }
 
-    fn end_page(study: &Study, around: &PageContext, outcome: &str, code: &str, answers: u32, kept: bool) -> Self {
+    /// The last page. `code` is for the recruiter, and `kept` is whether the answers are kept.
+    fn end_page(
+        study: &Study,
+        page_context: &PageContext,
+        outcome: &str,
+        code: &str,
+        answers: u32,
+        kept: bool,
+    ) -> Self {
         let code = Some(code).filter(|code| !code.is_empty());
         let url = Some(&study.settings.codes.return_url).filter(|url| !url.is_empty());
         let encoded =
             |code| percent_encoding::utf8_percent_encode(code, percent_encoding::NON_ALPHANUMERIC).to_string();
         let return_url = code.zip(url).map(|(code, url)| url.replace("{code}", &encoded(code)));
-        Self::new(study, "done", around, around.who.is_some(), context! { outcome, code, return_url, answers, kept })
+        Self::new(
+            study,
+            "done",
+            page_context,
+            page_context.who.is_some(),
+            context! { outcome, code, return_url, answers, kept },
+        )
     }
 
-    fn outcome_page(study: &Study, around: &PageContext, outcome: ParticipationOutcome) -> Self {
+    /// The last page for a participation that has ended.
+    fn outcome_page(study: &Study, page_context: &PageContext, outcome: ParticipationOutcome) -> Self {
         let codes = &study.settings.codes;
         let (name, code) = match outcome.status {
             ParticipantStatus::ScreenedOut => ("screened_out", &codes.screened_out),
             ParticipantStatus::AttentionFailed => ("attention_failed", &codes.attention_failed),
             ParticipantStatus::Withdrawn => {
-                return Self::end_page(study, around, "withdrawn", "", outcome.answers, true);
+                return Self::end_page(study, page_context, "withdrawn", "", outcome.answers, true);
             }
             ParticipantStatus::Started | ParticipantStatus::Complete => ("done", &codes.done),
         };
-        Self::end_page(study, around, name, code, outcome.answers, true)
+        Self::end_page(study, page_context, name, code, outcome.answers, true)
     }
 
     /// The page for the stage that a participant has reached.
-    pub(super) fn of_stage(book: &StudyTransaction<'_>, person: i64, around: &PageContext) -> Result<Self, StudyError> {
-        let study = book.study();
-        let stage = book.current_stage(person)?;
-        let done = book.answer_progress(person)?;
-        let under = |name, own| Self::new(study, name, around, true, own);
+    pub(super) fn of_stage(
+        transaction: &StudyTransaction<'_>,
+        person: i64,
+        page_context: &PageContext,
+    ) -> Result<Self, StudyError> {
+        let study = transaction.study();
+        let stage = transaction.current_stage(person)?;
+        let progress = transaction.answer_progress(person)?;
+        let stage_page = |name, values| Self::new(study, name, page_context, true, values);
         Ok(match stage {
-            ParticipantStage::Over(outcome) => Self::outcome_page(study, around, outcome),
-            ParticipantStage::Understood { attempt } => under(
+            ParticipantStage::Over(outcome) => Self::outcome_page(study, page_context, outcome),
+            ParticipantStage::Understood { attempt } => stage_page(
                 "understood",
                 context! {
                     try => attempt, wrong => attempt > 0, intro => task_steps(study),
@@ -177,9 +204,12 @@ impl StudyPage {
             ParticipantStage::Attention { number, level } => {
                 let asked = AGREEMENT_LEVELS[usize::from(level.clamp(1, 5)) - 1];
                 let text = format!("This is an attention check. Please choose \u{201c}{asked}\u{201d}.");
-                under("attention", context! { number, text, levels => AGREEMENT_LEVELS, ..progress_context(done) })
+                stage_page(
+                    "attention",
+                    context! { number, text, levels => AGREEMENT_LEVELS, ..progress_context(progress) },
+                )
             }
-            ParticipantStage::Item(held) => match Self::of_item(book, &held, around, done) {
+            ParticipantStage::Item(held) => match Self::of_item(transaction, &held, page_context, progress) {
                 Some(page) => page,
                 None => Self::message_page(
                     study,
@@ -191,19 +221,20 @@ impl StudyPage {
         })
     }
 
+    /// The page of an item; `None` if the study lacks the item, its route or its scene.
     fn of_item(
-        book: &StudyTransaction<'_>,
+        transaction: &StudyTransaction<'_>,
         held: &StoredSlot,
-        around: &PageContext,
-        done: AnswerProgress,
+        page_context: &PageContext,
+        progress: AnswerProgress,
     ) -> Option<Self> {
-        let study = book.study();
-        let (item, route, scene) = book.slot_contents(held)?;
+        let study = transaction.study();
+        let (item, route, scene) = transaction.slot_contents(held)?;
         let film = || {
             let alt: Vec<&str> = route.film.iter().map(|picture| picture.alt.as_str()).collect();
             context! { frames => alt.len(), alt }
         };
-        let text = item.texts.first().map(|told| &told.text);
+        let text = item.texts.first().map(|first| &first.text);
         let (name, own) = match study.plan.mode {
             StudyTask::Rate if study.settings.write_first && held.own_text.is_none() => {
                 ("watch", context! { film => film(), examples => study.settings.examples })
@@ -215,7 +246,7 @@ impl StudyPage {
                 },
             ),
             StudyTask::Pair => {
-                let other = item.texts.get(1).map(|told| &told.text);
+                let other = item.texts.get(1).map(|second| &second.text);
                 let (a, b) = if held.is_turned { (other, text) } else { (text, other) };
                 ("pair", context! { film => film(), a, b })
             }
@@ -223,24 +254,24 @@ impl StudyPage {
                 ("follow_after", context! { text, statements => FOLLOW_STATEMENTS })
             }
             StudyTask::Follow => {
-                let told = item.texts.first()?;
-                ("follow", context! { ..marked_runs(told), ..walker_context(held, route, scene?)? })
+                let marked_text = item.texts.first()?;
+                ("follow", context! { ..marked_runs(marked_text), ..walker_context(held, route, scene?)? })
             }
         };
         let own = context! { slot => held.slot, is_practice => held.is_practice, ..own };
         let shown = if held.is_practice {
             own
         } else {
-            context! { ..own, ..progress_context(done) }
+            context! { ..own, ..progress_context(progress) }
         };
-        Some(Self::new(study, name, around, true, shown))
+        Some(Self::new(study, name, page_context, true, shown))
     }
 }
 
 /// Splits a text into runs of words. A marked run has its number, grade and alternatives.
-fn marked_runs(told: &StudyText) -> Value {
+fn marked_runs(study_text: &StudyText) -> Value {
     let mut number = 0;
-    let runs = split_at_doubts(&told.text, &told.marks, |mark| mark.span).into_iter();
+    let runs = split_at_doubts(&study_text.text, &study_text.marks, |mark| mark.span).into_iter();
     let run = |(words, mark): (&str, Option<&crate::study::TextMark>)| {
         number += usize::from(mark.is_some());
         let mark = mark.map(|mark| {
@@ -280,9 +311,10 @@ fn walker_place<'a>(
     Some((here, Heading::towards(from.eye_position(), to.eye_position()).unwrap_or(route.start_heading)))
 }
 
-fn progress_context(done: AnswerProgress) -> Value {
-    let is_half = done.expected >= 4 && done.answered == done.expected / 2;
-    context! { where => context! { done => done.answered, of => done.expected }, break_offered => is_half }
+/// How many items are answered, and whether the page offers a break: halfway, if there are at least 4 items.
+fn progress_context(progress: AnswerProgress) -> Value {
+    let is_half = progress.expected >= 4 && progress.answered == progress.expected / 2;
+    context! { where => context! { done => progress.answered, of => progress.expected }, break_offered => is_half }
 }
 
 /// The steps of the task, for the page before the first item.
@@ -323,8 +355,8 @@ fn task_steps(study: &Study) -> Vec<&'static str> {
 }
 
 /// The message page for an arrival that may not take part.
-pub(super) fn refusal_page(study: &Study, entry: &ArrivalOutcome) -> StudyPage {
-    let (heading, text, retry) = match entry {
+pub(super) fn refusal_page(study: &Study, outcome: &ArrivalOutcome) -> StudyPage {
+    let (heading, text, retry) = match outcome {
         ArrivalOutcome::Twice => (
             "You have taken part already",
             "Please open the link with which you started. If that does not help, ask us.",

@@ -13,7 +13,8 @@ const OF_PERSON: RequestPace = RequestPace { at_once: 120.0, each_second: 20.0 }
 const OF_PICTURES: RequestPace = RequestPace { at_once: 600.0, each_second: 60.0 };
 /// Limit for the requests of all visitors without a session together.
 const OF_STRANGERS: RequestPace = RequestPace { at_once: 600.0, each_second: 100.0 };
-/// Most entries in the limiter's tables, so that its memory is bounded.
+/// Most entries in each table of the limiter, so that its memory is bounded. Beyond it, full buckets and all known sessions are
+/// forgotten; both come back with the next request.
 const MAX_REMEMBERED_PARTICIPANTS: usize = 20_000;
 
 /// Content security policy: a page loads nothing from other sites, runs no inline script, and cannot be embedded in another page.
@@ -45,13 +46,13 @@ pub(super) fn response_headers(is_secure: bool) -> Vec<(HeaderName, HeaderValue)
 
 /// Whether a form comes from a page of this site. Scripts on other sites cannot forge these headers, because the browser sets them.
 pub(super) fn is_own(headers: &HeaderMap, public: Option<&str>, scheme: &str) -> bool {
-    let text = |name: HeaderName| headers.get(name).and_then(|value| value.to_str().ok());
-    match (text(header::ORIGIN), text(header::HOST)) {
+    let header_text = |name: HeaderName| headers.get(name).and_then(|value| value.to_str().ok());
+    match (header_text(header::ORIGIN), header_text(header::HOST)) {
         (Some(origin), host) => {
             public.is_some_and(|public| origin == public)
                 || host.is_some_and(|host| origin == format!("{scheme}://{host}"))
         }
-        (None, _) => text(HeaderName::from_static("sec-fetch-site")) == Some("same-origin"),
+        (None, _) => header_text(HeaderName::from_static("sec-fetch-site")) == Some("same-origin"),
     }
 }
 
@@ -92,14 +93,18 @@ struct RequestPace {
 /// the bucket refills at a constant rate. It goes by participant and not by network address, which a whole university may share.
 #[derive(Debug)]
 pub(super) struct RequestLimiter {
+    /// The time from which the times of the buckets count.
     began: Instant,
     buckets: Mutex<HashMap<RequestSource, RequestBucket>>,
+    /// Tokens of sessions that were valid before.
     known: Mutex<HashSet<String>>,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct RequestBucket {
+    /// Tokens in the bucket.
     left: f64,
+    /// When it was last refilled, seconds after the limiter began.
     at_s: f64,
 }
 
@@ -127,11 +132,12 @@ impl RequestLimiter {
         self.allows_at(asker, self.began.elapsed().as_secs_f64())
     }
 
+    /// Whether a request is allowed at a time, in seconds after the limiter began.
     fn allows_at(&self, asker: RequestSource, now_s: f64) -> bool {
         let rate = asker.allowed_rate();
         let mut buckets = self.buckets.lock().unwrap_or_else(PoisonError::into_inner);
         if buckets.len() >= MAX_REMEMBERED_PARTICIPANTS {
-            // A bucket that has had the time to fill up again need not be remembered.
+            // A bucket that has had the time to fill up again need not be remembered. Those for pictures take longest.
             let full_after_s = OF_PICTURES.at_once / OF_PICTURES.each_second;
             buckets.retain(|_, bucket| now_s - bucket.at_s < full_after_s);
         }

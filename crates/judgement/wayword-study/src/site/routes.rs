@@ -27,13 +27,13 @@ use axum::{
 use std::{collections::BTreeMap, sync::Arc, time::Duration};
 use tokio::sync::Semaphore;
 
-/// Longest body of a form, bytes.
+/// Longest body of a form, bytes. A longer one gets an error page.
 const MOST_BYTES: usize = 16 * 1024;
 /// How long a request may take, including its body.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(15);
 /// The assignment id that MTurk sends while a worker only previews a task.
 const MTURK_PREVIEW_ID: &str = "ASSIGNMENT_ID_NOT_AVAILABLE";
-/// Seconds after which to try again.
+/// Value of the header `Retry-After`: the seconds after which to try again.
 const RETRY_AFTER_SECONDS: HeaderValue = HeaderValue::from_static("1");
 
 /// Shared state of all requests.
@@ -102,17 +102,29 @@ async fn guard_request(State(site): SiteState, request: Request, next: Next) -> 
 /// Why a request gets an error page.
 #[derive(Debug, Clone, Copy)]
 enum RequestProblem {
+    /// Nothing is at this address.
     Missing,
+    /// The address does not take this HTTP method.
     Method,
+    /// A form came from another site.
     Foreign,
+    /// No participant belongs to the request.
     NoSession,
+    /// The rate limit was exceeded.
     Fast,
+    /// The store took too long, or its queue is full.
     Busy,
+    /// The form is too long.
     Large,
+    /// The form cannot be read.
     Form,
+    /// The form belongs to another stage or another participant.
     OutOfTurn,
+    /// The lease of the item ran out.
     Returned,
+    /// The study is closed.
     Closed,
+    /// A picture cannot be read.
     Fault,
 }
 
@@ -176,6 +188,7 @@ impl From<InputRefusal> for RequestProblem {
     }
 }
 
+/// A response with a page as HTML.
 fn page_response(site: &StudySite, status: StatusCode, page: &StudyPage) -> Response {
     let html = header::HeaderValue::from_static("text/html; charset=utf-8");
     match site.pages.render_html(page) {
@@ -203,9 +216,9 @@ fn response_or_problem_page(result: Result<Response, RequestProblem>, site: &Stu
 
 /// Finds the participant who asks, and applies the rate limit of participants or of strangers.
 async fn identify_requester(site: &StudySite, headers: &HeaderMap) -> Result<Option<(i64, String)>, RequestProblem> {
-    let found = session_person(site, headers).await?;
-    let asker = found.as_ref().map_or(RequestSource::Stranger, |(person, _)| RequestSource::Person(*person));
-    if site.pace.allows_request(asker) { Ok(found) } else { Err(RequestProblem::Fast) }
+    let requester = session_person(site, headers).await?;
+    let asker = requester.as_ref().map_or(RequestSource::Stranger, |(person, _)| RequestSource::Person(*person));
+    if site.pace.allows_request(asker) { Ok(requester) } else { Err(RequestProblem::Fast) }
 }
 
 /// The participant of a session and the person's mark. For a cookie that was never valid, the strangers' rate limit is applied before
@@ -218,7 +231,7 @@ async fn session_person(site: &StudySite, headers: &HeaderMap) -> Result<Option<
                 return Err(RequestProblem::Fast);
             }
             let asked = session.clone();
-            let found = site.desk.ask_store(move |book| book.person_by_session(&asked)).await?;
+            let found = site.desk.ask_store(move |transaction| transaction.person_by_session(&asked)).await?;
             if found.is_some() {
                 site.pace.remember_session(session);
             }
@@ -228,6 +241,7 @@ async fn session_person(site: &StudySite, headers: &HeaderMap) -> Result<Option<
     })
 }
 
+/// The participant who asks, with the values for the pages. A request without a session is an error.
 async fn require_person(site: &StudySite, headers: &HeaderMap) -> Result<(i64, PageContext), RequestProblem> {
     let (person, mark) = identify_requester(site, headers).await?.ok_or(RequestProblem::NoSession)?;
     Ok((person, PageContext { who: Some(mark), ..PageContext::default() }))
@@ -237,13 +251,13 @@ async fn require_person(site: &StudySite, headers: &HeaderMap) -> Result<(i64, P
 async fn show_current_page(State(site): SiteState, headers: HeaderMap) -> Response {
     let page = async {
         if let Some((person, mark)) = identify_requester(&site, &headers).await? {
-            let around = PageContext { who: Some(mark), ..PageContext::default() };
-            return stage_response(&site, person, around, StatusCode::OK).await;
+            let page_context = PageContext { who: Some(mark), ..PageContext::default() };
+            return stage_response(&site, person, page_context, StatusCode::OK).await;
         }
         let Some(arrival) = site.cookies.pending_arrival(&headers) else {
             return Ok(page_response(&site, StatusCode::OK, &refusal_page(&site.study, &ArrivalOutcome::Unknown)));
         };
-        match site.desk.ask_store(move |book| book.enter_study(&arrival)).await? {
+        match site.desk.ask_store(move |transaction| transaction.enter_study(&arrival)).await? {
             ArrivalOutcome::New => {
                 Ok(page_response(&site, StatusCode::OK, &StudyPage::consent_page(&site.study, &PageContext::default())))
             }
@@ -253,17 +267,18 @@ async fn show_current_page(State(site): SiteState, headers: HeaderMap) -> Respon
     response_or_problem_page(page.await, &site)
 }
 
+/// The page of the participant's stage. In a closed study only those who have finished get it.
 async fn stage_response(
     site: &StudySite,
     person: i64,
-    around: PageContext,
+    page_context: PageContext,
     status: StatusCode,
 ) -> Result<Response, RequestProblem> {
-    let page = move |book: &StudyTransaction<'_>| {
-        if book.is_closed()? && !book.is_over(person)? {
+    let page = move |transaction: &StudyTransaction<'_>| {
+        if transaction.is_closed()? && !transaction.is_over(person)? {
             return Ok(None);
         }
-        StudyPage::of_stage(book, person, &around).map(Some)
+        StudyPage::of_stage(transaction, person, &page_context).map(Some)
     };
     match site.desk.ask_store(page).await? {
         Some(page) => Ok(page_response(site, status, &page)),
@@ -288,12 +303,13 @@ fn arrival_response(site: &StudySite, entry: ArrivalOutcome) -> Response {
     }
 }
 
+/// Answers a visitor who opens a link: leads to the consent page or back into the study, or shows a message.
 async fn handle_arrival(site: &StudySite, arrival: ParticipantArrival) -> Result<Response, RequestProblem> {
     if !site.pace.allows_request(RequestSource::Stranger) {
         return Err(RequestProblem::Fast);
     }
     let asked = arrival.clone();
-    Ok(match site.desk.ask_store(move |book| book.enter_study(&asked)).await? {
+    Ok(match site.desk.ask_store(move |transaction| transaction.enter_study(&asked)).await? {
         // This ends the session of another person on the same machine. If the study is full, the page at `/` tries again.
         ArrivalOutcome::New | ArrivalOutcome::Full => {
             redirect_home([site.cookies.set_arrival(&arrival), site.cookies.drop_session()])
@@ -337,8 +353,8 @@ async fn read_form(request: Request) -> Result<(HeaderMap, FormFields), RequestP
 }
 
 /// Whether the form belongs to the session that sends it. On a shared machine, an old tab may belong to another participant.
-fn belongs_to_session(fields: &FormFields, around: &PageContext) -> bool {
-    fields.get("who").is_none_or(|who| around.who.as_ref() == Some(who))
+fn belongs_to_session(fields: &FormFields, page_context: &PageContext) -> bool {
+    fields.get("who").is_none_or(|who| page_context.who.as_ref() == Some(who))
 }
 
 async fn post_consent(State(site): SiteState, request: Request) -> Response {
@@ -362,7 +378,10 @@ async fn post_consent(State(site): SiteState, request: Request) -> Response {
             let page = StudyPage::consent_page(&site.study, &PageContext { error, ..PageContext::default() });
             return Ok(page_response(&site, StatusCode::UNPROCESSABLE_ENTITY, &page));
         }
-        Ok(arrival_response(&site, site.desk.ask_store(move |book| book.record_consent(&arrival, &version)).await?))
+        Ok(arrival_response(
+            &site,
+            site.desk.ask_store(move |transaction| transaction.record_consent(&arrival, &version)).await?,
+        ))
     };
     response_or_problem_page(done.await, &site)
 }
@@ -374,18 +393,18 @@ async fn post_input(
     read: impl FnOnce(&FormFields) -> Result<ParticipantInput, &'static str>,
 ) -> Result<Response, RequestProblem> {
     let (headers, fields) = read_form(request).await?;
-    let (person, around) = require_person(site, &headers).await?;
-    if !belongs_to_session(&fields, &around) {
+    let (person, page_context) = require_person(site, &headers).await?;
+    if !belongs_to_session(&fields, &page_context) {
         return Err(RequestProblem::OutOfTurn);
     }
     match read(&fields) {
-        Ok(given) => {
-            site.desk.ask_store(move |book| book.store_input(person, given)).await??;
+        Ok(input) => {
+            site.desk.ask_store(move |transaction| transaction.store_input(person, input)).await??;
             Ok(redirect_home([]))
         }
         Err(error) => {
-            let around = PageContext { error: Some(error), given: Some(fields), ..around };
-            stage_response(site, person, around, StatusCode::UNPROCESSABLE_ENTITY).await
+            let page_context = PageContext { error: Some(error), given: Some(fields), ..page_context };
+            stage_response(site, person, page_context, StatusCode::UNPROCESSABLE_ENTITY).await
         }
     }
 }
@@ -421,8 +440,8 @@ async fn post_attention(State(site): SiteState, request: Request) -> Response {
 
 async fn show_withdraw_page(State(site): SiteState, headers: HeaderMap) -> Response {
     let page = async {
-        let (_, around) = require_person(&site, &headers).await?;
-        Ok(page_response(&site, StatusCode::OK, &StudyPage::withdraw_page(&site.study, &around)))
+        let (_, page_context) = require_person(&site, &headers).await?;
+        Ok(page_response(&site, StatusCode::OK, &StudyPage::withdraw_page(&site.study, &page_context)))
     };
     response_or_problem_page(page.await, &site)
 }
@@ -431,19 +450,21 @@ async fn post_withdraw(State(site): SiteState, request: Request) -> Response {
     let done = async {
         let (headers, fields) = read_form(request).await?;
         let is_delete = fields.get("delete").map(String::as_str) == Some("yes");
-        let (person, around) = match require_person(&site, &headers).await {
+        let (person, page_context) = match require_person(&site, &headers).await {
             // The same request again: the first one was carried out, but its reply was lost.
             Err(RequestProblem::NoSession) if is_delete => {
                 return Ok(page_response(&site, StatusCode::OK, &StudyPage::gone_page(&site.study, true)));
             }
             found => found?,
         };
-        if !belongs_to_session(&fields, &around) {
+        if !belongs_to_session(&fields, &page_context) {
             return Err(RequestProblem::OutOfTurn);
         }
         match fields.get("delete").map(String::as_str) {
             Some("yes") => {
-                site.desk.ask_store(move |book| book.withdraw_person(person, WithdrawalChoice::Delete)).await?;
+                site.desk
+                    .ask_store(move |transaction| transaction.withdraw_person(person, WithdrawalChoice::Delete))
+                    .await?;
                 site.desk.request_sweep();
                 let mut response = page_response(&site, StatusCode::OK, &StudyPage::gone_page(&site.study, true));
                 if let Some(cookie) = site.cookies.drop_session() {
@@ -452,15 +473,18 @@ async fn post_withdraw(State(site): SiteState, request: Request) -> Response {
                 Ok(response)
             }
             Some("no") => {
-                site.desk.ask_store(move |book| book.withdraw_person(person, WithdrawalChoice::Keep)).await?;
+                site.desk
+                    .ask_store(move |transaction| transaction.withdraw_person(person, WithdrawalChoice::Keep))
+                    .await?;
                 Ok(redirect_home([]))
             }
             _ => {
-                let around = PageContext { error: Some("Please choose what happens to your answers."), ..around };
+                let page_context =
+                    PageContext { error: Some("Please choose what happens to your answers."), ..page_context };
                 Ok(page_response(
                     &site,
                     StatusCode::UNPROCESSABLE_ENTITY,
-                    &StudyPage::withdraw_page(&site.study, &around),
+                    &StudyPage::withdraw_page(&site.study, &page_context),
                 ))
             }
         }
@@ -470,17 +494,20 @@ async fn post_withdraw(State(site): SiteState, request: Request) -> Response {
 
 async fn serve_panorama(State(site): SiteState, path: SlotFile, headers: HeaderMap) -> Response {
     let Ok(Path((slot, file))) = path else { return RequestProblem::Missing.problem_page(&site) };
-    let find = move |book: &StudyTransaction<'_>, person, number| book.panorama_file(person, &slot, number);
+    let find =
+        move |transaction: &StudyTransaction<'_>, person, number| transaction.panorama_file(person, &slot, number);
     response_or_problem_page(picture_response(&site, &headers, &file, find).await, &site)
 }
 
 async fn serve_film_picture(State(site): SiteState, path: SlotFile, headers: HeaderMap) -> Response {
     let Ok(Path((slot, file))) = path else { return RequestProblem::Missing.problem_page(&site) };
-    let find = move |book: &StudyTransaction<'_>, person, number| book.film_picture(person, &slot, number);
+    let find =
+        move |transaction: &StudyTransaction<'_>, person, number| transaction.film_picture(person, &slot, number);
     response_or_problem_page(picture_response(&site, &headers, &file, find).await, &site)
 }
 
-/// Sends a picture of an item that this participant has. The file's name comes from the study, and never from the address.
+/// Sends a picture of an item that this participant has. `find` looks up the name of its file. It comes from the
+/// study, and never from the address.
 async fn picture_response(
     site: &StudySite,
     headers: &HeaderMap,
@@ -492,8 +519,12 @@ async fn picture_response(
     if !site.pace.allows_request(RequestSource::Pictures(person)) {
         return Err(RequestProblem::Fast);
     }
-    let name = site.desk.ask_store(move |book| find(book, person, number)).await?.ok_or(RequestProblem::Missing)?;
-    let _place = site.readers.acquire().await.map_err(|_| RequestProblem::Busy)?;
+    let name = site
+        .desk
+        .ask_store(move |transaction| find(transaction, person, number))
+        .await?
+        .ok_or(RequestProblem::Missing)?;
+    let _permit = site.readers.acquire().await.map_err(|_| RequestProblem::Busy)?;
     let path = site.study.pictures_folder().join(name);
     let bytes = tokio::task::spawn_blocking(move || std::fs::read(path)).await;
     let bytes = bytes.ok().and_then(Result::ok).ok_or(RequestProblem::Fault)?;

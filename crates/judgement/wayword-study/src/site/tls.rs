@@ -27,11 +27,11 @@ pub(super) fn of_files(certificate: &Path, key: &Path) -> Result<TlsAcceptor, St
     let chain: Vec<CertificateDer<'static>> = CertificateDer::pem_file_iter(certificate)
         .and_then(Iterator::collect)
         .map_err(|error| wrong(certificate, error.to_string()))?;
-    let private = PrivateKeyDer::from_pem_file(key).map_err(|error| wrong(key, error.to_string()))?;
+    let private_key = PrivateKeyDer::from_pem_file(key).map_err(|error| wrong(key, error.to_string()))?;
     let provider = Arc::new(tokio_rustls::rustls::crypto::ring::default_provider());
     let config = ServerConfig::builder_with_provider(provider)
         .with_safe_default_protocol_versions()
-        .and_then(|builder| builder.with_no_client_auth().with_single_cert(chain, private));
+        .and_then(|builder| builder.with_no_client_auth().with_single_cert(chain, private_key));
     let mut config = config.map_err(|error| wrong(certificate, error.to_string()))?;
     config.alpn_protocols = vec![b"http/1.1".to_vec()];
     Ok(TlsAcceptor::from(Arc::new(config)))
@@ -45,11 +45,11 @@ pub(super) fn self_signed(folder: &Path, address: IpAddr) -> Result<TlsAcceptor,
     let (certificate, key) = (folder.join(SELF_SIGNED_CERTIFICATE_FILE), folder.join(SELF_SIGNED_KEY_FILE));
     if !(certificate.is_file() && key.is_file()) {
         let names = vec!["localhost".to_owned(), "127.0.0.1".to_owned(), address.to_string()];
-        let made = rcgen::generate_simple_self_signed(names).map_err(|error| {
+        let generated = rcgen::generate_simple_self_signed(names).map_err(|error| {
             StudyError::refused_request(format!("no certificate can be made: {error}"), "give --tls CERT KEY")
         })?;
-        fs::write(&certificate, made.cert.pem()).map_err(StudyError::io_error(&certificate, "write"))?;
-        write_secret(&key, &made.signing_key.serialize_pem()).map_err(StudyError::io_error(&key, "write"))?;
+        fs::write(&certificate, generated.cert.pem()).map_err(StudyError::io_error(&certificate, "write"))?;
+        write_secret(&key, &generated.signing_key.serialize_pem()).map_err(StudyError::io_error(&key, "write"))?;
     }
     of_files(&certificate, &key)
 }

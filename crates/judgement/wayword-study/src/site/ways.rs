@@ -4,7 +4,7 @@ use crate::study::{StudyScene, StudyViewpoint};
 use serde::Serialize;
 use wayword_core::Heading;
 
-/// A way steeper than this counts as stairs, radians. A ramp is flatter.
+/// Slope, radians (20 degrees). A steeper way counts as stairs. A ramp is flatter.
 const STAIRS_RAD: f64 = 0.35;
 
 /// A way to a neighbouring viewpoint.

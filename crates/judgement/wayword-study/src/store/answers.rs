@@ -5,38 +5,38 @@ use super::{StudyTransaction, stage::StoredSlot};
 use crate::study::{PairChoice, ParticipantAnswer, ParticipantStatus, StudyError, StudyTask};
 use rusqlite::params;
 
-/// Most steps of a walk. Paths of the known datasets have fewer than 20.
+/// Most steps of a walk; a further one is refused. Paths of the known datasets have fewer than 20.
 pub(crate) const MOST_MOVES: usize = 200;
-/// Longest text that a participant may write, characters.
+/// Longest text that a participant may write, characters. The form refuses a longer one.
 pub(crate) const LONGEST_TEXT: usize = 1000;
-/// Upper bound on the number of turns that a page may report.
+/// Most turns that are stored for a walk. A page that reports more counts as this many.
 const MOST_LOOKS: u32 = 100_000;
 
 /// One input of a participant.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum ParticipantInput {
-    /// The answers to the questions about the task.
+    /// The answers to the questions about the task, as indices. `attempt` is the number of wrong tries before this one.
     Understood { attempt: u32, answers: Vec<usize> },
     /// A text that the participant wrote.
     OwnText { slot: String, text: String },
     /// A step to neighbour number `to` of the current place, after `seq` steps.
     Move { slot: String, seq: usize, to: usize },
-    /// The end of a walk.
+    /// The end of a walk, after `seq` steps and `looks` turns to look around.
     Stop { slot: String, seq: usize, looks: u32 },
-    /// The levels of the statements after a walk.
+    /// The levels of the statements after a walk, 1 to 5.
     Followed { slot: String, statements: [u8; 3] },
-    /// The levels of a text.
+    /// The levels of the questions about a text, 1 to 5.
     Rated { slot: String, ratings: [u8; 4] },
     /// Which text is better.
     Chosen { slot: String, choice: PairChoice },
-    /// An attention check.
+    /// The level that was chosen at an attention check. `number` counts the checks from 0.
     Attention { number: u32, choice: u8 },
 }
 
 /// Why an input is not stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum InputRefusal {
-    /// It does not belong to this person, or does not exist.
+    /// Its item does not belong to this person, or does not exist.
     Unknown,
     /// It comes before a step that must be done first, or after the end.
     OutOfTurn,
@@ -46,15 +46,16 @@ pub(crate) enum InputRefusal {
     Closed,
 }
 
+/// The outer error is the database's. The inner one means that the input was refused.
 type InputResult = Result<Result<(), InputRefusal>, StudyError>;
 
 impl StudyTransaction<'_> {
     /// Stores an input of a person, once.
-    pub(crate) fn store_input(&self, person: i64, given: ParticipantInput) -> InputResult {
+    pub(crate) fn store_input(&self, person: i64, input: ParticipantInput) -> InputResult {
         if self.is_closed()? {
             return Ok(Err(InputRefusal::Closed));
         }
-        match given {
+        match input {
             ParticipantInput::Understood { attempt, answers } => self.store_comprehension(person, attempt, &answers),
             ParticipantInput::Attention { number, choice } => self.store_attention(person, number, choice),
             ParticipantInput::OwnText { slot, text } => {
@@ -94,13 +95,15 @@ impl StudyTransaction<'_> {
         }
     }
 
+    /// Compares the answers about the task with the right ones. The second wrong try ends the participation.
     fn store_comprehension(&self, person: i64, attempt: u32, answers: &[usize]) -> InputResult {
         let find = "SELECT status = 'started' AND NOT understood, misunderstood FROM person WHERE id = ?1";
-        let (is_open, now): (bool, u32) = self.db.query_row(find, [person], |row| Ok((row.get(0)?, row.get(1)?)))?;
-        if !is_open || attempt < now {
+        let (is_open, wrong_tries): (bool, u32) =
+            self.db.query_row(find, [person], |row| Ok((row.get(0)?, row.get(1)?)))?;
+        if !is_open || attempt < wrong_tries {
             return Ok(Ok(()));
         }
-        if attempt > now {
+        if attempt > wrong_tries {
             return Ok(Err(InputRefusal::OutOfTurn));
         }
         let right = self.study.settings.questions.iter().map(|question| question.right);
@@ -109,7 +112,7 @@ impl StudyTransaction<'_> {
             return Ok(Ok(()));
         }
         self.db.execute("UPDATE person SET misunderstood = misunderstood + 1 WHERE id = ?1", [person])?;
-        if now + 1 >= 2 {
+        if wrong_tries + 1 >= 2 {
             self.end_participation(person, ParticipantStatus::ScreenedOut)?;
         }
         Ok(Ok(()))
@@ -126,8 +129,8 @@ impl StudyTransaction<'_> {
             return Ok(Err(InputRefusal::OutOfTurn));
         }
         let passed = choice == self.asked_level(person, number)?;
-        let kept = "INSERT INTO attention (person, number, passed, at_ms) VALUES (?1, ?2, ?3, ?4)";
-        self.db.execute(kept, params![person, number, passed, self.now_ms])?;
+        let insert = "INSERT INTO attention (person, number, passed, at_ms) VALUES (?1, ?2, ?3, ?4)";
+        self.db.execute(insert, params![person, number, passed, self.now_ms])?;
         self.end_if_done(person)?;
         Ok(Ok(()))
     }
@@ -140,6 +143,7 @@ impl StudyTransaction<'_> {
         Ok(Ok(()))
     }
 
+    /// Stores a step. Repeated steps are only acknowledged, and steps that come too early are refused.
     fn store_move(&self, held: &StoredSlot, seq: usize, to: usize) -> InputResult {
         if seq < held.moves.len() {
             return Ok(Ok(()));
@@ -153,8 +157,9 @@ impl StudyTransaction<'_> {
         let Some(there) = place.and_then(|place| place.neighbours.get(to)) else {
             return Ok(Err(InputRefusal::Unknown));
         };
-        let kept = "INSERT INTO move (slot, seq, viewpoint, at_ms) VALUES (?1, ?2, ?3, ?4)";
-        self.db.execute(kept, params![held.id, i64::try_from(seq).unwrap_or(i64::MAX), there.as_str(), self.now_ms])?;
+        let insert = "INSERT INTO move (slot, seq, viewpoint, at_ms) VALUES (?1, ?2, ?3, ?4)";
+        self.db
+            .execute(insert, params![held.id, i64::try_from(seq).unwrap_or(i64::MAX), there.as_str(), self.now_ms])?;
         Ok(Ok(()))
     }
 
@@ -167,26 +172,27 @@ impl StudyTransaction<'_> {
             if seq != held.moves.len() {
                 return Ok(Err(InputRefusal::OutOfTurn));
             }
-            let stopped = "UPDATE slot SET stopped_ms = ?2, looks = ?3 WHERE id = ?1";
-            self.db.execute(stopped, params![held.id, self.now_ms, looks.min(MOST_LOOKS)])?;
+            let update = "UPDATE slot SET stopped_ms = ?2, looks = ?3 WHERE id = ?1";
+            self.db.execute(update, params![held.id, self.now_ms, looks.min(MOST_LOOKS)])?;
         }
         Ok(Ok(()))
     }
 
+    /// Stores the answer to an item. It is refused if the study has another task than `task`, or if it `is_early`.
     fn store_answer(
         &self,
         person: i64,
         held: &StoredSlot,
-        of: StudyTask,
+        task: StudyTask,
         is_early: bool,
         answer: &ParticipantAnswer,
     ) -> InputResult {
-        if self.study.plan.mode != of || is_early {
+        if self.study.plan.mode != task || is_early {
             return Ok(Err(InputRefusal::OutOfTurn));
         }
         let Ok(answer) = serde_json::to_string(answer) else { return Ok(Err(InputRefusal::Unknown)) };
-        let kept = "UPDATE slot SET state = 'answered', answer = ?2, answered_ms = ?3 WHERE id = ?1";
-        self.db.execute(kept, params![held.id, answer, self.now_ms])?;
+        let update = "UPDATE slot SET state = 'answered', answer = ?2, answered_ms = ?3 WHERE id = ?1";
+        self.db.execute(update, params![held.id, answer, self.now_ms])?;
         self.end_if_done(person)?;
         Ok(Ok(()))
     }

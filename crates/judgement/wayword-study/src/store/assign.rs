@@ -9,7 +9,7 @@ use rusqlite::params;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::seed::derive_seed;
 
-/// How full an item is.
+/// How many answers an item has, and how many may still come.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ItemFillCount {
     pub(super) answered: u32,
@@ -23,6 +23,7 @@ fn filled_places(filled: &BTreeMap<u32, ItemFillCount>, item: u32) -> u32 {
 }
 
 impl StudyTransaction<'_> {
+    /// Length of a lease, milliseconds.
     pub(super) fn lease_ms(&self) -> i64 {
         i64::try_from(self.study.settings.lease_s).unwrap_or(i64::MAX / 2000).saturating_mul(1000)
     }
@@ -44,10 +45,16 @@ impl StudyTransaction<'_> {
     pub(super) fn count_free_items(&self) -> Result<u32, StudyError> {
         let filled = self.fill_counts()?;
         let per_item = self.study.plan.per_item;
-        let free = |item: &StudyItem| u64::from(per_item.saturating_sub(filled_places(&filled, item.id)));
-        let open: u64 = self.study.items.iter().filter(|item| !item.is_practice).map(free).sum();
-        let routes: BTreeSet<u32> =
-            self.study.items.iter().filter(|item| !item.is_practice && free(item) > 0).map(|item| item.route).collect();
+        let free_places = |item: &StudyItem| u64::from(per_item.saturating_sub(filled_places(&filled, item.id)));
+        let open: u64 = self.study.items.iter().filter(|item| !item.is_practice).map(free_places).sum();
+        let routes: BTreeSet<u32> = self
+            .study
+            .items
+            .iter()
+            .filter(|item| !item.is_practice && free_places(item) > 0)
+            .map(|item| item.route)
+            .collect();
+        // What the current participants will still take: the items that each expects, without those answered or held.
         let pending: i64 = self.db.query_row(
             "SELECT coalesce(sum(max(0, expected - (SELECT count(*) FROM slot WHERE person = person.id AND position IS NOT NULL \
              AND (state = 'answered' OR (state = 'live' AND lease_ms > ?1))))), 0) \
@@ -55,8 +62,8 @@ impl StudyTransaction<'_> {
             params![self.now_ms, self.now_ms - self.lease_ms()],
             |row| row.get(0),
         )?;
-        let left = open.saturating_sub(pending.unsigned_abs()).min(routes.len() as u64);
-        Ok(u32::try_from(left).unwrap_or(u32::MAX))
+        let remaining = open.saturating_sub(pending.unsigned_abs()).min(routes.len() as u64);
+        Ok(u32::try_from(remaining).unwrap_or(u32::MAX))
     }
 
     /// Gives a person the item for practice, if the study has one.
@@ -71,17 +78,17 @@ impl StudyTransaction<'_> {
     /// these one by the seed. Returns false if no item is left for this person.
     pub(super) fn hand_out_next(&self, person: i64) -> Result<bool, StudyError> {
         let filled = self.fill_counts()?;
-        let (had, name) = self.items_handed_out(person)?;
-        let routes: BTreeSet<u32> = had.iter().map(|item| item.route).collect();
+        let (earlier_items, name) = self.items_handed_out(person)?;
+        let routes: BTreeSet<u32> = earlier_items.iter().map(|item| item.route).collect();
         let mut conditions: BTreeMap<&str, u32> = BTreeMap::new();
-        for told in had.iter().filter(|item| !item.is_practice).flat_map(|item| &item.texts) {
-            *conditions.entry(&told.condition).or_default() += 1;
+        for text in earlier_items.iter().filter(|item| !item.is_practice).flat_map(|item| &item.texts) {
+            *conditions.entry(&text.condition).or_default() += 1;
         }
         let seed = self.study.plan.seed;
         let key = |item: &&StudyItem| {
-            let known: u32 =
-                item.texts.iter().map(|told| conditions.get(told.condition.as_str()).copied().unwrap_or(0)).sum();
-            (filled_places(&filled, item.id), known, derive_seed(seed, &["item", &name, &item.id.to_string()]))
+            let condition_uses: u32 =
+                item.texts.iter().map(|text| conditions.get(text.condition.as_str()).copied().unwrap_or(0)).sum();
+            (filled_places(&filled, item.id), condition_uses, derive_seed(seed, &["item", &name, &item.id.to_string()]))
         };
         let open = |item: &&StudyItem| {
             !item.is_practice
@@ -89,7 +96,7 @@ impl StudyTransaction<'_> {
                 && !routes.contains(&item.route)
         };
         let Some(item) = self.study.items.iter().filter(open).min_by_key(key) else { return Ok(false) };
-        let position = had.iter().filter(|item| !item.is_practice).count();
+        let position = earlier_items.iter().filter(|item| !item.is_practice).count();
         self.hand_out(person, item, u32::try_from(position).ok())?;
         Ok(true)
     }
@@ -102,6 +109,7 @@ impl StudyTransaction<'_> {
         Ok((ids.into_iter().filter_map(|id| self.study.items.get(id as usize)).collect(), name))
     }
 
+    /// Lends an item to a person. `position` is its place among the person's items, `None` for practice.
     fn hand_out(&self, person: i64, item: &StudyItem, position: Option<u32>) -> Result<(), StudyError> {
         let name = new_token()?;
         let is_turned = derive_seed(self.study.plan.seed, &["sides", &name]) % 2 == 1;
@@ -119,17 +127,17 @@ impl StudyTransaction<'_> {
         &self,
         slot: i64,
         item: u32,
-        lease_ms: i64,
+        lease_end_ms: i64,
         is_practice: bool,
     ) -> Result<bool, StudyError> {
         let until_ms = self.now_ms + self.lease_ms();
-        let is_over = lease_ms <= self.now_ms;
+        let is_over = lease_end_ms <= self.now_ms;
         if is_over && !is_practice && filled_places(&self.fill_counts()?, item) >= self.study.plan.per_item {
             self.db.execute("UPDATE slot SET state = 'returned' WHERE id = ?1 AND state = 'live'", [slot])?;
             return Ok(false);
         }
         // A lease is renewed only when a tenth of it is gone, so that merely loading pages causes no writes.
-        if is_over || until_ms - lease_ms > self.lease_ms() / 10 {
+        if is_over || until_ms - lease_end_ms > self.lease_ms() / 10 {
             self.db.execute("UPDATE slot SET lease_ms = ?2 WHERE id = ?1", params![slot, until_ms])?;
         }
         Ok(true)

@@ -15,9 +15,9 @@ pub struct StudyProgress {
     pub rows: Vec<ConditionProgress>,
     /// How many participants there are of each status.
     pub participants: BTreeMap<ParticipantStatus, u32>,
-    /// How many of the started ones gave a sign of life within the lease.
+    /// How many participants have started, not finished, and given a sign of life within the lease.
     pub live: u32,
-    /// How many were forgotten.
+    /// How many participants were forgotten.
     pub forgotten: u64,
     /// Personal links that have not been used.
     pub unused_links: u32,
@@ -30,9 +30,9 @@ pub struct ConditionProgress {
     pub condition: String,
     /// How many items.
     pub items: u32,
-    /// How many answers they shall have in total.
+    /// How many answers its items shall have in total.
     pub wanted: u32,
-    /// How many they have.
+    /// How many answers its items have.
     pub answered: u32,
     /// How many items are lent to people at the moment.
     pub live: u32,
@@ -46,12 +46,12 @@ impl StudyTransaction<'_> {
         let filled = self.fill_counts()?;
         let mut rows: Vec<ConditionProgress> = Vec::new();
         for item in self.study.items.iter().filter(|item| !item.is_practice) {
-            let names: Vec<&str> = item.texts.iter().map(|told| told.condition.as_str()).collect();
+            let names: Vec<&str> = item.texts.iter().map(|text| text.condition.as_str()).collect();
             let condition = names.join(" | ");
-            let at = filled.get(&item.id).copied().unwrap_or_default();
-            let found = rows.iter().position(|row| row.condition == condition);
-            let row = match found {
-                Some(found) => &mut rows[found],
+            let fill = filled.get(&item.id).copied().unwrap_or_default();
+            let existing = rows.iter().position(|row| row.condition == condition);
+            let row = match existing {
+                Some(existing) => &mut rows[existing],
                 None => {
                     let answered_per_item = (u32::MAX, 0);
                     rows.push(ConditionProgress {
@@ -68,22 +68,22 @@ impl StudyTransaction<'_> {
             };
             row.items += 1;
             row.wanted += self.study.plan.per_item;
-            row.answered += at.answered;
-            row.live += at.live;
+            row.answered += fill.answered;
+            row.live += fill.live;
             let (least, most) = row.answered_per_item;
-            row.answered_per_item = (least.min(at.answered), most.max(at.answered));
+            row.answered_per_item = (least.min(fill.answered), most.max(fill.answered));
         }
         let mut counts = self.db.prepare("SELECT status, count(*) FROM person GROUP BY status")?;
         let participants =
             counts.query_map([], |row| Ok((people::status_of(row, 0)?, row.get(1)?)))?.collect::<Result<_, _>>()?;
-        let unused = "SELECT count(*) FROM link WHERE hash NOT IN (SELECT link FROM person)";
+        let count_unused = "SELECT count(*) FROM link WHERE hash NOT IN (SELECT link FROM person)";
         Ok(StudyProgress {
             is_closed: self.is_closed()?,
             rows,
             participants,
             live: self.count_live()?,
             forgotten: people::count_forgotten(self)?,
-            unused_links: self.db.query_row(unused, params![], |row| row.get(0))?,
+            unused_links: self.db.query_row(count_unused, params![], |row| row.get(0))?,
         })
     }
 }

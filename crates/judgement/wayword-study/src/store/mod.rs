@@ -1,5 +1,5 @@
-//! The database of a study, one SQLite file with everything that participants gave. Whatever was acknowledged to a participant is on
-//! disk.
+//! The database of a study, one SQLite file with everything that participants gave. An answer is acknowledged to a participant only
+//! when it is on disk.
 
 mod answers;
 mod assign;
@@ -26,10 +26,11 @@ use std::{
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
 
+/// Makes the tables that do not exist yet.
 const DATABASE_SCHEMA: &str = include_str!("schema.sql");
-/// Version of the schema.
+/// Version of the tables, which SQLite keeps as `user_version`. A database of a later version is refused.
 const SCHEMA_VERSION: i64 = 1;
-/// How long a command waits for another process that is writing.
+/// How long a command waits for another process that is writing. Then it fails.
 const BUSY_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// The database of a study.
@@ -96,7 +97,7 @@ impl StudyStore {
     }
 
     /// Empties the write-ahead log, so that deleted data remain nowhere on the disk. A concurrent reader can prevent this; then the next
-    /// sweep does it.
+    /// call does it.
     pub(crate) fn empty_log(&self) {
         let _ = self.db.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(()));
     }
@@ -109,13 +110,13 @@ impl StudyStore {
     pub(crate) fn write_batch<T>(
         &mut self,
         study: &Study,
-        all: impl Iterator<Item = T>,
+        requests: impl Iterator<Item = T>,
         mut work: impl FnMut(T, &StudyTransaction<'_>) -> bool,
     ) -> Result<(), StudyError> {
         let mut transaction = self.db.transaction_with_behavior(TransactionBehavior::Immediate)?;
-        for one in all {
+        for request in requests {
             let savepoint = transaction.savepoint()?;
-            if work(one, &StudyTransaction { db: &savepoint, study, now_ms: now_ms() }) {
+            if work(request, &StudyTransaction { db: &savepoint, study, now_ms: now_ms() }) {
                 savepoint.commit()?;
             } else {
                 savepoint.finish()?;
@@ -136,6 +137,7 @@ pub fn now_ms() -> i64 {
 pub(crate) struct StudyTransaction<'a> {
     db: &'a Connection,
     study: &'a Study,
+    /// Unix time of the request, milliseconds.
     now_ms: i64,
 }
 
@@ -145,6 +147,7 @@ impl StudyTransaction<'_> {
         self.study
     }
 
+    /// A value of the table `meta`, which holds facts about the whole study by key.
     fn read_meta(&self, key: &str) -> Result<Option<String>, StudyError> {
         use rusqlite::OptionalExtension as _;
         Ok(self.db.query_row("SELECT value FROM meta WHERE key = ?1", [key], |row| row.get(0)).optional()?)

@@ -15,16 +15,16 @@ use serde::{Deserialize, Serialize};
 const SESSION_MS: i64 = 7 * 24 * 3600 * 1000;
 /// Most sessions of one person. A further one ends the oldest.
 const MAX_SESSIONS_PER_PERSON: i64 = 8;
-/// Longest id from a recruiter, bytes.
+/// Longest id from a recruiter, bytes. A link with a longer one counts as unknown.
 const LONGEST_ID: usize = 128;
 
 /// The link by which a visitor came.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum ParticipantArrival {
-    /// A personal link.
+    /// A personal link, by its token.
     Link(String),
-    /// A recruiter's link.
+    /// A recruiter's link, with the recruiter's ids of the person, the study and the session.
     Recruit { person: String, study: String, session: String },
 }
 
@@ -43,6 +43,7 @@ impl ParticipantArrival {
         }
     }
 
+    /// The hash under which the database stores the link.
     fn arrival_hash(&self) -> [u8; 32] {
         match self {
             Self::Link(token) => hash_parts(&["link", token]),
@@ -73,7 +74,9 @@ pub(crate) enum ArrivalOutcome {
 /// What happens to the answers of a participant who stops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum WithdrawalChoice {
+    /// The answers stay in the results.
     Keep,
+    /// All data of the participant are deleted.
     Delete,
 }
 
@@ -123,9 +126,9 @@ impl StudyTransaction<'_> {
         }
         match arrival {
             ParticipantArrival::Link(_) => {
-                let made =
+                let issued =
                     self.db.query_row("SELECT 1 FROM link WHERE hash = ?1", [arrival.arrival_hash()], |_| Ok(()));
-                if self.study.settings.recruiter != RecruiterSettings::Links || made.optional()?.is_none() {
+                if self.study.settings.recruiter != RecruiterSettings::Links || issued.optional()?.is_none() {
                     return Ok(ArrivalOutcome::Unknown);
                 }
             }
@@ -136,8 +139,8 @@ impl StudyTransaction<'_> {
                 if !only_study.is_empty() && only_study != study {
                     return Ok(ArrivalOutcome::Unknown);
                 }
-                let known = self.db.query_row("SELECT 1 FROM recruit WHERE id = ?1", [person], |_| Ok(()));
-                if known.optional()?.is_some() {
+                let earlier = self.db.query_row("SELECT 1 FROM recruit WHERE id = ?1", [person], |_| Ok(()));
+                if earlier.optional()?.is_some() {
                     return Ok(ArrivalOutcome::Twice);
                 }
             }
@@ -159,9 +162,9 @@ impl StudyTransaction<'_> {
         arrival: &ParticipantArrival,
         consent: &str,
     ) -> Result<ArrivalOutcome, StudyError> {
-        let entry = self.enter_study(arrival)?;
-        if entry != ArrivalOutcome::New {
-            return Ok(entry);
+        let outcome = self.enter_study(arrival)?;
+        if outcome != ArrivalOutcome::New {
+            return Ok(outcome);
         }
         let words = serde_json::json!(self.study.settings.consent_words()).to_string();
         self.db.execute("INSERT OR IGNORE INTO consent (hash, words) VALUES (?1, ?2)", [consent, &words])?;
@@ -191,31 +194,31 @@ impl StudyTransaction<'_> {
         if !is_token(session) {
             return Ok(None);
         }
-        let row = params![hash_parts(&["session", session]), self.now_ms - SESSION_MS];
+        let values = params![hash_parts(&["session", session]), self.now_ms - SESSION_MS];
         let find =
             "SELECT person, name FROM session JOIN person ON person.id = person WHERE hash = ?1 AND made_ms > ?2";
         let found: Option<(i64, String)> =
-            self.db.query_row(find, row, |row| Ok((row.get(0)?, row.get(1)?))).optional()?;
+            self.db.query_row(find, values, |row| Ok((row.get(0)?, row.get(1)?))).optional()?;
         if let Some((person, _)) = &found {
             // `abs`, because after the clock was set back an active participant would otherwise look absent.
-            let seen = "UPDATE person SET seen_ms = ?2 WHERE id = ?1 AND abs(seen_ms - ?2) > 1000";
-            self.db.execute(seen, params![person, self.now_ms])?;
+            let update = "UPDATE person SET seen_ms = ?2 WHERE id = ?1 AND abs(seen_ms - ?2) > 1000";
+            self.db.execute(update, params![person, self.now_ms])?;
         }
         Ok(found)
     }
 
     /// Ends a participation at the participant's own wish.
-    pub(crate) fn withdraw_person(&self, person: i64, what: WithdrawalChoice) -> Result<(), StudyError> {
-        match what {
+    pub(crate) fn withdraw_person(&self, person: i64, choice: WithdrawalChoice) -> Result<(), StudyError> {
+        match choice {
             WithdrawalChoice::Delete => {
                 self.bar_person(person)?;
                 self.erase_person(person)
             }
             WithdrawalChoice::Keep => {
                 self.give_back(person)?;
-                let ended =
+                let update =
                     "UPDATE person SET status = 'withdrawn', finished_ms = ?2 WHERE id = ?1 AND status = 'started'";
-                self.db.execute(ended, params![person, self.now_ms])?;
+                self.db.execute(update, params![person, self.now_ms])?;
                 Ok(())
             }
         }
@@ -247,8 +250,8 @@ impl StudyTransaction<'_> {
 
     /// Keeps a person who had all data deleted from taking part again as a stranger, until the study is closed.
     fn bar_person(&self, person: i64) -> Result<(), StudyError> {
-        let barred = "INSERT OR IGNORE INTO gone (hash) SELECT link FROM person WHERE id = ?1";
-        self.db.execute(barred, [person])?;
+        let insert = "INSERT OR IGNORE INTO gone (hash) SELECT link FROM person WHERE id = ?1";
+        self.db.execute(insert, [person])?;
         let find = "SELECT id FROM recruit WHERE person = ?1";
         let recruit: Option<String> = self.db.query_row(find, [person], |row| row.get(0)).optional()?;
         if let Some(recruit) = recruit {
@@ -260,6 +263,7 @@ impl StudyTransaction<'_> {
         Ok(())
     }
 
+    /// Whether the link or the recruiter's id belongs to a person who had all data deleted.
     fn is_barred(&self, arrival: &ParticipantArrival) -> Result<bool, StudyError> {
         let recruit = match arrival {
             ParticipantArrival::Link(_) => None,
@@ -269,6 +273,7 @@ impl StudyTransaction<'_> {
         Ok(self.db.query_row(find, params![arrival.arrival_hash(), recruit], |row| row.get(0))?)
     }
 
+    /// Deletes a person with all answers, and counts the person as forgotten.
     fn erase_person(&self, person: i64) -> Result<(), StudyError> {
         let link: Option<[u8; 32]> =
             self.db.query_row("SELECT link FROM person WHERE id = ?1", [person], |row| row.get(0)).optional()?;
@@ -317,23 +322,25 @@ impl StudyTransaction<'_> {
         person: i64,
         status: ParticipantStatus,
     ) -> Result<ParticipantStage, StudyError> {
-        let ended = "UPDATE person SET status = ?2, finished_ms = ?3 WHERE id = ?1";
-        self.db.execute(ended, params![person, status.name(), self.now_ms])?;
+        let update = "UPDATE person SET status = ?2, finished_ms = ?3 WHERE id = ?1";
+        self.db.execute(update, params![person, status.name(), self.now_ms])?;
         Ok(ParticipantStage::Over(ParticipationOutcome { status, answers: self.answer_progress(person)?.answered }))
     }
 
+    /// The participant who came by this link before.
     fn by_link(&self, arrival: &ParticipantArrival) -> Result<Option<i64>, StudyError> {
         let find = "SELECT id FROM person WHERE link = ?1";
         Ok(self.db.query_row(find, [arrival.arrival_hash()], |row| row.get(0)).optional()?)
     }
 
+    /// Opens a session for a person and returns its token.
     fn session_for(&self, person: i64) -> Result<String, StudyError> {
         let session = new_token()?;
-        let made = "INSERT INTO session (hash, person, made_ms) VALUES (?1, ?2, ?3)";
-        self.db.execute(made, params![hash_parts(&["session", &session]), person, self.now_ms])?;
-        let old = "DELETE FROM session WHERE person = ?1 AND rowid NOT IN \
+        let insert = "INSERT INTO session (hash, person, made_ms) VALUES (?1, ?2, ?3)";
+        self.db.execute(insert, params![hash_parts(&["session", &session]), person, self.now_ms])?;
+        let delete_oldest = "DELETE FROM session WHERE person = ?1 AND rowid NOT IN \
                    (SELECT rowid FROM session WHERE person = ?1 ORDER BY made_ms DESC, rowid DESC LIMIT ?2)";
-        self.db.execute(old, params![person, MAX_SESSIONS_PER_PERSON])?;
+        self.db.execute(delete_oldest, params![person, MAX_SESSIONS_PER_PERSON])?;
         Ok(session)
     }
 }
@@ -345,10 +352,11 @@ pub(super) fn new_token() -> Result<String, StudyError> {
 }
 
 /// How many participants were forgotten.
-pub(super) fn count_forgotten(book: &StudyTransaction<'_>) -> Result<u64, StudyError> {
-    Ok(book.read_meta("forgotten")?.and_then(|count| count.parse().ok()).unwrap_or(0))
+pub(super) fn count_forgotten(transaction: &StudyTransaction<'_>) -> Result<u64, StudyError> {
+    Ok(transaction.read_meta("forgotten")?.and_then(|count| count.parse().ok()).unwrap_or(0))
 }
 
+/// The status in a column of a row.
 pub(super) fn status_of(row: &Row<'_>, column: usize) -> Result<ParticipantStatus, rusqlite::Error> {
     let name: String = row.get(column)?;
     let found = ParticipantStatus::ALL.into_iter().find(|status| status.name() == name);

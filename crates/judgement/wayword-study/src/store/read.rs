@@ -12,9 +12,11 @@ impl StudyStore {
     /// # Errors
     /// When a row cannot be read.
     pub(crate) fn into_data(mut self, study: Study, now_ms: i64) -> Result<StudyData, StudyError> {
-        let read = |book: &StudyTransaction<'_>| {
-            let forgotten = people::count_forgotten(book)?;
-            Ok((read_participants(book.db)?, read_slots(book.db, book.now_ms)?, forgotten, book.is_closed()?))
+        let read = |transaction: &StudyTransaction<'_>| {
+            let forgotten = people::count_forgotten(transaction)?;
+            let participants = read_participants(transaction.db)?;
+            let slots = read_slots(transaction.db, transaction.now_ms)?;
+            Ok((participants, slots, forgotten, transaction.is_closed()?))
         };
         let (participants, slots, forgotten, is_closed) = self.read_transaction(&study, now_ms, read)?;
         let Study { plan, settings, items, routes, scenes, .. } = study;
@@ -27,10 +29,10 @@ fn read_participants(db: &Connection) -> Result<Vec<Participant>, StudyError> {
     let mut checks = db.prepare("SELECT person, number, passed, at_ms FROM attention ORDER BY person, number")?;
     let mut rows = checks.query([])?;
     while let Some(row) = rows.next()? {
-        let passed = AttentionCheck { number: row.get(1)?, passed: row.get(2)?, at_ms: row.get(3)? };
-        attention.entry(row.get(0)?).or_default().push(passed);
+        let check = AttentionCheck { number: row.get(1)?, passed: row.get(2)?, at_ms: row.get(3)? };
+        attention.entry(row.get(0)?).or_default().push(check);
     }
-    let mut all = db.prepare(
+    let mut select = db.prepare(
         "SELECT id, name, status, consented_ms, consent, finished_ms, seen_ms, misunderstood, expected, understood, recruiter_status FROM person \
          ORDER BY consented_ms, id",
     )?;
@@ -50,12 +52,13 @@ fn read_participants(db: &Connection) -> Result<Vec<Participant>, StudyError> {
             attention: attention.remove(&id).unwrap_or_default(),
         })
     };
-    Ok(all.query_map([], participant)?.collect::<Result<_, _>>()?)
+    Ok(select.query_map([], participant)?.collect::<Result<_, _>>()?)
 }
 
+/// All items that were handed out. One with a lease that has run out counts as returned.
 fn read_slots(db: &Connection, now_ms: i64) -> Result<Vec<ItemSlot>, StudyError> {
     let mut moves = read_moves(db)?;
-    let mut all = db.prepare(
+    let mut select = db.prepare(
         "SELECT slot.id, person.name, item, position, state, lease_ms, given_ms, answered_ms, is_turned, answer, own_text \
          FROM slot JOIN person ON person.id = slot.person ORDER BY given_ms, slot.id",
     )?;
@@ -82,13 +85,14 @@ fn read_slots(db: &Connection, now_ms: i64) -> Result<Vec<ItemSlot>, StudyError>
             moves: moves.remove(&id).unwrap_or_default(),
         })
     };
-    Ok(all.query_map([], slot)?.collect::<Result<_, _>>()?)
+    Ok(select.query_map([], slot)?.collect::<Result<_, _>>()?)
 }
 
+/// The steps of all walks, by the row id of their slot.
 fn read_moves(db: &Connection) -> Result<BTreeMap<i64, Vec<ParticipantMove>>, StudyError> {
     let mut moves: BTreeMap<i64, Vec<ParticipantMove>> = BTreeMap::new();
-    let mut all = db.prepare("SELECT slot, viewpoint, at_ms FROM move ORDER BY slot, seq")?;
-    let mut rows = all.query([])?;
+    let mut select = db.prepare("SELECT slot, viewpoint, at_ms FROM move ORDER BY slot, seq")?;
+    let mut rows = select.query([])?;
     while let Some(row) = rows.next()? {
         let name: String = row.get(1)?;
         let viewpoint = ViewpointId::new(name).map_err(|error| people::unreadable_value(1, error))?;

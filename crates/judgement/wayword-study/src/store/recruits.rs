@@ -11,7 +11,7 @@ use std::{
 
 /// Names of the column with the participant's id, as Prolific, MTurk and others call it.
 const PERSON_COLUMN_NAMES: [&str; 5] = ["participant id", "participant_id", "prolific_pid", "workerid", "participant"];
-/// Names of the column with the status.
+/// Names of the column with the status. Both lists are in lower case, because the case of a heading does not count.
 const STATUS_COLUMN_NAMES: [&str; 3] = ["status", "assignmentstatus", "submission status"];
 
 /// A participant in both lists.
@@ -57,9 +57,9 @@ impl StudyTransaction<'_> {
         }
         // Their status is stored next to ours, without their id.
         for (id, status) in &theirs {
-            let keep =
+            let update =
                 "UPDATE person SET recruiter_status = ?2 WHERE id = (SELECT person FROM recruit WHERE recruit.id = ?1)";
-            self.db.execute(keep, [id, &known_word(status)])?;
+            self.db.execute(update, [id, &known_word(status)])?;
         }
         let ids: BTreeSet<&String> = theirs.keys().chain(ours.keys()).collect();
         let row = |id: &String| {
@@ -82,25 +82,25 @@ impl StudyTransaction<'_> {
 /// How our status and theirs disagree. The names of their statuses are those of Prolific and MTurk.
 fn status_conflict(ours: Option<ParticipantStatus>, theirs: Option<&str>) -> Option<&'static str> {
     let theirs = theirs.map(|status| status.trim().to_ascii_uppercase().replace(['-', '_'], " "));
-    let is_paid = matches!(theirs.as_deref(), Some("APPROVED" | "AWAITING REVIEW" | "SUBMITTED"));
-    let is_out = matches!(theirs.as_deref(), Some("RETURNED" | "TIMED OUT" | "REJECTED" | "ABANDONED"));
+    let is_listed_done = matches!(theirs.as_deref(), Some("APPROVED" | "AWAITING REVIEW" | "SUBMITTED"));
+    let is_listed_left = matches!(theirs.as_deref(), Some("RETURNED" | "TIMED OUT" | "REJECTED" | "ABANDONED"));
     match (ours, theirs.as_deref()) {
         (None, None) => None,
-        (None, Some(_)) if is_paid => Some("they list it as done, and we know nobody of this id"),
+        (None, Some(_)) if is_listed_done => Some("they list it as done, and we know nobody of this id"),
         (None, Some(_)) => None,
         (Some(_), None) => Some("we know this participant, and their list does not"),
-        (Some(ParticipantStatus::Complete), _) if is_out => {
+        (Some(ParticipantStatus::Complete), _) if is_listed_left => {
             Some("all our answers are there, and they list it as not done")
         }
         (Some(ParticipantStatus::Started | ParticipantStatus::Withdrawn | ParticipantStatus::ScreenedOut), _)
-            if is_paid =>
+            if is_listed_done =>
         {
             Some("they list it as done, and our answers are not complete")
         }
         (Some(ParticipantStatus::AttentionFailed), Some("APPROVED")) => {
             Some("approved, and the attention checks failed")
         }
-        (Some(ParticipantStatus::Complete | ParticipantStatus::AttentionFailed), _) if is_paid => None,
+        (Some(ParticipantStatus::Complete | ParticipantStatus::AttentionFailed), _) if is_listed_done => None,
         (
             Some(
                 ParticipantStatus::Started
@@ -109,14 +109,14 @@ fn status_conflict(ours: Option<ParticipantStatus>, theirs: Option<&str>) -> Opt
                 | ParticipantStatus::AttentionFailed,
             ),
             _,
-        ) if is_out => None,
+        ) if is_listed_left => None,
         (Some(ParticipantStatus::Started), Some("ACTIVE" | "RESERVED"))
         | (Some(ParticipantStatus::ScreenedOut), Some("SCREENED OUT")) => None,
         _ => Some("the two do not fit together, as far as we know: look at this one"),
     }
 }
 
-/// A status from the recruiter's file, reduced to harmless characters.
+/// A status from the recruiter's file, reduced to harmless characters and to 40 of them.
 fn known_word(status: &str) -> String {
     let is_plain = |letter: &char| letter.is_ascii_alphanumeric() || matches!(letter, ' ' | '-' | '_');
     status.chars().filter(is_plain).take(40).collect()
@@ -140,14 +140,14 @@ fn read_recruiter_list(file: &Path) -> Result<BTreeMap<String, String>, StudyErr
     let (Some(person), Some(status)) = (column(&PERSON_COLUMN_NAMES), column(&STATUS_COLUMN_NAMES)) else {
         return Err(wrong("it has no column of participants, or none of their status".to_owned()));
     };
-    let mut all = BTreeMap::new();
+    let mut statuses = BTreeMap::new();
     for row in reader.records() {
         let row = row.map_err(|error| wrong(error.to_string()))?;
         if let (Some(person), Some(status)) = (row.get(person), row.get(status)) {
-            all.insert(person.trim().to_owned(), status.trim().to_owned());
+            statuses.insert(person.trim().to_owned(), status.trim().to_owned());
         }
     }
-    Ok(all)
+    Ok(statuses)
 }
 
 #[cfg(test)]

@@ -12,11 +12,11 @@ const ATTENTION_LEVELS: [u8; 4] = [1, 2, 4, 5];
 /// The stage that a participant has reached.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum ParticipantStage {
-    /// At the questions about the task.
+    /// At the questions about the task, after `attempt` wrong tries.
     Understood { attempt: u32 },
     /// At an item.
     Item(StoredSlot),
-    /// At an attention check that asks for a level.
+    /// At attention check `number`, from 0, which asks for a level, 1 to 5.
     Attention { number: u32, level: u8 },
     /// At the end.
     Over(ParticipationOutcome),
@@ -26,25 +26,31 @@ pub(crate) enum ParticipantStage {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ParticipationOutcome {
     pub(crate) status: ParticipantStatus,
+    /// How many items the participant has answered.
     pub(crate) answers: u32,
 }
 
 /// A slot of the database: an item that was handed out to a person.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct StoredSlot {
+    /// The row's id in the database.
     pub(super) id: i64,
+    /// Unix time at which the lease ends, milliseconds.
     pub(super) lease_ms: i64,
     /// `live`, `answered` or `returned`.
     pub(super) state: String,
-    /// Its name on pages.
+    /// Its random name on pages.
     pub(crate) slot: String,
-    /// Its number.
+    /// The item's number.
     pub(crate) item: u32,
     pub(crate) is_practice: bool,
+    /// In a pair: whether the item's second text is shown as A.
     pub(crate) is_turned: bool,
+    /// The text that the participant wrote first, if the study asks for one.
     pub(crate) own_text: Option<String>,
-    /// Whether the walker has stopped.
+    /// Unix time at which the walker stopped, milliseconds; `None` while the walk goes on.
     pub(crate) stopped_ms: Option<i64>,
+    /// How often the walker turned to look around, as the page counted.
     pub(crate) looks: u32,
     /// The viewpoints to which the walker went, without the start.
     pub(crate) moves: Vec<ViewpointId>,
@@ -74,14 +80,14 @@ impl StudyTransaction<'_> {
         {
             return Ok(ParticipantStage::Item(held));
         }
-        let had: bool =
+        let has_slots: bool =
             self.db.query_row("SELECT EXISTS (SELECT 1 FROM slot WHERE person = ?1)", [person], |row| row.get(0))?;
-        let is_given = if had { false } else { self.hand_out_practice(person)? };
-        let done = self.answer_progress(person)?;
-        if !is_given && let Some(number) = self.check_due(person, done)? {
+        let is_given = if has_slots { false } else { self.hand_out_practice(person)? };
+        let progress = self.answer_progress(person)?;
+        if !is_given && let Some(number) = self.check_due(person, progress)? {
             return Ok(ParticipantStage::Attention { number, level: self.asked_level(person, number)? });
         }
-        let is_given = is_given || (done.answered < done.expected && self.hand_out_next(person)?);
+        let is_given = is_given || (progress.answered < progress.expected && self.hand_out_next(person)?);
         match self.live_slot(person)?.filter(|_| is_given) {
             Some(held) => Ok(ParticipantStage::Item(held)),
             None => self.finish_person(person),
@@ -103,18 +109,21 @@ impl StudyTransaction<'_> {
     /// Ends the participation if everything is answered. It is called after each answer, because many people close the page after the
     /// last one.
     pub(super) fn end_if_done(&self, person: i64) -> Result<(), StudyError> {
-        let done = self.answer_progress(person)?;
-        if done.answered >= done.expected && done.answered > 0 && self.check_due(person, done)?.is_none() {
+        let progress = self.answer_progress(person)?;
+        if progress.answered >= progress.expected
+            && progress.answered > 0
+            && self.check_due(person, progress)?.is_none()
+        {
             self.finish_person(person)?;
         }
         Ok(())
     }
 
-    /// Does the same for all participants.
+    /// Ends the participation of every participant who has answered everything.
     pub(super) fn end_all_done(&self) -> Result<(), StudyError> {
         let mut find = self.db.prepare("SELECT id FROM person WHERE status = 'started'")?;
-        let all: Vec<i64> = find.query_map([], |row| row.get(0))?.collect::<Result<_, _>>()?;
-        all.into_iter().try_for_each(|person| self.end_if_done(person))
+        let persons: Vec<i64> = find.query_map([], |row| row.get(0))?.collect::<Result<_, _>>()?;
+        persons.into_iter().try_for_each(|person| self.end_if_done(person))
     }
 
     /// How many items are answered, and how many there will be.
@@ -136,7 +145,9 @@ impl StudyTransaction<'_> {
         self.held_where("person = ?1 AND name = ?2", person, slot)
     }
 
+    /// The slot of a person that meets an SQL condition, with its steps.
     fn held_where(&self, condition: &str, person: i64, slot: &str) -> Result<Option<StoredSlot>, StudyError> {
+        // `?2 = ?2` is for conditions without `?2`: each parameter must occur in the statement.
         let mut find = self.db.prepare_cached(&format!(
             "SELECT id, lease_ms, name, item, position IS NULL, is_turned, own_text, stopped_ms, looks, state FROM slot \
              WHERE ?2 = ?2 AND {condition}"
@@ -163,13 +174,13 @@ impl StudyTransaction<'_> {
         Ok(Some(held))
     }
 
-    /// The attention check that is due at this point. Checks are spread evenly over the items.
-    pub(super) fn check_due(&self, person: i64, done: AnswerProgress) -> Result<Option<u32>, StudyError> {
+    /// The number of the attention check that is due at this point, if one is. Checks are spread evenly over the items.
+    pub(super) fn check_due(&self, person: i64, progress: AnswerProgress) -> Result<Option<u32>, StudyError> {
         let checks = self.study.settings.attention_checks;
         let answered: u32 =
             self.db.query_row("SELECT count(*) FROM attention WHERE person = ?1", [person], |row| row.get(0))?;
-        let due_after = (done.expected * (answered + 1)).div_ceil(checks + 1);
-        Ok((answered < checks && done.answered >= due_after).then_some(answered))
+        let due_after = (progress.expected * (answered + 1)).div_ceil(checks + 1);
+        Ok((answered < checks && progress.answered >= due_after).then_some(answered))
     }
 
     /// The level that an attention check asks this person for.
@@ -179,6 +190,7 @@ impl StudyTransaction<'_> {
         Ok(ATTENTION_LEVELS[(drawn % ATTENTION_LEVELS.len() as u64) as usize])
     }
 
+    /// Whether more attention checks failed than are tolerated.
     fn has_failed_checks(&self, person: i64) -> Result<bool, StudyError> {
         let count = "SELECT count(*) FROM attention WHERE person = ?1 AND NOT passed";
         let failed: u32 = self.db.query_row(count, [person], |row| row.get(0))?;

@@ -44,7 +44,7 @@ pub enum ParticipantStatus {
 }
 
 impl ParticipantStatus {
-    /// All of them.
+    /// All statuses.
     pub(crate) const ALL: [Self; 5] =
         [Self::Started, Self::Complete, Self::Withdrawn, Self::ScreenedOut, Self::AttentionFailed];
 
@@ -69,7 +69,7 @@ pub struct Participant {
     pub status: ParticipantStatus,
     /// Unix time of consent, milliseconds.
     pub consented_ms: i64,
-    /// Hash of what was consented to.
+    /// Hash of the consent text to which the participant agreed.
     pub consent: String,
     /// Unix time of the end, milliseconds.
     pub finished_ms: Option<i64>,
@@ -77,7 +77,7 @@ pub struct Participant {
     pub seen_ms: i64,
     /// How often the questions about the task were answered wrongly: 0, 1 or 2.
     pub misunderstood: u32,
-    /// Whether they were answered rightly in the end, or there are none.
+    /// Whether the questions about the task were answered rightly in the end; true if the study has no such questions.
     pub understood: bool,
     /// The recruiter's status of the submission when its list was last imported.
     pub recruiter_status: Option<String>,
@@ -105,7 +105,7 @@ pub struct ItemSlot {
     pub participant: String,
     /// The item's number.
     pub item: u32,
-    /// Its place among the participant's items, from 0; practice has none.
+    /// Its place among the participant's items, from 0; `None` for a practice item.
     pub position: Option<u32>,
     /// What became of it.
     pub state: SlotState,
@@ -119,7 +119,7 @@ pub struct ItemSlot {
     pub answer: Option<ParticipantAnswer>,
     /// The text that the participant wrote first, if the study asked for one.
     pub own_text: Option<String>,
-    /// The steps of the participant's walk; the start is not in it.
+    /// The steps of the participant's walk. The start is left out.
     pub moves: Vec<ParticipantMove>,
 }
 
@@ -129,7 +129,7 @@ pub struct ItemSlot {
 pub enum SlotState {
     /// The participant has it and may still answer.
     Live,
-    /// Answered.
+    /// The participant has answered it.
     Answered,
     /// The lease ran out or the participant stopped, and the item went back to the others.
     Returned,

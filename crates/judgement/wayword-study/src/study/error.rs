@@ -43,6 +43,7 @@ pub enum StudyError {
 }
 
 impl StudyError {
+    /// An adapter for `map_err`. `doing` is a verb that completes "cannot ...".
     pub(crate) fn io_error(path: impl Into<PathBuf>, doing: &'static str) -> impl FnOnce(io::Error) -> Self {
         let path = path.into();
         move |source| Self::Io { path, doing, source }
@@ -53,6 +54,7 @@ impl StudyError {
     }
 }
 
+/// Advice for an error of the database.
 fn hint_of(error: &rusqlite::Error) -> &'static str {
     use rusqlite::ErrorCode;
     match error.sqlite_error_code() {

@@ -18,7 +18,7 @@ const SCENES_FILE: &str = "scenes.jsonl";
 /// The answers.
 const DATABASE_FILE: &str = "study.db";
 const PICTURES_FOLDER: &str = "pictures";
-/// Largest file that is read, bytes.
+/// Largest file of a study that is read, bytes. A larger one is an error.
 const MOST_BYTES: u64 = 1 << 30;
 
 /// A study as it was made, without the answers.
@@ -39,7 +39,7 @@ pub struct Study {
 }
 
 impl Study {
-    /// Writes the files of a new study, but for its plan and its database.
+    /// Writes the files of a new study except its plan and its database.
     ///
     /// # Errors
     /// When there is a study already, or a file cannot be written.
@@ -123,14 +123,14 @@ impl Study {
 
     /// Checks that ids equal line numbers, because items and routes are found by index.
     fn check_numbering(&self) -> Result<(), StudyError> {
-        let numbered = |name: &str, ids: Vec<u32>| match (0..).zip(&ids).find(|(number, id)| number != *id) {
+        let check_ids = |name: &str, ids: Vec<u32>| match (0..).zip(&ids).find(|(number, id)| number != *id) {
             Some((number, _)) => {
                 Err(wrong_file_error(&self.folder, name, &format!("line {}: its id must be {number}", number + 1)))
             }
             None => Ok(()),
         };
-        numbered(ITEMS_FILE, self.items.iter().map(|item| item.id).collect())?;
-        numbered(ROUTES_FILE, self.routes.iter().map(|route| route.id).collect())?;
+        check_ids(ITEMS_FILE, self.items.iter().map(|item| item.id).collect())?;
+        check_ids(ROUTES_FILE, self.routes.iter().map(|route| route.id).collect())?;
         if let Some(item) =
             self.items.iter().find(|item| item.route as usize >= self.routes.len() || item.texts.is_empty())
         {
@@ -143,10 +143,11 @@ impl Study {
         Ok(())
     }
 
-    fn write_lines<T: Serialize>(&self, name: &str, all: &[T]) -> Result<(), StudyError> {
+    /// Writes a file of JSON lines, one for each record.
+    fn write_lines<T: Serialize>(&self, name: &str, records: &[T]) -> Result<(), StudyError> {
         let mut text = Vec::new();
-        for one in all {
-            serde_json::to_writer(&mut text, one).map_err(|error| self.wrong_file(name, &error))?;
+        for record in records {
+            serde_json::to_writer(&mut text, record).map_err(|error| self.wrong_file(name, &error))?;
             text.push(b'\n');
         }
         self.write_file(name, &text)
@@ -155,11 +156,11 @@ impl Study {
     /// Writes a file under a temporary name and renames it, so that it is complete or does not exist.
     fn write_file(&self, name: &str, bytes: &[u8]) -> Result<(), StudyError> {
         let place = self.folder.join(name);
-        let beside = self.folder.join(format!(".{name}.part"));
-        let written = fs::File::create(&beside).and_then(|mut file| {
+        let temporary = self.folder.join(format!(".{name}.part"));
+        let written = fs::File::create(&temporary).and_then(|mut file| {
             file.write_all(bytes)?;
             file.sync_all()?;
-            fs::rename(&beside, &place)
+            fs::rename(&temporary, &place)
         });
         written.map_err(StudyError::io_error(place, "write"))
     }
@@ -181,6 +182,7 @@ fn keep_private(folder: &Path) -> Result<(), StudyError> {
     Ok(())
 }
 
+/// An error about the contents of a file of the study, with advice.
 fn wrong_file_error(folder: &Path, name: &str, problem: &dyn std::fmt::Display) -> StudyError {
     let hint = if name == SETTINGS_FILE {
         "correct it; docs/STUDY.md lists its keys"
@@ -190,6 +192,7 @@ fn wrong_file_error(folder: &Path, name: &str, problem: &dyn std::fmt::Display) 
     StudyError::File { path: folder.join(name), problem: problem.to_string(), hint }
 }
 
+/// Reads a text file of the study, unless it is too large.
 fn read_limited_file(path: &Path) -> Result<String, StudyError> {
     let size = fs::metadata(path).map_err(StudyError::io_error(path, "read"))?.len();
     if size > MOST_BYTES {
@@ -199,6 +202,7 @@ fn read_limited_file(path: &Path) -> Result<String, StudyError> {
     fs::read_to_string(path).map_err(StudyError::io_error(path, "read"))
 }
 
+/// Reads a file of JSON lines. An error names the line.
 fn read_json_lines<T: DeserializeOwned>(folder: &Path, name: &str) -> Result<Vec<T>, StudyError> {
     let text = read_limited_file(&folder.join(name))?;
     let parse = |(number, line): (usize, &str)| {

@@ -67,7 +67,7 @@ pub struct StudyDesign {
     pub mode: StudyTask,
     /// Seed of everything random but tokens.
     pub seed: u64,
-    /// Planned answers of each item.
+    /// How many answers each item shall get.
     pub per_item: u32,
     /// How many items a person gets, at most.
     pub per_participant: u32,
@@ -98,11 +98,11 @@ impl StudyDesign {
     /// When it has another format, or is no plan. The text gives the reason.
     pub(super) fn from_file(text: &str) -> Result<Self, String> {
         let mut file: Map<String, Value> = serde_json::from_str(text).map_err(|error| error.to_string())?;
-        let by = file.shift_remove("wayword");
+        let program_version = file.shift_remove("wayword");
         match file.shift_remove("format") {
             Some(format) if format != STUDY_FORMAT => {
-                let by = by.map_or_else(String::new, |by| {
-                    format!(" and version {} of this program wrote it", quote_shortened(&by))
+                let by = program_version.map_or_else(String::new, |version| {
+                    format!(" and version {} of this program wrote it", quote_shortened(&version))
                 });
                 let this = env!("CARGO_PKG_VERSION");
                 Err(format!(
@@ -115,6 +115,7 @@ impl StudyDesign {
     }
 }
 
+/// A value as JSON, cut off after [`MAX_QUOTED_CHARS`] characters.
 fn quote_shortened(value: &Value) -> String {
     value.to_string().chars().take(MAX_QUOTED_CHARS).collect()
 }

@@ -17,7 +17,7 @@ pub struct StudySettings {
     pub minutes: u32,
     /// What participants read before they consent, one paragraph each.
     pub about: Vec<String>,
-    /// The statement to which they agree.
+    /// The statement to which participants agree.
     pub agreement: String,
     /// Example texts of the style, for those who rate.
     #[serde(default)]
@@ -68,12 +68,12 @@ pub enum RecruiterSettings {
     Parameters {
         /// The parameter with the participant's id, as `PROLIFIC_PID` or `workerId`.
         person: String,
-        /// The parameter with the session's, as `SESSION_ID` or `assignmentId`.
+        /// The parameter with the session's id, as `SESSION_ID` or `assignmentId`.
         session: String,
-        /// The parameter with the study's, as `STUDY_ID` or `hitId`; empty where there is none.
+        /// The parameter with the study's id, as `STUDY_ID` or `hitId`; empty where there is none.
         #[serde(default)]
         study: String,
-        /// Only links of this study are let in; empty lets in any.
+        /// The id of a study at the recruiter: only its links are let in. Empty lets in those of any study.
         #[serde(default)]
         only_study: String,
     },
@@ -95,9 +95,9 @@ pub struct CompletionCodes {
     pub no_consent: String,
 }
 
-/// A study of this length or longer needs two failed checks (Prolific's rule), minutes.
+/// Prolific's rule, minutes: in a study of this length or longer, a participant may fail one attention check; in a shorter one, none.
 const LONG_MINUTES: u32 = 5;
-/// Most answers of a question.
+/// Most answers that a comprehension question may offer. [`StudySettings::check`] refuses more.
 const MOST_ANSWERS: usize = 10;
 
 impl StudySettings {
@@ -127,6 +127,7 @@ impl StudySettings {
                 ("You watch a walk through a building and say which of two texts describes it better.", 1)
             }
         };
+        // Four minutes for everything besides the items.
         let minutes = 4 + minutes_each * per_participant;
         Self {
             title: "Finding the way by a text".to_owned(),
@@ -200,6 +201,7 @@ impl StudySettings {
 }
 
 impl ComprehensionQuestion {
+    /// The questions with which a new study of this task begins.
     fn for_mode(mode: StudyTask) -> Vec<Self> {
         let question = |text: &str, answers: [&str; 3], right| Self {
             text: text.to_owned(),

@@ -8,7 +8,7 @@ use std::{
     thread::{self, JoinHandle},
 };
 
-/// Most writes in the queue, and in one commit. A sender waits while the queue is full, so that memory is bounded.
+/// How many writes the queue and one commit can contain. A sender waits while the queue is full, so that memory is bounded.
 const MOST_AT_ONCE: usize = 1024;
 
 /// Writes groups of writes to disk.
@@ -35,6 +35,7 @@ struct QueuedWrite<W, R> {
 /// Passes writes to the writing thread. When it is dropped, all pending writes are finished first.
 #[derive(Debug)]
 pub(super) struct CommitQueue<W, R> {
+    /// `None` once the queue is being dropped; then the thread ends.
     writes: Option<mpsc::SyncSender<QueuedWrite<W, R>>>,
     thread: Option<JoinHandle<()>>,
     path: PathBuf,
@@ -94,6 +95,7 @@ impl<W, R> Drop for CommitQueue<W, R> {
     }
 }
 
+/// The work of the writing thread, until the queue is dropped.
 fn run_commits<C: GroupCommit>(mut committer: C, writes: &mpsc::Receiver<QueuedWrite<C::Write, C::Outcome>>) {
     let mut group = Vec::new();
     while let Ok(first) = writes.recv() {
@@ -104,6 +106,7 @@ fn run_commits<C: GroupCommit>(mut committer: C, writes: &mpsc::Receiver<QueuedW
         }
         group = commit_and_report(&mut committer, group);
     }
+    // One more try for writes that have failed.
     if !group.is_empty() {
         commit_and_report(&mut committer, group);
     }

@@ -115,6 +115,7 @@ pub(crate) struct PendingRequest<'a> {
     pub(crate) key: &'a CallKey,
     /// The most that it may cost, US dollars.
     pub(crate) most_usd: Option<f64>,
+    /// The time, seconds since 1970.
     pub(crate) at_unix_s: i64,
     /// The limits of the run, for a store that keeps the budget.
     pub(crate) limits: RunLimits,
@@ -166,8 +167,9 @@ pub(crate) struct ClaimHolder {
 /// The time window in which a request may leave.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SendSlot {
+    /// The earliest moment.
     pub(crate) from: Instant,
-    /// If it leaves later, it could leave together with too many others.
+    /// The latest moment. A request that left later could leave together with too many others.
     pub(crate) until: Instant,
 }
 

@@ -1,5 +1,15 @@
 //! Reads and checks the `config.json` of the family. Missing values get the defaults of transformers.
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 use super::backbone::swin_config;
 use crate::{
     LocalError,
@@ -139,7 +149,7 @@ impl DinoConfig {
 
 impl DinoConfigFile {
     fn fill_defaults(self) -> Result<DinoConfig, String> {
-        let family = match &self.model_type[..] {
+        let family = match self.model_type.as_str() {
             "grounding-dino" => DinoFamily::Plain,
             "mm-grounding-dino" => DinoFamily::Mm,
             other => return Err(format!("model_type: {other} is neither grounding-dino nor mm-grounding-dino")),
@@ -222,7 +232,7 @@ impl DinoConfigFile {
         if !(self.positional_embedding_temperature > 0.0 && self.layer_norm_eps > 0.0) {
             return Err("positional_embedding_temperature and layer_norm_eps must be above 0".to_owned());
         }
-        match (&self.position_embedding_type[..], self.two_stage, self.embedding_init_target, self.query_dim) {
+        match (self.position_embedding_type.as_str(), self.two_stage, self.embedding_init_target, self.query_dim) {
             ("sine", true, true, 4) => Ok(()),
             _ => Err("position_embedding_type, two_stage, embedding_init_target and query_dim must be sine, true, true and 4, as in all public checkpoints".to_owned()),
         }

@@ -156,17 +156,18 @@ impl CommitDownload<'_> {
             let read = body
                 .read(&mut buffer)
                 .map_err(|error| RequestFailure::from_problem(format!("the connection broke: {error}")))?;
-            if read == 0 {
+            let piece = buffer.get(..read).unwrap_or(&buffer);
+            if piece.is_empty() {
                 break;
             }
-            done += read as u64;
+            done += piece.len() as u64;
             if done > max_bytes {
                 // None of these bytes can be trusted.
                 out.set_len(0).map_err(io)?;
                 let problem = format!("the server sends more than the expected {max_bytes} bytes");
                 return Err(RequestFailure::Lasting(LocalError::download_failed(address, problem, TRY_LATER)));
             }
-            out.write_all(&buffer[..read]).map_err(io)?;
+            out.write_all(piece).map_err(io)?;
             self.progress.bytes_arrived(file, done, size);
         }
         if size.is_some_and(|size| done < size) {

@@ -13,6 +13,16 @@
 //! Architecture invariant: a file is linked into a snapshot only if it has the hash that the hub announced, and the
 //! token is sent only to the hub's own address.
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 mod cache;
 mod client;
 mod commit_download;

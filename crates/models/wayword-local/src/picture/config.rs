@@ -1,5 +1,15 @@
 //! Reads `preprocessor_config.json`, which prescribes how pictures are resized, cropped and normalised.
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 use super::{PictureProcessor, ResizeRule, resample::ResampleFilter};
 use crate::{LocalError, json};
 use serde::Deserialize;
@@ -131,9 +141,12 @@ impl PictureConfig {
         {
             return Err("image_mean, image_std and rescale_factor must be finite, and image_std not 0".to_owned());
         }
-        Ok(std::array::from_fn(|colour| {
-            std::array::from_fn(|byte| ((byte as f64 * factor) as f32 - mean[colour] as f32) / deviation[colour] as f32)
-        }))
+        #[allow(clippy::cast_possible_truncation, reason = "the models compute with 32 bit floats")]
+        let values = |mean: f64, deviation: f64| {
+            std::array::from_fn(|byte| ((byte as f64 * factor) as f32 - mean as f32) / deviation as f32)
+        };
+        let ([red, green, blue], [red_deviation, green_deviation, blue_deviation]) = (mean, deviation);
+        Ok([values(red, red_deviation), values(green, green_deviation), values(blue, blue_deviation)])
     }
 }
 

@@ -3,6 +3,16 @@
 //! A file is never mapped into memory. Each tensor is converted for the computation as soon as it is read, so that at
 //! most one tensor is in memory twice.
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 mod pickle;
 mod pickled_file;
 mod safetensor;

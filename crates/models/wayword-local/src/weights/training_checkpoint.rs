@@ -142,7 +142,7 @@ impl ArchivedTensor {
         let (Some(numbers), Some(_), Some(_)) = (numbers, end, whole) else {
             return Err(format!("it is larger than what the file of {file} bytes has of it"));
         };
-        let mut step = 1;
+        let mut step = 1_usize;
         for (&length, &stride) in self.shape.iter().zip(&self.strides).rev() {
             if length > 1 && stride != step {
                 return Err(format!(
@@ -150,7 +150,7 @@ impl ArchivedTensor {
                     self.shape, self.strides
                 ));
             }
-            step *= length.max(1);
+            step = step.saturating_mul(length.max(1));
         }
         Ok((self.offset * size, numbers * size))
     }

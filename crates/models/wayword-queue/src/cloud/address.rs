@@ -12,6 +12,7 @@ use object_store::{
 use std::{fs, sync::Arc, time::Duration};
 use url::Url;
 
+/// The beginnings of addresses that name an object store, and not a folder.
 const ADDRESS_SCHEMES: [&str; 10] = ["s3", "s3a", "gs", "az", "adl", "azure", "abfs", "abfss", "https", "file"];
 
 /// The schemes in which the part before the `@` is a container and not a user.
@@ -28,7 +29,7 @@ fn is_url(text: &str) -> bool {
         .is_some_and(|(scheme, _)| ADDRESS_SCHEMES.iter().any(|known| known.eq_ignore_ascii_case(scheme)))
 }
 
-/// A store, the prefix in it, and the address as it may be shown.
+/// A store, the prefix in it, and the address as messages may show it.
 pub(super) struct OpenedStore {
     pub(super) store: Arc<dyn ObjectStore>,
     pub(super) prefix: Path,
@@ -39,6 +40,7 @@ fn address_error(problem: &'static str, hint: &'static str) -> CloudError {
     CloudError::Address { problem, hint }
 }
 
+/// Opens the store at an address, without sending a request. A folder is made.
 pub(super) fn open_store(text: &str) -> Result<OpenedStore, CloudError> {
     let url = parse_address(text)?;
     let Ok((scheme, prefix)) = ObjectStoreScheme::parse(&url) else {
@@ -97,6 +99,7 @@ fn parse_address(text: &str) -> Result<Url, CloudError> {
     Ok(url)
 }
 
+/// Opens a folder of this machine as a store, and makes it if it does not exist.
 fn open_folder(url: &Url, shown: String) -> Result<OpenedStore, CloudError> {
     let path = url.to_file_path().map_err(|()| address_error("is no folder of this machine", ADDRESS_HINT))?;
     fs::create_dir_all(&path).map_err(CloudError::for_local_file(&path, "make this folder"))?;

@@ -8,13 +8,13 @@ use object_store::{
 use std::{fmt, sync::Arc, time::Duration};
 use tokio::runtime::{Builder, Handle, Runtime};
 
-/// The most objects that are listed. A million names are about 200 MB.
+/// The most objects that are listed; more are an error. A million names are about 200 MB.
 pub const MOST_OBJECTS: usize = 1_000_000;
 
 /// How often a write is tried again after a conflict with another write of the same object.
 const MAX_CONFLICT_RETRIES: u32 = 5;
 
-/// The pause before it, multiplied by the number of conflicts so far.
+/// The pause before such a retry, multiplied by the number of conflicts so far.
 const CONFLICT_PAUSE: Duration = Duration::from_millis(50);
 
 /// An object of a list.
@@ -32,7 +32,9 @@ pub struct StoredObject {
 pub struct CloudBucket {
     pub(super) store: Arc<dyn ObjectStore>,
     prefix: Path,
+    /// The address, as messages show it.
     shown: String,
+    /// Runs the store's asynchronous client.
     runtime: Runtime,
 }
 
@@ -80,7 +82,7 @@ impl CloudBucket {
         Ok(Self { store, prefix: Path::default(), shown: "memory:".to_owned(), runtime: start_runtime()? })
     }
 
-    /// Waits for the store.
+    /// Waits until the store has done some work.
     pub(super) fn block_on_store<T>(&self, work: impl Future<Output = Result<T, CloudError>>) -> Result<T, CloudError> {
         if Handle::try_current().is_ok() {
             return Err(CloudError::InsideAsync);
@@ -93,11 +95,13 @@ impl CloudBucket {
         if name.is_empty() { self.shown.clone() } else { format!("{}/{}", self.shown, name.escape_debug()) }
     }
 
+    /// The path of an object in the store, below the bucket's prefix. The name is checked.
     pub(super) fn object_path(&self, name: &str) -> Result<Path, CloudError> {
         names::check_name(name)?;
         names::path_below(&self.prefix, name)
     }
 
+    /// The error of an operation on an object.
     pub(super) fn object_error(&self, name: &str, doing: &'static str, error: &object_store::Error) -> CloudError {
         match store_errors::from_store_error(&self.shown_address(name), doing, error) {
             CloudError::NoBucket { .. } => CloudError::NoBucket { bucket: self.shown.clone() },
@@ -142,6 +146,7 @@ impl CloudBucket {
         })
     }
 
+    /// The error of a store without put-if-absent. `problem` is how this became known.
     fn no_put_new(&self, problem: &'static str) -> CloudError {
         CloudError::NoPutNew { bucket: self.shown.clone(), problem }
     }
@@ -182,7 +187,7 @@ impl CloudBucket {
         let place = self.object_path(name)?;
         self.block_on_store(async {
             match self.store.get(&place).await {
-                Ok(found) => self.bytes_of(name, found, most_bytes).await.map(Some),
+                Ok(object) => self.bytes_of(name, object, most_bytes).await.map(Some),
                 Err(error @ object_store::Error::NotFound { .. }) => match self.object_error(name, "read it", &error) {
                     no_bucket @ CloudError::NoBucket { .. } => Err(no_bucket),
                     _ => Ok(None),
@@ -192,13 +197,14 @@ impl CloudBucket {
         })
     }
 
-    async fn bytes_of(&self, name: &str, found: GetResult, most: u64) -> Result<Vec<u8>, CloudError> {
+    /// The content of an object of at most `most` bytes.
+    async fn bytes_of(&self, name: &str, object: GetResult, most: u64) -> Result<Vec<u8>, CloudError> {
         let too_large = |bytes| CloudError::TooLarge { at: self.shown_address(name), bytes, most };
-        if found.meta.size > most {
-            return Err(too_large(found.meta.size));
+        if object.meta.size > most {
+            return Err(too_large(object.meta.size));
         }
         let mut bytes = Vec::new();
-        let mut pieces = found.into_stream();
+        let mut pieces = object.into_stream();
         while let Some(piece) = pieces.next().await {
             let piece = piece.map_err(|error| self.object_error(name, "read it", &error))?;
             bytes.extend_from_slice(&piece);
@@ -222,8 +228,8 @@ impl CloudBucket {
         let place = names::path_below(&self.prefix, prefix)?;
         self.block_on_store(async {
             let mut entries = Vec::new();
-            let mut found = self.store.list(Some(&place));
-            while let Some(about) = found.try_next().await.map_err(|error| self.listing_error(prefix, &error))? {
+            let mut objects = self.store.list(Some(&place));
+            while let Some(about) = objects.try_next().await.map_err(|error| self.listing_error(prefix, &error))? {
                 let Some(entry) = self.object_from_meta(&about)? else { continue };
                 if entries.len() == MOST_OBJECTS {
                     return Err(CloudError::TooMany { at: self.shown_address(prefix), most: MOST_OBJECTS });
@@ -235,6 +241,7 @@ impl CloudBucket {
         })
     }
 
+    /// The error of listing the objects below a prefix.
     fn listing_error(&self, prefix: &str, error: &object_store::Error) -> CloudError {
         // The client refuses some hostile names before they get here.
         if matches!(error, object_store::Error::InvalidPath { .. }) {
@@ -243,6 +250,7 @@ impl CloudBucket {
         self.object_error(prefix, "list what is there", error)
     }
 
+    /// The entry of a list for an object; `None` if the object only represents a folder. Its name is checked.
     fn object_from_meta(&self, about: &ObjectMeta) -> Result<Option<StoredObject>, CloudError> {
         let whole = about.location.as_ref();
         let name = match self.prefix.as_ref() {
@@ -270,7 +278,7 @@ impl CloudBucket {
     }
 }
 
-/// The ETag without quotes: Azure gives it with them in one answer and without in another.
+/// The ETag without quotes: Azure gives it with quotes in some answers and without in others.
 pub(super) fn object_version(about: &ObjectMeta) -> Option<String> {
     let tag = about.e_tag.as_deref()?;
     let tag = tag.strip_prefix("W/").unwrap_or(tag).trim_matches('"');

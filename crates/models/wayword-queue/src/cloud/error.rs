@@ -123,12 +123,13 @@ pub enum CloudError {
         /// How the user can fix it.
         hint: &'static str,
     },
-    /// It was called inside an asynchronous program.
+    /// A call of this module, all of which block, was made inside an asynchronous task.
     #[error("object stores cannot be used inside an asynchronous task\nhint: call from a thread of its own")]
     InsideAsync,
 }
 
 impl CloudError {
+    /// Makes an error of a file of this machine out of the system's error, for `map_err`.
     pub(super) fn for_local_file(path: impl Into<PathBuf>, doing: &'static str) -> impl FnOnce(io::Error) -> Self {
         let path = path.into();
         move |source| Self::Local { path, doing, source }

@@ -21,7 +21,7 @@ use std::{
 /// How many files are fetched at the same time.
 const CONCURRENT_FILES: usize = 6;
 
-/// The most bytes of one request. A larger file is asked for in pieces, so that a broken connection costs one of them.
+/// The most bytes of one request. A larger file is requested in pieces, so that a broken connection costs only one piece.
 const MAX_PIECE_BYTES: u64 = 32 << 20;
 
 /// How often the index is written. Files that are not yet in it when the program is killed are fetched again.
@@ -32,7 +32,7 @@ const INDEX_WRITE_INTERVAL: Duration = Duration::from_secs(2);
 pub struct FetchSummary {
     /// How many files were fetched.
     pub files: usize,
-    /// How many bytes they have.
+    /// How many bytes the fetched files have.
     pub bytes: u64,
     /// How many files were there already.
     pub kept: usize,
@@ -41,8 +41,11 @@ pub struct FetchSummary {
 /// One fetch.
 struct FolderFetch<'a> {
     bucket: &'a CloudBucket,
+    /// The prefix of the objects in the bucket; empty for all.
     name: &'a str,
+    /// The folder of this machine that gets the files.
     local: &'a Path,
+    /// Gets the bytes that are there, and all bytes.
     progress: &'a dyn Fn(u64, u64),
     all_bytes: u64,
     /// The ending of a file's name until the file is whole.
@@ -87,6 +90,7 @@ impl CloudBucket {
 }
 
 impl FolderFetch<'_> {
+    /// Fetches the missing files and adds each to the index. `done` is the bytes that are there already.
     async fn fetch_all(
         &self,
         missing: &[&StoredObject],
@@ -94,7 +98,7 @@ impl FolderFetch<'_> {
         index: &mut FetchIndex,
     ) -> Result<FetchSummary, CloudError> {
         let mut fetched = FetchSummary::default();
-        let mut written = Instant::now();
+        let mut last_write = Instant::now();
         let mut arriving =
             stream::iter(missing.iter().map(|entry| self.fetch_one(entry))).buffer_unordered(CONCURRENT_FILES);
         while let Some(entry) = arriving.next().await {
@@ -104,14 +108,15 @@ impl FolderFetch<'_> {
             fetched.bytes += entry.bytes;
             done += entry.bytes;
             (self.progress)(done, self.all_bytes);
-            if written.elapsed() > INDEX_WRITE_INTERVAL {
+            if last_write.elapsed() > INDEX_WRITE_INTERVAL {
                 index.write_index(self.local)?;
-                written = Instant::now();
+                last_write = Instant::now();
             }
         }
         Ok(fetched)
     }
 
+    /// Fetches a file under an unfinished name, and gives it its own name when it is whole.
     async fn fetch_one<'e>(&self, entry: &'e StoredObject) -> Result<&'e StoredObject, CloudError> {
         let relative = names::file_of(&entry.name)?;
         let path = self.local.join(&relative);
@@ -121,12 +126,13 @@ impl FolderFetch<'_> {
         let part = PathBuf::from(part);
         // Removes the rest of a fetch that was killed, or a link.
         let _ = fs::remove_file(&part);
-        let made = File::options().write(true).create_new(true).open(&part);
-        let got = match made.map_err(CloudError::for_local_file(&part, "write")) {
+        let opened = File::options().write(true).create_new(true).open(&part);
+        let fetched = match opened.map_err(CloudError::for_local_file(&part, "write")) {
             Ok(file) => self.fetch_pieces(entry, &part, file).await,
             Err(error) => Err(error),
         };
-        let placed = got.and_then(|()| fs::rename(&part, &path).map_err(CloudError::for_local_file(&path, "write")));
+        let placed =
+            fetched.and_then(|()| fs::rename(&part, &path).map_err(CloudError::for_local_file(&path, "write")));
         if placed.is_err() {
             // The first failure is the one to report.
             let _ = fs::remove_file(&part);
@@ -134,6 +140,7 @@ impl FolderFetch<'_> {
         placed.map(|()| entry)
     }
 
+    /// Fetches the content of an object into the file at `part`.
     async fn fetch_pieces(&self, entry: &StoredObject, part: &Path, mut file: File) -> Result<(), CloudError> {
         let mut start = 0;
         while start < entry.bytes {
@@ -144,6 +151,7 @@ impl FolderFetch<'_> {
         file.sync_all().map_err(CloudError::for_local_file(part, "write"))
     }
 
+    /// Appends a range of an object's bytes to the file, if the object is still the one that was listed.
     async fn fetch_piece(
         &self,
         entry: &StoredObject,
@@ -154,25 +162,25 @@ impl FolderFetch<'_> {
         let name = if self.name.is_empty() { entry.name.clone() } else { format!("{}/{}", self.name, entry.name) };
         let wrong = |error| self.bucket.object_error(&name, "read it", &error);
         let changed = || CloudError::Changed { at: self.bucket.shown_address(&name) };
-        let mut left = range.end - range.start;
+        let mut remaining = range.end - range.start;
         let options = GetOptions { range: Some(GetRange::Bounded(range)), ..GetOptions::default() };
         let store: &dyn ObjectStore = &*self.bucket.store;
-        let found = store.get_opts(&self.bucket.object_path(&name)?, options).await.map_err(wrong)?;
-        let is_same = bucket::object_version(&found.meta) == entry.version && found.meta.size == entry.bytes;
+        let answer = store.get_opts(&self.bucket.object_path(&name)?, options).await.map_err(wrong)?;
+        let is_same = bucket::object_version(&answer.meta) == entry.version && answer.meta.size == entry.bytes;
         if !is_same {
             return Err(changed());
         }
-        let mut bytes = found.into_stream();
-        while let Some(some) = bytes.next().await {
-            let some = some.map_err(wrong)?;
-            left = left.checked_sub(some.len() as u64).ok_or_else(changed)?;
-            file.write_all(&some).map_err(CloudError::for_local_file(part, "write"))?;
+        let mut bytes = answer.into_stream();
+        while let Some(piece) = bytes.next().await {
+            let piece = piece.map_err(wrong)?;
+            remaining = remaining.checked_sub(piece.len() as u64).ok_or_else(changed)?;
+            file.write_all(&piece).map_err(CloudError::for_local_file(part, "write"))?;
         }
-        if left == 0 { Ok(()) } else { Err(changed()) }
+        if remaining == 0 { Ok(()) } else { Err(changed()) }
     }
 }
 
-/// The objects by their names below a prefix, all checked before anything is written.
+/// The objects with their names relative to a prefix. All names are checked before anything is written.
 fn objects_below(prefix: &str, entries: Vec<StoredObject>) -> Result<Vec<StoredObject>, CloudError> {
     let mut inside = Vec::with_capacity(entries.len());
     for mut entry in entries {
@@ -208,7 +216,7 @@ fn without_folders(entries: Vec<StoredObject>) -> Result<Vec<StoredObject>, Clou
     Ok(entries.into_iter().filter(|entry| !is_folder(entry)).collect())
 }
 
-/// Makes the folders of a file, none of which may be a link: it could lead elsewhere.
+/// Makes the folders of a file. None of them may be a link, because a link could lead out of the local folder.
 fn make_parents(local: &Path, relative: &Path) -> Result<(), CloudError> {
     let mut folder = local.to_owned();
     for part in relative.parent().into_iter().flat_map(Path::components) {

@@ -13,9 +13,10 @@ use std::{
 /// The file in which a folder's fetched files are listed.
 pub const FETCH_INDEX_FILE: &str = ".wayword-fetched.json";
 
-/// The most bytes of an index that are read: about a million names.
+/// The most bytes of an index that are read, enough for about a million names. A larger index counts as broken.
 const MAX_INDEX_BYTES: u64 = 512 << 20;
 
+/// The index of a fetched folder, as its file stores it.
 #[derive(Serialize, Deserialize, Default)]
 pub(super) struct FetchIndex {
     /// The address in the store. Files from another address do not count.
@@ -24,6 +25,7 @@ pub(super) struct FetchIndex {
     files: BTreeMap<String, IndexedFile>,
 }
 
+/// The size and the version of a fetched file.
 #[derive(Serialize, Deserialize, PartialEq)]
 struct IndexedFile {
     bytes: u64,
@@ -55,12 +57,14 @@ impl FetchIndex {
                 .is_ok_and(|about| about.is_file() && about.len() == entry.bytes)
     }
 
+    /// Adds a fetched file. A file without a version is left out, so that it is fetched again.
     pub(super) fn add_object(&mut self, entry: &StoredObject) {
         if let Some(version) = &entry.version {
             self.files.insert(entry.name.clone(), IndexedFile { bytes: entry.bytes, version: version.clone() });
         }
     }
 
+    /// Writes the index into its folder, whole or not at all.
     pub(super) fn write_index(&self, folder: &Path) -> Result<(), CloudError> {
         let path = folder.join(FETCH_INDEX_FILE);
         let part = folder.join(format!("{FETCH_INDEX_FILE}.{}.part", std::process::id()));

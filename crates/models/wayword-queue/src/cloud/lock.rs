@@ -11,6 +11,8 @@ use std::{
 pub(super) const UNFINISHED_SUFFIX: &str = ".wayword-part";
 
 /// A lock of a folder, until it is dropped or the program ends.
+///
+/// `None` where the file system has no locks.
 pub(super) struct FetchLock(Option<File>);
 
 impl FetchLock {

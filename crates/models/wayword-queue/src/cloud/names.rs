@@ -8,9 +8,10 @@ use std::path::PathBuf;
 /// The most bytes of a name: the limit of S3 and Azure.
 const MAX_NAME_BYTES: usize = 1024;
 
-/// The most bytes of a part: the limit of file systems, minus room for the ending of unfinished files.
+/// The most bytes of a part between two `/`: the limit of file systems, minus room for the ending of unfinished files.
 const LONGEST_PART: usize = 200;
 
+/// The problem of a name, as the end of a sentence; `None` if the name can be used.
 fn problem_of(name: &str) -> Option<&'static str> {
     if name.is_empty() {
         return Some("is empty");
@@ -36,11 +37,12 @@ pub(super) fn check_name(name: &str) -> Result<(), CloudError> {
     problem_of(name).map_or(Ok(()), |problem| Err(name_error(name, problem)))
 }
 
+/// The error of a name, which is cut after 80 characters.
 pub(super) fn name_error(name: &str, problem: &'static str) -> CloudError {
     CloudError::Name { name: name.chars().take(80).collect(), problem }
 }
 
-/// The place of an object below a prefix. An empty name is the prefix.
+/// The path of an object below a prefix. An empty name is the prefix itself.
 pub(super) fn path_below(prefix: &Path, name: &str) -> Result<Path, CloudError> {
     let whole = match (prefix.as_ref(), name) {
         ("", name) => name.to_owned(),

@@ -15,10 +15,10 @@ const CONCURRENT_FILES: usize = 6;
 /// How many parts of one file are sent at the same time.
 const CONCURRENT_PARTS: usize = 2;
 
-/// The size of a part, and the largest file that is sent in one.
+/// The size of a part, and the largest file that is sent in one request, bytes. Files with too many parts get larger ones.
 const PART_BYTES: u64 = 8 << 20;
 
-/// The most parts of a file, below the 10,000 of S3.
+/// The most parts of a file: below the limit of S3, which is 10,000.
 const MOST_PARTS: u64 = 9_000;
 
 /// Counts of a send.
@@ -30,6 +30,7 @@ pub struct SendSummary {
     pub bytes: u64,
 }
 
+/// A file to send: its path on this machine, its name in the bucket, and its size.
 struct OutgoingFile {
     path: PathBuf,
     name: String,
@@ -58,6 +59,7 @@ impl CloudBucket {
         })
     }
 
+    /// Sends a file, and returns its size in bytes.
     async fn send_file(&self, item: &OutgoingFile) -> Result<u64, CloudError> {
         let place = self.object_path(&item.name)?;
         let file = File::open(&item.path).map_err(CloudError::for_local_file(&item.path, "open"))?;
@@ -70,6 +72,7 @@ impl CloudBucket {
         put.map(|_| item.bytes).map_err(|error| self.object_error(&item.name, "write it", &error))
     }
 
+    /// Sends a large file in parts, and returns its size in bytes. After a failure no object has the parts.
     async fn send_parts(&self, item: &OutgoingFile, place: &Place, file: File) -> Result<u64, CloudError> {
         let wrong = |error| self.object_error(&item.name, "write it", &error);
         let part = part_size(item.bytes);
@@ -83,6 +86,7 @@ impl CloudBucket {
         writer.finish().await.map(|_| item.bytes).map_err(wrong)
     }
 
+    /// Reads a file and hands its parts of `part` bytes to the writer.
     async fn write_parts(
         &self,
         writer: &mut WriteMultipart,
@@ -90,10 +94,10 @@ impl CloudBucket {
         file: &File,
         part: u64,
     ) -> Result<(), CloudError> {
-        let mut left = item.bytes;
-        while left > 0 {
-            let bytes = read_piece(file, item, left.min(part))?;
-            left -= bytes.len() as u64;
+        let mut remaining = item.bytes;
+        while remaining > 0 {
+            let bytes = read_piece(file, item, remaining.min(part))?;
+            remaining -= bytes.len() as u64;
             writer
                 .wait_for_capacity(CONCURRENT_PARTS)
                 .await
@@ -109,6 +113,7 @@ fn part_size(bytes: u64) -> u64 {
     PART_BYTES.max(bytes.div_ceil(MOST_PARTS))
 }
 
+/// The next `length` bytes of a file.
 fn read_piece(mut file: &File, item: &OutgoingFile, length: u64) -> Result<Vec<u8>, CloudError> {
     let mut bytes = vec![0; usize::try_from(length).unwrap_or(usize::MAX)];
     file.read_exact(&mut bytes).map_err(CloudError::for_local_file(&item.path, "read"))?;
@@ -123,7 +128,7 @@ fn is_at_end(mut file: &File, item: &OutgoingFile) -> Result<(), CloudError> {
     }
 }
 
-/// Whether a file is there only because something was fetched into the folder, maybe by a program that was killed.
+/// Whether a file is the index or an unfinished file of a fetch into the folder. `is_top` is whether it lies in the folder itself.
 fn is_of_fetch(name: &str, is_top: bool) -> bool {
     name.ends_with(UNFINISHED_SUFFIX) || (is_top && name.starts_with(FETCH_INDEX_FILE))
 }

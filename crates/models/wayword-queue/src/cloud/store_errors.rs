@@ -1,4 +1,4 @@
-//! Translates errors of the crate `object_store` into ours.
+//! Translates errors of the crate `object_store` into [`CloudError`].
 //!
 //! The crate distinguishes only a few kinds of error. A wrong key, a missing bucket and an overloaded server can all arrive
 //! as a generic error with the server's answer in its text. So this file searches the text for known codes. It never passes
@@ -8,6 +8,7 @@ use super::CloudError;
 use object_store::client::{HttpError, HttpErrorKind};
 use std::{error::Error, io};
 
+/// The hint for errors with no known cause.
 const STORE_LOG_HINT: &str = "see what the store's own log says, and check the address";
 
 /// Codes of answers to invalid credentials. They come with 400, 401 or 403.
@@ -38,7 +39,7 @@ const NO_CREDENTIALS: [&str; 7] = [
     "application_default_credentials",
 ];
 
-/// The error of a caller, without the texts of servers.
+/// The error for callers, without the texts of servers. `at` is the address of the object, and `doing` the operation on it.
 pub(super) fn from_store_error(at: &str, doing: &'static str, error: &object_store::Error) -> CloudError {
     use object_store::Error as E;
     // Every level has its own text; the variables of a level may be only in its debugging text.
@@ -116,15 +117,18 @@ pub(super) fn is_no_bucket(error: &object_store::Error) -> bool {
     NO_BUCKET.iter().any(|code| text.contains(code))
 }
 
+/// An error, its cause, the cause's cause and so on.
 fn error_chain<'a>(error: &'a (dyn Error + 'static)) -> impl Iterator<Item = &'a (dyn Error + 'static)> {
-    // No error has so many levels; a loop in one must not hang the program.
+    // No error has 32 levels; an error that is its own cause must not hang the program.
     std::iter::successors(Some(error), |level: &&'a (dyn Error + 'static)| (*level).source()).take(32)
 }
 
+/// The kind of the operating system's error that caused an error, if one did.
 fn system_error_kind(error: &object_store::Error) -> Option<io::ErrorKind> {
     error_chain(error).find_map(|level| Some(level.downcast_ref::<io::Error>()?.kind()))
 }
 
+/// The problem with the network that caused an error, if one did.
 fn network_problem(error: &object_store::Error) -> Option<&'static str> {
     let kind = error_chain(error).find_map(|level| Some(level.downcast_ref::<HttpError>()?.kind()))?;
     Some(match kind {
@@ -136,6 +140,7 @@ fn network_problem(error: &object_store::Error) -> Option<&'static str> {
     })
 }
 
+/// The problem of a server that an answer's status reports, if it does.
 fn overload_problem(text: &str) -> Option<&'static str> {
     match status_code(text)? {
         "429" | "503" => Some("the store is overloaded"),
@@ -144,6 +149,7 @@ fn overload_problem(text: &str) -> Option<&'static str> {
     }
 }
 
+/// The three digits of an answer's HTTP status in the text of an error.
 fn status_code(text: &str) -> Option<&str> {
     let digits = text.split_once("status code: ")?.1.get(..3)?;
     digits.bytes().all(|byte| byte.is_ascii_digit()).then_some(digits)

@@ -23,7 +23,7 @@ use std::{
 const MARKS_FOLDER: &str = CHUNKS_FOLDER;
 /// The prefix of the results.
 const RESULTS_FOLDER: &str = "results";
-/// Largest file that is written once, bytes: a plan of ten million items.
+/// Largest file other than results that is fetched, bytes: enough for a plan of ten million items.
 const MOST_BYTES: u64 = 1 << 30;
 /// Largest results of a chunk that are fetched, bytes.
 const MOST_CHUNK_BYTES: u64 = 1 << 40;
@@ -33,6 +33,7 @@ const MOST_CHUNK_BYTES: u64 = 1 << 40;
 #[derive(Debug)]
 pub struct CloudRun {
     bucket: CloudBucket,
+    /// The folder of this machine in which the worker works.
     folder: PathBuf,
 }
 
@@ -66,7 +67,7 @@ impl CloudRun {
         }
     }
 
-    /// Sends a file that is written once, and fetches the store's if another worker was first.
+    /// Sends a file that only one worker may write. If another worker was first, its file is fetched instead.
     ///
     /// # Errors
     /// When the file cannot be read or the store cannot be used.
@@ -81,12 +82,12 @@ impl CloudRun {
 
     /// The numbers of the chunks that have a mark in the store.
     fn marked_chunks(&self, plan: &ChunkPlan) -> Result<BTreeSet<usize>, QueueError> {
-        let there: BTreeSet<String> =
+        let stored: BTreeSet<String> =
             self.bucket.list_objects(MARKS_FOLDER)?.into_iter().map(|entry| entry.name).collect();
-        Ok((0..plan.chunk_count()).filter(|chunk| there.contains(&self.mark_name(*chunk))).collect())
+        Ok((0..plan.chunk_count()).filter(|chunk| stored.contains(&self.mark_name(*chunk))).collect())
     }
 
-    /// Fetches the marks of finished chunks, in place of those that are here.
+    /// Fetches the marks of finished chunks, in place of those in the folder.
     ///
     /// # Errors
     /// When the store or the folder cannot be used.
@@ -125,7 +126,8 @@ impl CloudRun {
         Ok(self.bucket.remove_object(&self.mark_name(chunk))?)
     }
 
-    /// Fetches the plan, the marks and the results that these name into the folder. Continues where it was stopped.
+    /// Fetches the plan, the marks and the results that the marks name into the folder. A fetch that was stopped is continued.
+    /// `progress` gets the number of chunks so far, and of all chunks.
     ///
     /// # Errors
     /// When there is no run, the folder has another one, or the store or the folder cannot be used.
@@ -160,7 +162,7 @@ impl CloudRun {
         SendingBoard { run: self, board }
     }
 
-    /// The name of a chunk's mark, here and in the store.
+    /// The name of a chunk's mark, in the folder and in the store.
     fn mark_name(&self, chunk: usize) -> String {
         name_in(&self.folder, &done_path(&self.folder, chunk))
     }
@@ -180,8 +182,9 @@ impl CloudRun {
         }
         self.fetch_file(&name)?;
         match done_of(&self.folder, done.chunk)? {
-            Some(there) if there.epoch == done.epoch => Ok(true),
-            Some(there) if is_try(done.epoch) || there.epoch > done.epoch => Ok(false),
+            Some(stored) if stored.epoch == done.epoch => Ok(true),
+            // Another try of a shard was first, or the queue gave the chunk to another worker later.
+            Some(stored) if is_try(done.epoch) || stored.epoch > done.epoch => Ok(false),
             _ => {
                 self.bucket.put_object(&name, bytes)?;
                 Ok(true)
@@ -211,7 +214,7 @@ fn is_try(epoch: i64) -> bool {
     epoch >= FIRST_TRY
 }
 
-/// The claim as the board knows it: a shard knows no tries.
+/// The claim as the board behind a [`SendingBoard`] knows it: with epoch 0 if the board is a shard, which has no tries.
 fn on_board(claimed: ChunkClaim) -> ChunkClaim {
     if is_try(claimed.epoch) { ChunkClaim { epoch: 0, ..claimed } } else { claimed }
 }
@@ -223,6 +226,7 @@ pub struct SendingBoard<'a> {
 }
 
 impl SendingBoard<'_> {
+    /// Sends the results of a chunk. If that fails, the chunk is handed back.
     fn send_results(&self, claimed: ChunkClaim, results: &Path) -> Result<(), QueueError> {
         let sent = self.run.bucket.send_folder(results, &self.run.results_name(results));
         sent.map(drop).or_else(|error: CloudError| {
@@ -242,14 +246,14 @@ impl ChunkBoard for SendingBoard<'_> {
     fn complete_chunk(&self, claimed: ChunkClaim, done: &ChunkRecord) -> Result<bool, QueueError> {
         let results = chunk_folder(&self.run.folder, claimed.chunk, claimed.epoch);
         self.send_results(claimed, &results)?;
-        let holds = self.board.complete_chunk(on_board(claimed), done)? && self.run.put_mark(done)?;
+        let counts = self.board.complete_chunk(on_board(claimed), done)? && self.run.put_mark(done)?;
         if !is_try(claimed.epoch) {
             // The queue knows which chunks are finished, also after one was opened again. A local mark would be outdated then.
             remove_if_there(&done_path(&self.run.folder, claimed.chunk))?;
         }
         match fs::remove_dir_all(&results) {
             Err(error) if error.kind() != ErrorKind::NotFound => Err(QueueError::for_file(&results, "remove")(error)),
-            _ => Ok(holds),
+            _ => Ok(counts),
         }
     }
 

@@ -13,7 +13,7 @@ pub(super) fn value_error(option: &'static str, value: &str, problem: &str, hint
     LaunchError::Value { option, problem: format!("{shown:?} {problem}"), hint }
 }
 
-/// A text that is not empty and has no control characters.
+/// Checks that a text is not empty and has no control characters.
 pub(super) fn check_text(option: &'static str, value: &str) -> Result<(), LaunchError> {
     match value.is_empty() || has_control(value) {
         true => {
@@ -23,7 +23,7 @@ pub(super) fn check_text(option: &'static str, value: &str) -> Result<(), Launch
     }
 }
 
-/// A text of ASCII letters, digits and some marks.
+/// Checks that a text has only ASCII letters, digits and the characters in `marks`, and does not begin with a hyphen.
 pub(super) fn check_word(option: &'static str, value: &str, marks: &str) -> Result<(), LaunchError> {
     let fits = |c: char| c.is_ascii_alphanumeric() || marks.contains(c);
     match !value.is_empty() && !value.starts_with('-') && value.chars().all(fits) {
@@ -34,7 +34,7 @@ pub(super) fn check_word(option: &'static str, value: &str, marks: &str) -> Resu
     }
 }
 
-/// The name of an environment variable.
+/// Checks the name of an environment variable.
 pub(super) fn check_variable(option: &'static str, value: &str) -> Result<(), LaunchError> {
     match !value.starts_with(|c: char| c.is_ascii_digit()) && check_word(option, value, "_").is_ok() {
         true => Ok(()),
@@ -47,7 +47,7 @@ pub(super) fn check_variable(option: &'static str, value: &str) -> Result<(), La
     }
 }
 
-/// A name as DNS has its labels, with room for what Kubernetes appends.
+/// Checks a name that must be a DNS label of at most `most` characters. Kubernetes appends to some names, so their limit is lower.
 pub(super) fn check_label(option: &'static str, value: &str, most: usize) -> Result<(), LaunchError> {
     match is_label(value) && value.len() <= most {
         true => Ok(()),
@@ -60,7 +60,7 @@ pub(super) fn check_label(option: &'static str, value: &str, most: usize) -> Res
     }
 }
 
-/// Names of secrets and claims may have dots.
+/// Checks the name of a secret or a claim: DNS labels with dots between them, at most 253 characters together.
 pub(super) fn check_dotted(option: &'static str, value: &str) -> Result<(), LaunchError> {
     match value.len() <= 253 && value.split('.').all(is_label) {
         true => Ok(()),
@@ -73,12 +73,13 @@ pub(super) fn check_dotted(option: &'static str, value: &str) -> Result<(), Laun
     }
 }
 
+/// Whether a text is a DNS label.
 fn is_label(value: &str) -> bool {
     let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     (1..=63).contains(&value.len()) && value.chars().all(fits) && !value.starts_with('-') && !value.ends_with('-')
 }
 
-/// An amount as Kubernetes writes it: digits, perhaps with a fraction, and a unit. Zero is refused.
+/// Checks an amount as Kubernetes writes it: digits, perhaps with a fraction, and a unit. Zero is refused.
 pub(super) fn check_amount(
     option: &'static str,
     value: &str,
@@ -87,11 +88,11 @@ pub(super) fn check_amount(
 ) -> Result<(), LaunchError> {
     let number = value.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let unit = value.get(number.len()..).unwrap_or_default();
-    let digits = |text: &str| !text.is_empty() && text.len() <= 15 && text.chars().all(|c| c.is_ascii_digit());
+    let is_digits = |text: &str| !text.is_empty() && text.len() <= 15 && text.chars().all(|c| c.is_ascii_digit());
     let is_number =
-        number.split_once('.').map_or_else(|| digits(number), |(whole, part)| digits(whole) && digits(part));
-    let is_some = number.contains(|c: char| matches!(c, '1'..='9'));
-    match is_number && is_some && (unit.is_empty() || units.contains(&unit)) {
+        number.split_once('.').map_or_else(|| is_digits(number), |(whole, part)| is_digits(whole) && is_digits(part));
+    let is_positive = number.contains(|c: char| matches!(c, '1'..='9'));
+    match is_number && is_positive && (unit.is_empty() || units.contains(&unit)) {
         true => Ok(()),
         false => Err(value_error(option, value, "is no amount", hint)),
     }

@@ -16,15 +16,15 @@ use serde::Serialize;
 
 const KUBERNETES_TEMPLATE: &str = include_str!("kubernetes.j2");
 
-/// Most characters of a label.
+/// Most characters of a DNS label, which most names in Kubernetes are.
 const MAX_LABEL_CHARS: usize = 63;
 /// How often an index is started again after its worker failed for a temporary reason.
 const MAX_INDEX_RESTARTS: u32 = 3;
-/// How long a worker may take to hand its work back, seconds.
+/// How long a worker may take to hand its work back before Kubernetes kills it, seconds.
 const GRACE_S: u32 = 120;
 /// Where the password file is mounted.
 const SECRETS_FOLDER: &str = "/run/wayword";
-/// The user of Wayword's image.
+/// The number of the user that Wayword's image runs as.
 const IMAGE_USER_ID: u32 = 65532;
 
 /// Workers in Kubernetes.
@@ -102,6 +102,7 @@ impl KubernetesJob {
         }
     }
 
+    /// Checks every value of the job.
     fn check_job(&self) -> Result<(), LaunchError> {
         self.worker.check_worker()?;
         check_label("--name", &self.name, self.longest_name())?;
@@ -117,20 +118,21 @@ impl KubernetesJob {
         self.check_secrets()
     }
 
-    /// A pod's host is named after the job and the index, and that name is a label too.
+    /// Most characters of the job's name. A pod's host is named after the job and the index, and that name is a label too.
     fn longest_name(&self) -> usize {
         let index = self.worker.workers.saturating_sub(1).to_string();
         MAX_LABEL_CHARS.saturating_sub(1 + index.len())
     }
 
+    /// Checks the secrets, and that no environment variable is set twice.
     fn check_secrets(&self) -> Result<(), LaunchError> {
         let mut names = Vec::new();
         for secret in &self.secrets {
             check_variable("--secret", &secret.name)?;
             check_secret(&secret.secret, &secret.key)?;
-            let is_ours =
+            let is_taken =
                 secret.name == "JOB_COMPLETION_INDEX" || (self.pass_file.is_some() && secret.name == "PGPASSFILE");
-            if is_ours || names.contains(&&secret.name) {
+            if is_taken || names.contains(&&secret.name) {
                 return Err(value_error("--secret", &secret.name, "would be set twice", "leave one of the two out"));
             }
             names.push(&secret.name);
@@ -144,8 +146,8 @@ impl SharedFolder {
         check_dotted("--claim", &self.claim)?;
         check_text("--mount", &self.mount)?;
         let is_inner = self.mount.split('/').skip(1).all(|part| !matches!(part, "" | "." | ".."));
-        let is_ours = self.mount == SECRETS_FOLDER || self.mount.starts_with(&format!("{SECRETS_FOLDER}/"));
-        match self.mount.starts_with('/') && is_inner && !is_ours && !self.mount.contains(':') {
+        let is_taken = self.mount == SECRETS_FOLDER || self.mount.starts_with(&format!("{SECRETS_FOLDER}/"));
+        match self.mount.starts_with('/') && is_inner && !is_taken && !self.mount.contains(':') {
             true => Ok(()),
             false => Err(value_error(
                 "--mount",
@@ -157,6 +159,7 @@ impl SharedFolder {
     }
 }
 
+/// Checks the name of a secret and a key in it.
 fn check_secret(secret: &str, key: &str) -> Result<(), LaunchError> {
     check_dotted("--secret", secret)?;
     match key.len() <= 253 && !matches!(key, "." | "..") {
@@ -184,8 +187,11 @@ struct KubernetesTemplateValues<'a> {
     program: &'a str,
     arguments: &'a [String],
     workers: u32,
+    /// Whether the manifest adds each worker's part to its arguments.
     needs_part: bool,
+    /// How many workers may fail for good before the whole job fails.
     lost_indexes: u32,
+    /// How often a worker is started again.
     tries: u32,
     grace_s: u32,
 }

@@ -22,5 +22,5 @@ mod worker;
 pub use error::LaunchError;
 pub use worker::LaunchWorker;
 
-/// Most workers of one launch. Kubernetes has other rules above it, and Slurm's arrays end long before.
+/// Most workers of one launch. Above this number Kubernetes has other rules; Slurm's arrays end long before.
 pub const MAX_WORKERS: u32 = 100_000;

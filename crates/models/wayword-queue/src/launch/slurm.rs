@@ -15,9 +15,9 @@ const SLURM_TEMPLATE: &str = include_str!("slurm.j2");
 const USUAL_ARRAY: u32 = 1001;
 /// How long before the end of its time a worker gets a warning signal, seconds.
 const WARNING_S: u32 = 120;
-/// How long it may wait for answers after the warning before it is ended, seconds.
+/// How long a worker may wait for answers after the warning before it is ended, seconds.
 const PATIENCE_S: u32 = 90;
-/// By how much Slurm may send that signal too early, seconds.
+/// By how much Slurm may send the warning signal too early, seconds.
 const EARLY_S: u32 = 60;
 /// How often a worker is started again after it lost the simulator, a service or the disk.
 const MAX_WORKER_RESTARTS: u32 = 3;
@@ -67,6 +67,7 @@ impl SlurmJob {
         }
     }
 
+    /// Checks every value of the job.
     fn check_job(&self) -> Result<(), LaunchError> {
         self.worker.check_worker()?;
         check_text("the program", &self.worker.program)?;
@@ -109,12 +110,16 @@ struct SlurmTemplateValues<'a> {
     program: &'a str,
     arguments: &'a [String],
     workers: u32,
+    /// The index of the last worker.
     last: u32,
+    /// Whether the script adds each worker's part to its arguments.
     needs_part: bool,
+    /// Whether the array is larger than clusters allow by default.
     is_long: bool,
     usual_array: u32,
     warning_s: u32,
     patience_s: u32,
+    /// How often a worker is started again.
     tries: u32,
 }
 
@@ -188,6 +193,7 @@ fn parse_seconds(time: &str) -> Option<u64> {
     Some(days.map_or(Some(0), number)? * 86400 + in_day)
 }
 
+/// Checks an amount of memory: a whole number, and a unit or none.
 fn check_memory(memory: &str) -> Result<(), LaunchError> {
     let digits = memory.strip_suffix(['K', 'M', 'G', 'T']).unwrap_or(memory);
     match (1..=9).contains(&digits.len()) && digits.chars().all(|c| c.is_ascii_digit()) {
@@ -198,7 +204,7 @@ fn check_memory(memory: &str) -> Result<(), LaunchError> {
     }
 }
 
-/// Refuses quotes and backslashes, which sbatch reads by its own rules.
+/// Checks the folder of the logs. Quotes and backslashes are refused, because sbatch reads them by its own rules.
 fn check_logs(logs: &str) -> Result<(), LaunchError> {
     check_text("--logs", logs)?;
     match logs.contains(['"', '\\']) {

@@ -22,6 +22,8 @@ impl LaunchWorker {
         !self.arguments.iter().any(|argument| names(argument, "--queue") || names(argument, "--shard"))
     }
 
+    /// Checks the command and the number of workers.
+    ///
     /// # Errors
     /// When there is no worker or too many, or when an argument has a control character or a password.
     pub(super) fn check_worker(&self) -> Result<(), LaunchError> {

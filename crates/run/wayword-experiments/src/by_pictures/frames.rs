@@ -22,13 +22,16 @@ pub struct PathPictures {
     source: FramePictureSource,
     /// The path of each item, by the item's id.
     items: BTreeMap<String, ItemPathSource>,
-    /// The id of one item on each path, by the path's name. An item of another dataset is found by its path.
+    /// The id of one item on each path, by the path's name. It finds the pictures for an item of another dataset,
+    /// which has another id but the same path.
     paths: BTreeMap<String, String>,
 }
 
+/// Where the pictures come from.
 enum FramePictureSource {
     /// The folder in which a run stored its pictures.
     Run(PathBuf),
+    /// A platform that draws the pictures when they are asked for.
     Platform(Box<dyn Platform>),
 }
 
@@ -141,8 +144,8 @@ impl PathPictures {
     /// # Errors
     /// When a picture is missing or damaged, or the platform cannot draw it.
     pub fn views_for_item(&self, item: &str, path: &str) -> Result<Vec<View>, CommandError> {
-        let way = self.items.get(item).or_else(|| self.items.get(self.paths.get(path)?));
-        match (&self.source, way) {
+        let path_source = self.items.get(item).or_else(|| self.items.get(self.paths.get(path)?));
+        match (&self.source, path_source) {
             (FramePictureSource::Run(folder), Some(ItemPathSource::Known(path))) => read_kept_views(folder, path),
             (FramePictureSource::Platform(platform), Some(ItemPathSource::Known(path))) => {
                 draw_views(&**platform, path)
@@ -156,13 +159,14 @@ impl PathPictures {
     }
 }
 
+/// Reads the pictures of a path from the folder in which a run stored them.
 fn read_kept_views(folder: &FilePath, path: &Path) -> Result<Vec<View>, CommandError> {
-    let view = |(at, frame): (usize, &wayword_core::Frame)| {
-        let pixels =
-            pictures::read_picture(folder, &path.id, at, pictures::MOST_BYTES).and_then(|kept| kept.decode_pixels());
+    let view = |(number, frame): (usize, &wayword_core::Frame)| {
+        let pixels = pictures::read_picture(folder, &path.id, number, pictures::MOST_BYTES)
+            .and_then(|stored| stored.decode_pixels());
         let Some(image) = pixels else {
             let problem =
-                format!("{}: it is missing or damaged", pictures::picture_file(folder, &path.id, at).display());
+                format!("{}: it is missing or damaged", pictures::picture_file(folder, &path.id, number).display());
             return Err(CommandError::usage(
                 problem,
                 "give the run's command again: it makes pictures that are missing",
@@ -178,7 +182,7 @@ fn draw_views(platform: &dyn Platform, path: &Path) -> Result<Vec<View>, Command
     let mut views = Vec::new();
     for frame in &path.frames {
         let view = platform.look_from(&path.scene, frame, ViewGaze::quarter_view(frame.pose.heading))?;
-        // A camera may not have looked there.
+        // A recording has no picture for a direction in which its camera did not look.
         if view.image.is_some() {
             views.push(view);
         }

@@ -18,7 +18,7 @@ use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// A model that scores a phrase on a view by the cosine of their vectors.
 pub trait CosineGrounder: PhraseGrounder {
-    /// Whether the model reads the whole phrase. It cuts off the end of a longer one.
+    /// Whether the model reads the whole phrase: a CLIP cuts off the end of a phrase that is too long for it.
     ///
     /// # Errors
     /// When the phrase cannot be read.
@@ -35,7 +35,7 @@ impl CosineGrounder for wayword_local::ClipGrounder {
 /// A CLIP model with the pictures that it scores texts by.
 pub struct PictureCritic {
     eye: Box<dyn CosineGrounder>,
-    /// The pictures.
+    /// The pictures ahead of the frames of the paths that the texts describe.
     pub frames: PathPictures,
 }
 
@@ -54,7 +54,7 @@ impl PictureCritic {
     ) -> Result<Option<Self>, CommandError> {
         match &asked.clip {
             Some(name) => {
-                // Before the model, which may have to be fetched.
+                // The pictures are opened first, so that missing ones are reported before a model is downloaded.
                 let frames = PathPictures::open(asked, runs, file)?;
                 Ok(Some(Self::new(load_clip(name, output)?, frames)))
             }
@@ -92,6 +92,7 @@ impl PictureCritic {
     }
 }
 
+/// Scores each text, as a whole and by its parts, on all pictures. The model gets the phrases of all texts in one call.
 fn score_agreement(
     eye: &dyn CosineGrounder,
     pictures: &[View],
@@ -115,11 +116,12 @@ fn score_agreement(
         return Err(ModelError::Failed { model: eye.name().to_owned(), reason }.into());
     }
     let cosines = |at: usize| -> Vec<f64> { scores.iter().map(|row| f64::from(row[at])).collect() };
-    let of_text = |ends: &[usize]| {
-        let parts: Vec<Vec<f64>> = (ends[0] + 1..ends[1]).map(cosines).collect();
-        PictureScores::from_cosines(&cosines(ends[0]), &parts)
+    // `bounds` has the indices at which the phrases of this text and of the next one start.
+    let score_text = |bounds: &[usize]| {
+        let parts: Vec<Vec<f64>> = (bounds[0] + 1..bounds[1]).map(cosines).collect();
+        PictureScores::from_cosines(&cosines(bounds[0]), &parts)
     };
-    Ok(starts.windows(2).map(of_text).collect())
+    Ok(starts.windows(2).map(score_text).collect())
 }
 
 #[cfg(feature = "local")]

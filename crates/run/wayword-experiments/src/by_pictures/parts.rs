@@ -5,31 +5,32 @@ use wayword_language::{
     text::{TextToken, split_tokens},
 };
 
-/// Cuts a text into its sentences. A sentence that is too long for the model, as `holds` judges, is cut between clauses into
+/// Cuts a text into its sentences. A sentence that is too long for the model, as `fits_model` judges, is cut between clauses into
 /// pieces, each with as many clauses as the model can read. A clause that is too long by itself stays whole.
 ///
 /// # Errors
-/// When `holds` fails.
-pub(super) fn split_into_parts<E>(text: &str, holds: impl Fn(&str) -> Result<bool, E>) -> Result<Vec<&str>, E> {
+/// When `fits_model` fails.
+pub(super) fn split_into_parts<E>(text: &str, fits_model: impl Fn(&str) -> Result<bool, E>) -> Result<Vec<&str>, E> {
     let tokens = split_tokens(text);
     let mut parts = Vec::new();
     for sentence in tokens.split_inclusive(TextToken::ends_sentence) {
         let first = sentence.iter().find(|token| token.is_word());
         let Some((first, last)) = first.zip(sentence.last()) else { continue };
         let whole = &text[first.span[0]..last.span[1]];
-        if holds(whole)? {
+        if fits_model(whole)? {
             parts.push(whole);
         } else {
-            parts.extend(cut_between_clauses(text, sentence, &holds)?);
+            parts.extend(cut_between_clauses(text, sentence, &fits_model)?);
         }
     }
     Ok(parts)
 }
 
+/// Cuts a sentence into pieces, each with as many consecutive clauses as fit the model.
 fn cut_between_clauses<'a, E>(
     text: &'a str,
     sentence: &[TextToken],
-    holds: &impl Fn(&str) -> Result<bool, E>,
+    fits_model: &impl Fn(&str) -> Result<bool, E>,
 ) -> Result<Vec<&'a str>, E> {
     let numbers = clause_numbers(sentence);
     let starts: Vec<usize> = (0..sentence.len()).filter(|at| *at == 0 || numbers[*at] != numbers[*at - 1]).collect();
@@ -37,7 +38,7 @@ fn cut_between_clauses<'a, E>(
     let (mut from, mut to) = (0, 0);
     for end in starts.into_iter().skip(1).chain([sentence.len()]) {
         let longer = text_of_tokens(text, &sentence[from..end]);
-        if to > from && longer.map_or(Ok(false), |longer| Ok(!holds(longer)?))? {
+        if to > from && longer.map_or(Ok(false), |longer| Ok(!fits_model(longer)?))? {
             pieces.extend(text_of_tokens(text, &sentence[from..to]));
             from = to;
         }

@@ -10,11 +10,11 @@ use wayword_navigation::{
     comparison::{AgentKind, ComparedAgent},
 };
 
-/// Hops of the random baselines.
+/// Hops of the two random baselines, `random/5` and `random/10`.
 pub(super) const RANDOM_HOPS: [usize; 2] = [5, 10];
 /// Most hops of the baseline that walks straight ahead.
 pub(super) const STRAIGHT_HOPS: usize = 10;
-/// Random walks per item.
+/// Random walks that each random baseline makes for an item.
 pub(super) const RANDOM_WALKS: usize = 10;
 
 /// An agent with its parameters.
@@ -22,11 +22,12 @@ pub(super) const RANDOM_WALKS: usize = 10;
 pub(super) enum WalkingAgent {
     /// Walks phrase by phrase. A grounder scores phrases by the boxes of a detector, or by whole views.
     Phrases { name: String, parameters: PhraseWalkParameters, by_detector: bool },
-    /// Reads, and knows only where it was. It takes things from labels, or, with a threshold, sees things that score at least that.
+    /// Reads every clause, and knows only the places where it was. Without a threshold it takes things from labels; with one it
+    /// counts a thing as seen if a grounder scores it at least so high.
     Reader(Option<f32>),
     /// A language model that looks around and steps.
     Tools,
-    /// Reads, and knows the map.
+    /// Reads every clause, and knows the map.
     ReaderMap(WalkPrior),
     /// Walks this many random hops.
     Random(usize),
@@ -34,26 +35,26 @@ pub(super) enum WalkingAgent {
     Straight(usize),
     /// Walks to the nearest room of the kind that the text names.
     NearestRoom,
-    /// Walks to the goal.
+    /// Walks the shortest path to the goal, without reading.
     Oracle,
 }
 
 impl WalkingAgent {
     /// The agents that the user asked for, with the baselines and the oracle that every comparison has.
-    pub(super) fn all_for_comparison(kept: &ComparisonSettings, prior: AskedPrior) -> Vec<Self> {
+    pub(super) fn all_for_comparison(config: &ComparisonSettings, prior: AskedPrior) -> Vec<Self> {
         let agent = |name: &String| match name.as_str() {
-            READER_AGENT_NAME => Some(Self::Reader(kept.reader_threshold)),
+            READER_AGENT_NAME => Some(Self::Reader(config.reader_threshold)),
             READER_MAP => None,
             TOOLS_AGENT_NAME => Some(Self::Tools),
             _ => {
-                let parameters = *kept.parameters.get(name)?;
+                let parameters = *config.parameters.get(name)?;
                 Some(Self::Phrases { name: name.clone(), parameters, by_detector: name == BY_DETECTOR })
             }
         };
-        let mut all: Vec<Self> = kept.agents.iter().filter_map(agent).collect();
+        let mut all: Vec<Self> = config.agents.iter().filter_map(agent).collect();
         all.extend(RANDOM_HOPS.map(Self::Random));
         all.push(Self::Straight(STRAIGHT_HOPS));
-        all.extend(kept.knows_map().then_some(Self::ReaderMap(prior.0)));
+        all.extend(config.knows_map().then_some(Self::ReaderMap(prior.0)));
         all.extend([Self::NearestRoom, Self::Oracle]);
         all
     }

@@ -24,10 +24,11 @@ use wayword_run::{
     settings::RunSettings,
 };
 
-/// Number of items for which walks are rehearsed. The estimate assumes that the other items are like them.
+/// Walks are rehearsed for at most this many items. The estimate assumes that the other items are like them.
 const REHEARSED_ITEM_COUNT: usize = 40;
-/// Tokens of a typical reply with one or two calls, and of one that takes an instruction apart.
+/// Tokens of a typical reply of the agent `tools`, with one or two calls of tools.
 const REPLY_TOKENS: u64 = 80;
+/// Tokens of a typical reply that splits an instruction into phrases.
 const SPLIT_TOKENS: u64 = 60;
 /// Views of one place, one in each of four directions.
 const VIEWS_PER_PLACE: u64 = 4;
@@ -37,7 +38,7 @@ const VIEWS_PER_PLACE: u64 = 4;
 pub(super) struct ComparisonEstimate {
     /// Items that every set has.
     items: usize,
-    /// Walks of the agent by a language model.
+    /// Walks of the agent `tools`, which a language model decides.
     walks: usize,
     /// Tokens of the largest prompt, without pictures. About four characters are a token.
     most_tokens_in: u64,
@@ -46,22 +47,22 @@ pub(super) struct ComparisonEstimate {
 }
 
 impl ComparisonEstimate {
-    /// Estimates a comparison as if its agent walked along the annotated paths.
+    /// Estimates a comparison as if the agent `tools` walked along the annotated paths.
     ///
     /// # Errors
     /// When a path cannot be looked along, or a prompt cannot be used.
     pub(super) fn for_comparison(
-        kept: &ComparisonSettings,
+        config: &ComparisonSettings,
         settings: &RunSettings,
         items: &[ComparisonItem],
         agents: &[WalkingAgent],
         (platform, models): (&dyn Platform, &JobModels<'_>),
     ) -> Result<Self, CommandError> {
         let mut estimate = Self { items: items.len(), walks: 0, most_tokens_in: 0, models: ModelBill::default() };
-        if let Some(model) = kept.split.model_name() {
+        if let Some(model) = config.split.model_name() {
             estimate.models.add_load(model, "splits", estimate_splitting(items, agents));
         }
-        if let Some(tools) = &kept.tools {
+        if let Some(tools) = &config.tools {
             estimate.walks = items.iter().map(|item| WalkingAgent::Tools.texts_of_item(item).count()).sum();
             let load = estimate.estimate_walks(tools, items, platform)?;
             estimate.models.add_load(&tools.llm, "walks", load);
@@ -98,19 +99,19 @@ impl ComparisonEstimate {
             for text in WalkingAgent::Tools.texts_of_item(item) {
                 let route = &item.episode.viewpoints;
                 let sight = (looks, tools.limits);
-                let asked = rehearse_route(&agent_view, &item.start, &text.text, names_object, sight, route)?;
-                for (at, request) in asked.iter().enumerate() {
+                let requests = rehearse_route(&agent_view, &item.start, &text.text, names_object, sight, route)?;
+                for (at, request) in requests.iter().enumerate() {
                     let before = load.tokens_in;
                     load.add_call(&words_of(request), REPLY_TOKENS);
                     self.most_tokens_in = self.most_tokens_in.max(load.tokens_in - before);
-                    // Before the first look it has no pictures.
+                    // The first request has no pictures, because the agent has not looked around yet.
                     let is_shown = looks_at_pictures && at > 0;
                     load.tokens_in += if is_shown { VIEWS_PER_PLACE * picture_tokens(tools.picture_px) } else { 0 };
                 }
                 rehearsed += 1;
             }
         }
-        let scaled = |of: u64| of * self.walks as u64 / rehearsed.max(1);
+        let scaled = |sum: u64| sum * self.walks as u64 / rehearsed.max(1);
         Ok(CallLoad {
             calls: scaled(load.calls),
             tokens_in: scaled(load.tokens_in),

@@ -13,9 +13,9 @@ pub(super) struct ComparisonGrounders {
     pub(super) views: Box<dyn PhraseGrounder>,
     /// For agents that look for boxes.
     pub(super) boxes: Box<dyn PhraseGrounder>,
-    /// The meaning of a box's score, if a detector gives it.
+    /// The meaning of a box's score in words, if a detector gives the boxes.
     pub(super) score: Option<String>,
-    /// Whether they look at pictures.
+    /// Whether the grounders look at pictures. Otherwise they read labels.
     pub(super) need_pictures: bool,
 }
 
@@ -24,35 +24,35 @@ impl ComparisonGrounders {
     ///
     /// # Errors
     /// When there is none of that name, or its model cannot be loaded.
-    pub(super) fn open(kept: &ComparisonSettings, output: &CommandOutput) -> Result<Self, CommandError> {
-        let of = |labels: &dyn Fn(GrounderScope) -> Box<dyn PhraseGrounder>| Self {
-            views: labels(GrounderScope::Views),
-            boxes: labels(GrounderScope::Boxes),
+    pub(super) fn open(config: &ComparisonSettings, output: &CommandOutput) -> Result<Self, CommandError> {
+        let with_labels = |open_grounder: &dyn Fn(GrounderScope) -> Box<dyn PhraseGrounder>| Self {
+            views: open_grounder(GrounderScope::Views),
+            boxes: open_grounder(GrounderScope::Boxes),
             score: None,
             need_pictures: false,
         };
-        let lexical = || of(&|sees| Box::new(LexicalGrounder::new(sees)));
-        match (kept.grounder.as_str(), &kept.encoder) {
-            // The detector takes the place of both.
-            _ if kept.detects_views() && kept.detector.is_some() => Ok(lexical()),
-            _ if kept.detects_views() => Err(CommandError::usage(
+        let lexical = || with_labels(&|scope| Box::new(LexicalGrounder::new(scope)));
+        match (config.grounder.as_str(), &config.encoder) {
+            // Once the detector is loaded, `with_detector` replaces both grounders.
+            _ if config.detects_views() && config.detector.is_some() => Ok(lexical()),
+            _ if config.detects_views() => Err(CommandError::usage(
                 "--grounder detector: no detector is named",
                 "name one, as in --detector hf/google/owlv2-base-patch16-ensemble",
             )),
             ("labels", Some(encoder)) => {
                 let encoder = Arc::from(encoder::open_encoder(encoder)?);
-                Ok(of(&|sees| Box::new(EncoderGrounder::new(sees, Arc::clone(&encoder)))))
+                Ok(with_labels(&|scope| Box::new(EncoderGrounder::new(scope, Arc::clone(&encoder)))))
             }
             ("labels/lexical", _) => Ok(lexical()),
             (name, _) if name.starts_with("hf/") => {
-                let walks_by_boxes = kept.agents.iter().any(|agent| agent == super::thresholds::BY_DETECTOR);
-                if walks_by_boxes && kept.detector.is_none() {
+                let walks_by_boxes = config.agents.iter().any(|agent| agent == super::thresholds::BY_DETECTOR);
+                if walks_by_boxes && config.detector.is_none() {
                     return Err(CommandError::usage(
                         format!("--grounder {name}: glip-nav needs a detector, and none is named"),
                         "name one, as in --detector hf/google/owlv2-base-patch16-ensemble, or leave glip-nav out with --agents clip-nav,seq-clip-nav",
                     ));
                 }
-                // Without a detector, no agent looks for boxes.
+                // Without a detector no agent looks for boxes, so the lexical grounder for boxes is never asked.
                 Ok(Self { views: load_clip_grounder(name, output)?, need_pictures: true, ..lexical() })
             }
             (name, _) => Err(CommandError::usage(
@@ -68,13 +68,13 @@ impl ComparisonGrounders {
     /// When it cannot be loaded.
     pub(super) fn with_detector(
         self,
-        kept: &ComparisonSettings,
+        config: &ComparisonSettings,
         calls: Option<&ModelCalls>,
     ) -> Result<Self, CommandError> {
-        let Some((name, calls)) = kept.detector.as_deref().zip(calls) else { return Ok(self) };
+        let Some((name, calls)) = config.detector.as_deref().zip(calls) else { return Ok(self) };
         let detector = calls.open_detector(name)?;
         let grounded = || Box::new(DetectorGrounder::new(Arc::clone(&detector)));
-        let views: Box<dyn PhraseGrounder> = if kept.detects_views() { grounded() } else { self.views };
+        let views: Box<dyn PhraseGrounder> = if config.detects_views() { grounded() } else { self.views };
         Ok(Self { views, boxes: grounded(), score: Some(scoring_meaning(&detector)), need_pictures: true })
     }
 }

@@ -28,7 +28,7 @@ pub(super) struct ComparisonItem {
     pub(super) texts: Vec<ComparisonText>,
 }
 
-/// An instruction.
+/// An instruction of a set, by which agents walk.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct ComparisonText {
     pub(super) set: String,
@@ -55,23 +55,23 @@ pub(super) enum TextPurpose {
 /// # Errors
 /// When a set cannot be read, or the sets have no item in common.
 pub(super) fn load_items(
-    kept: &ComparisonSettings,
+    config: &ComparisonSettings,
     platform: &dyn Platform,
     demands: &PlatformDemands<'_>,
 ) -> Result<(Vec<ComparisonItem>, Vec<usize>, usize), CommandError> {
-    let mut episodes = episodes::read_episodes(&kept.episodes, platform)?;
-    episodes.truncate(kept.limit.unwrap_or(usize::MAX));
+    let mut episodes = episodes::read_episodes(&config.episodes, platform)?;
+    episodes.truncate(config.limit.unwrap_or(usize::MAX));
     let ids: BTreeSet<String> = episodes.iter().map(|episode| episode.id.clone()).collect();
-    let mut all: Vec<(&str, BTreeMap<String, Vec<String>>)> = Vec::new();
-    for (name, source) in &kept.instructions {
+    let mut sets: Vec<(&str, BTreeMap<String, Vec<String>>)> = Vec::new();
+    for (name, source) in &config.instructions {
         // The texts of the episodes are read like any set, because styles must not be mixed there either.
-        let source = if source.is_empty() { kept.episodes.to_string_lossy().into_owned() } else { source.clone() };
+        let source = if source.is_empty() { config.episodes.to_string_lossy().into_owned() } else { source.clone() };
         let mut texts = texts_of(&source)?;
         texts.retain(|item, texts| ids.contains(item) && !texts.is_empty());
-        all.push((name, texts));
+        sets.push((name, texts));
     }
-    let of_episodes = episodes.len();
-    episodes.retain(|episode| all.iter().all(|(_, texts)| texts.contains_key(&episode.id)));
+    let episode_count = episodes.len();
+    episodes.retain(|episode| sets.iter().all(|(_, texts)| texts.contains_key(&episode.id)));
     if episodes.is_empty() {
         let problem = "the sets of instructions and the episodes have no item in common";
         return Err(CommandError::usage(
@@ -79,15 +79,15 @@ pub(super) fn load_items(
             "items are matched by id: give runs that were made with the same --episodes",
         ));
     }
-    let sizes = all.iter().map(|(_, texts)| texts.len()).collect();
-    let mut items: Vec<ComparisonItem> = episodes.into_iter().map(|episode| item_with_texts(episode, &all)).collect();
-    add_swaps(&mut items, kept, demands)?;
-    Ok((items, sizes, of_episodes))
+    let sizes = sets.iter().map(|(_, texts)| texts.len()).collect();
+    let mut items: Vec<ComparisonItem> = episodes.into_iter().map(|episode| item_with_texts(episode, &sets)).collect();
+    add_swaps(&mut items, config, demands)?;
+    Ok((items, sizes, episode_count))
 }
 
 /// Describes each set by its texts for the items that were walked: their number and their mean length.
 pub(super) fn describe_sets(
-    kept: &ComparisonSettings,
+    config: &ComparisonSettings,
     items: &[ComparisonItem],
     sizes: &[usize],
     is_walked: impl Fn(&str) -> bool,
@@ -98,7 +98,7 @@ pub(super) fn describe_sets(
             walked.flat_map(|item| &item.texts).filter(|text| text.set == *name)
         };
         let words: usize = texts().map(|text| word_count(&text.text)).sum();
-        let source = if source.is_empty() { kept.episodes.to_string_lossy().into_owned() } else { source.clone() };
+        let source = if source.is_empty() { config.episodes.to_string_lossy().into_owned() } else { source.clone() };
         InstructionSet {
             name: name.clone(),
             source: last_part(&source),
@@ -107,7 +107,7 @@ pub(super) fn describe_sets(
             words: words as f64 / texts().count().max(1) as f64,
         }
     };
-    kept.instructions.iter().zip(sizes).map(describe).collect()
+    config.instructions.iter().zip(sizes).map(describe).collect()
 }
 
 fn texts_of(source: &str) -> Result<BTreeMap<String, Vec<String>>, CommandError> {
@@ -119,16 +119,16 @@ fn texts_of(source: &str) -> Result<BTreeMap<String, Vec<String>>, CommandError>
 
 /// Joins an episode with its texts of some sets.
 pub(super) fn item_with_texts(episode: Episode, sets: &[(&str, BTreeMap<String, Vec<String>>)]) -> ComparisonItem {
-    let of_set = |(set, texts): &(&str, BTreeMap<String, Vec<String>>)| {
-        let of_item = |(index, text): (usize, &String)| ComparisonText {
+    let texts_in_set = |(set, texts): &(&str, BTreeMap<String, Vec<String>>)| {
+        let to_text = |(index, text): (usize, &String)| ComparisonText {
             set: (*set).to_owned(),
             index,
             text: text.clone(),
             purpose: TextPurpose::Set,
         };
-        texts.get(&episode.id).into_iter().flatten().enumerate().map(of_item).collect::<Vec<_>>()
+        texts.get(&episode.id).into_iter().flatten().enumerate().map(to_text).collect::<Vec<_>>()
     };
-    let texts = sets.iter().flat_map(of_set).collect();
+    let texts = sets.iter().flat_map(texts_in_set).collect();
     let start = AgentStart {
         scene: episode.scene.clone(),
         viewpoint: episode.viewpoints[0].clone(),
@@ -140,37 +140,38 @@ pub(super) fn item_with_texts(episode: Episode, sets: &[(&str, BTreeMap<String, 
 /// Adds a swapped version of each text of the first set for every swap, unless the swap leaves the text as it is.
 fn add_swaps(
     items: &mut [ComparisonItem],
-    kept: &ComparisonSettings,
+    config: &ComparisonSettings,
     demands: &PlatformDemands<'_>,
 ) -> Result<(), CommandError> {
-    let Some((first, _)) = kept.instructions.first() else { return Ok(()) };
-    let of_first: Vec<Vec<String>> = items
+    let Some((first, _)) = config.instructions.first() else { return Ok(()) };
+    let first_set_texts: Vec<Vec<String>> = items
         .iter()
         .map(|item| item.texts.iter().filter(|text| text.set == *first).map(|text| text.text.clone()).collect())
         .collect();
     // Without a swap test, another path's text is only for the agent that knows the map.
-    let is_floor = kept.knows_map() && !kept.swaps.contains(&InstructionSwap::OtherPath);
+    let is_floor = config.knows_map() && !config.swaps.contains(&InstructionSwap::OtherPath);
     let swaps: Vec<InstructionSwap> =
-        kept.swaps.iter().copied().chain(is_floor.then_some(InstructionSwap::OtherPath)).collect();
-    let elsewhere =
-        if swaps.contains(&InstructionSwap::OtherPath) { other_items(items, kept, demands)? } else { Vec::new() };
+        config.swaps.iter().copied().chain(is_floor.then_some(InstructionSwap::OtherPath)).collect();
+    let other_indices =
+        if swaps.contains(&InstructionSwap::OtherPath) { other_items(items, config, demands)? } else { Vec::new() };
     for (at, item) in items.iter_mut().enumerate() {
         for swap in &swaps {
             let purpose =
                 if is_floor && *swap == InstructionSwap::OtherPath { TextPurpose::Floor } else { TextPurpose::Swap };
-            for (index, text) in of_first[at].iter().enumerate() {
-                let wrong = match swap {
-                    InstructionSwap::OtherPath => elsewhere.get(at).copied().flatten().and_then(|other| {
-                        let texts = &of_first[other];
+            for (index, text) in first_set_texts[at].iter().enumerate() {
+                let swapped = match swap {
+                    InstructionSwap::OtherPath => other_indices.get(at).copied().flatten().and_then(|other| {
+                        let texts = &first_set_texts[other];
                         texts.get(index % texts.len().max(1)).cloned()
                     }),
-                    swap => swap_text(*swap, text, kept.seed, &format!("{}_{index}", item.episode.id)),
+                    swap => swap_text(*swap, text, config.seed, &format!("{}_{index}", item.episode.id)),
                 };
-                let added = |text| ComparisonText { set: swapped_set(first, *swap), index, text, purpose };
-                item.texts.extend(wrong.map(added));
+                let to_text = |text| ComparisonText { set: swapped_set(first, *swap), index, text, purpose };
+                item.texts.extend(swapped.map(to_text));
             }
         }
-        if kept.knows_map() {
+        if config.knows_map() {
+            // The empty text shows what the agent reaches by its knowledge of the map alone.
             item.texts.push(ComparisonText {
                 set: empty_set(first),
                 index: 0,
@@ -185,7 +186,7 @@ fn add_swaps(
 /// For each item, the index of another item in the same scene with another path and goal; `None` if there is none.
 fn other_items(
     items: &[ComparisonItem],
-    kept: &ComparisonSettings,
+    config: &ComparisonSettings,
     demands: &PlatformDemands<'_>,
 ) -> Result<Vec<Option<usize>>, CommandError> {
     let mut distances: BTreeMap<&wayword_core::SceneId, std::sync::Arc<SceneDistances>> = BTreeMap::new();
@@ -204,5 +205,5 @@ fn other_items(
     let is_far = |a: &SwapCandidate, b: &SwapCandidate| {
         distances[&a.scene].metres_between(&a.goal, &b.goal).is_none_or(|apart_m| apart_m >= SAME_GOAL_M)
     };
-    Ok((0..items.len()).map(|at| other_path(&candidates, at, kept.seed, &is_far)).collect())
+    Ok((0..items.len()).map(|at| other_path(&candidates, at, config.seed, &is_far)).collect())
 }

@@ -25,9 +25,12 @@ use wayword_world::survey_scene;
 pub(super) struct ItemWalkMaker<'a> {
     pub(super) platform: &'a dyn Platform,
     pub(super) grounders: &'a ComparisonGrounders,
+    /// Splits instructions into phrases, for the agents that walk by phrases.
     pub(super) splitter: &'a dyn InstructionSplitter,
     pub(super) agents: &'a [WalkingAgent],
+    /// The agent `tools` with its model, if it takes part.
     pub(super) toolbox: Option<&'a AgentToolbox>,
+    /// The agent `reader-map` gets these maps of scenes; those of the last scenes are kept.
     pub(super) surveys: &'a RecentCache<SceneId, MappedScene>,
     pub(super) seed: u64,
 }
@@ -35,6 +38,7 @@ pub(super) struct ItemWalkMaker<'a> {
 impl WalkingAgent {
     /// The texts of an item that this agent walks by.
     pub(super) fn texts_of_item<'i>(&self, item: &'i ComparisonItem) -> impl Iterator<Item = &'i ComparisonText> {
+        // The purposes are in order: an agent walks by the texts of all purposes up to this one.
         let last = match self {
             Self::ReaderMap(_) => TextPurpose::Floor,
             Self::NearestRoom => TextPurpose::Set,
@@ -47,10 +51,10 @@ impl WalkingAgent {
 impl ItemWalkMaker<'_> {
     /// The agent, the set and the index of the text of every walk of an item, in the order in which the walks are made.
     pub(super) fn walk_names(&self, item: &ComparisonItem) -> Vec<(String, String, usize)> {
-        let of_agent = |agent: &WalkingAgent| {
+        let names_for_agent = |agent: &WalkingAgent| {
             let read = || agent.texts_of_item(item).map(|text| (text.set.clone(), text.index)).collect();
-            let unread = |walks| (0..walks).map(|index| (UNREAD_SET_NAME.to_owned(), index)).collect::<Vec<_>>();
-            let places = match agent {
+            let unread = |count| (0..count).map(|index| (UNREAD_SET_NAME.to_owned(), index)).collect::<Vec<_>>();
+            let walks = match agent {
                 WalkingAgent::Phrases { .. }
                 | WalkingAgent::Reader(_)
                 | WalkingAgent::Tools
@@ -59,9 +63,9 @@ impl ItemWalkMaker<'_> {
                 WalkingAgent::Random(_) => unread(RANDOM_WALKS),
                 WalkingAgent::Straight(_) | WalkingAgent::Oracle => unread(1),
             };
-            places.into_iter().map(|(set, index)| (agent.name(), set, index)).collect::<Vec<_>>()
+            walks.into_iter().map(|(set, index)| (agent.name(), set, index)).collect::<Vec<_>>()
         };
-        self.agents.iter().flat_map(of_agent).collect()
+        self.agents.iter().flat_map(names_for_agent).collect()
     }
 
     /// Makes every agent's walks for an item, in the order of agents, sets and texts.
@@ -104,8 +108,8 @@ impl ItemWalkMaker<'_> {
                     let scene = &item.start.scene;
                     let survey =
                         || Ok::<_, PlatformError>(MappedScene::from_survey(&survey_scene(self.platform, scene)?));
-                    let known = self.surveys.get_or_make(scene.clone(), survey)?;
-                    let reader = MapReader::new(&graph, &known, &item.start, *prior)?;
+                    let mapped_scene = self.surveys.get_or_make(scene.clone(), survey)?;
+                    let reader = MapReader::new(&graph, &mapped_scene, &item.start, *prior)?;
                     agent.texts_of_item(item).for_each(|text| add(text, None, reader.best_walk(&text.text)));
                 }
                 WalkingAgent::NearestRoom => {
@@ -164,7 +168,7 @@ impl ItemWalkMaker<'_> {
             text: String::new(),
             purpose: TextPurpose::Set,
         };
-        let one = |walked| vec![walk_record(agent, item, &unread(0), None, walked)];
+        let only_walk = |walked| vec![walk_record(agent, item, &unread(0), None, walked)];
         Ok(match agent {
             WalkingAgent::Random(hops) => {
                 let draw = |index: usize| {
@@ -176,8 +180,8 @@ impl ItemWalkMaker<'_> {
                 };
                 (0..RANDOM_WALKS).map(draw).collect()
             }
-            WalkingAgent::Straight(hops) => one(walk_straight(&graph, &item.start, *hops)),
-            _ => one(walk_shortest_path(&graph, &item.start, goal)?),
+            WalkingAgent::Straight(hops) => only_walk(walk_straight(&graph, &item.start, *hops)),
+            _ => only_walk(walk_shortest_path(&graph, &item.start, goal)?),
         })
     }
 }

@@ -83,55 +83,57 @@ pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit
     }
     settings::refuse_flags_of_tools(args)?;
     let job = args.asked_settings().or_file(settings_file::read_call_settings(args.config.as_deref())?).into_job()?;
-    let kept = ComparisonSettings::from_args(args, &job.settings)?;
+    let config = ComparisonSettings::from_args(args, &job.settings)?;
     let models = JobModels::for_job(&job)?;
-    tools::refuse_unknown_price(&kept, &models)?;
+    tools::refuse_unknown_price(&config, &models)?;
     if !args.dry_run {
         ModelCalls::check_ready(&job, output)?;
     }
-    let platform = kept.open_platform()?;
+    let platform = config.open_platform()?;
     let demands = PlatformDemands::new(platform.as_ref());
-    let (items, sizes, of_episodes) = instruction_sets::load_items(&kept, platform.as_ref(), &demands)?;
-    let judge = WalkJudge::new(&kept, &items, &demands, args.rule.map(Into::into))?;
+    let (items, sizes, episode_count) = instruction_sets::load_items(&config, platform.as_ref(), &demands)?;
+    let judge = WalkJudge::new(&config, &items, &demands, args.rule.map(Into::into))?;
     if let Some(item) = judge.without_object.filter(|_| args.rule.is_none()) {
         output.say(format_args!(
             "success is judged by distance, because item {item} names no object whose place is known"
         ));
     }
-    let agents = WalkingAgent::all_for_comparison(&kept, args.prior.unwrap_or_default());
+    let agents = WalkingAgent::all_for_comparison(&config, args.prior.unwrap_or_default());
     if args.dry_run {
         let estimate =
-            ComparisonEstimate::for_comparison(&kept, &job.settings, &items, &agents, (platform.as_ref(), &models))?;
+            ComparisonEstimate::for_comparison(&config, &job.settings, &items, &agents, (platform.as_ref(), &models))?;
         output.print_result(&estimate, &estimate);
         return Ok(Exit::Done);
     }
-    if kept.tools.is_some() {
+    if config.tools.is_some() {
         tools::warn_of_long_texts(&items, output);
     }
-    let grounders = ComparisonGrounders::open(&kept, output)?;
-    // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.
+    let grounders = ComparisonGrounders::open(&config, output)?;
+    // A folder that exists is locked now. A new one is made after the models are loaded, so that a model that does not fit into
+    // the memory leaves no folder.
     run_folder::refuse_file(&args.out)?;
-    let begun = run_folder::is_begun(&args.out).then(|| begin_folder(&args.out, &kept)).transpose()?;
+    let old_folder_lock = run_folder::is_begun(&args.out).then(|| begin_folder(&args.out, &config)).transpose()?;
     let id = run_folder::id_of(&args.out, "compare")?;
     let calls = models.open_calls(&id, output)?;
-    let grounders = grounders.with_detector(&kept, calls.as_ref())?;
-    let splitter = open_splitter(&kept.split, calls.as_ref())?;
-    let _held = begun.map_or_else(|| begin_folder(&args.out, &kept), Ok)?;
+    let grounders = grounders.with_detector(&config, calls.as_ref())?;
+    let splitter = open_splitter(&config.split, calls.as_ref())?;
+    let _folder_lock = old_folder_lock.map_or_else(|| begin_folder(&args.out, &config), Ok)?;
     if calls.is_some() {
         run_folder::keep_id(&args.out, &id)?;
     }
-    let toolbox = AgentToolbox::open(&kept, &job.settings, (calls.as_ref(), &models, items.len()), platform.as_ref())?;
+    let toolbox =
+        AgentToolbox::open(&config, &job.settings, (calls.as_ref(), &models, items.len()), platform.as_ref())?;
     let surveys = RecentCache::new(SCENES_KEPT);
-    let crew = ItemWalkMaker {
+    let walk_maker = ItemWalkMaker {
         platform: platform.as_ref(),
         grounders: &grounders,
         splitter: splitter.as_ref(),
         agents: &agents,
         toolbox: toolbox.as_ref(),
         surveys: &surveys,
-        seed: kept.seed,
+        seed: config.seed,
     };
-    let failed = walk_all(&args.out, &items, &crew, calls.as_ref(), output)?;
+    let failed = walk_all(&args.out, &items, &walk_maker, calls.as_ref(), output)?;
     if let Some(calls) = &calls {
         calls.write_recording()?;
         output.say(format_args!("models: {}", calls.spent_so_far()));
@@ -141,28 +143,29 @@ pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit
         let problem = "no item could be walked: a model failed on every one of them";
         return Err(CommandError::usage(problem, "see the reasons above; give the same command again to try again"));
     }
-    let sets = instruction_sets::describe_sets(&kept, &items, &sizes, |item| gathered.results.has_item(item));
+    let sets = instruction_sets::describe_sets(&config, &items, &sizes, |item| gathered.results.has_item(item));
     let (resamples, results) = (args.resamples as usize, &gathered.results);
-    let comparison = score::build_comparison(&kept, &crew, sets, &judge, results, (resamples, failed));
+    let comparison = score::build_comparison(&config, &walk_maker, sets, &judge, results, (resamples, failed));
     outputs::write_outputs(&args.out, &comparison, &gathered)?;
     let page = args.out.join(run_folder::file::REPORT);
     page::write_page(&args.out, &page, &comparison, &judge, platform.as_ref(), args.replays)?;
     output.print_result(&comparison, wayword_report::pages::comparison::screen_text(&comparison));
     output.say(format_args!("walks, tables and page: {}", args.out.display()));
     let walked = gathered.results.count_items_and_paths().0;
-    if walked < of_episodes {
-        let of = count_phrase(of_episodes, "item");
-        output
-            .say(format_args!("the submissions cover {walked} of {of}; score them with `wayword evaluate --partial`"));
+    if walked < episode_count {
+        let all_items = count_phrase(episode_count, "item");
+        output.say(format_args!(
+            "the submissions cover {walked} of {all_items}; score them with `wayword evaluate --partial`"
+        ));
     }
     Ok(if failed == 0 { Exit::Done } else { Exit::WithLoss })
 }
 
 /// Makes or continues the folder, and locks it against other processes.
-fn begin_folder(folder: &Path, kept: &ComparisonSettings) -> Result<run_folder::FolderLock, CommandError> {
+fn begin_folder(folder: &Path, config: &ComparisonSettings) -> Result<run_folder::FolderLock, CommandError> {
     fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the folder"))?;
     let held = run_folder::lock_folder(folder)?;
-    run_folder::keep_config(folder, kept)?;
+    run_folder::keep_config(folder, config)?;
     Ok(held)
 }
 
@@ -181,46 +184,46 @@ fn open_splitter(
 fn walk_all(
     folder: &Path,
     items: &[ComparisonItem],
-    crew: &ItemWalkMaker<'_>,
+    walk_maker: &ItemWalkMaker<'_>,
     calls: Option<&ModelCalls>,
     output: &CommandOutput,
 ) -> Result<usize, CommandError> {
     let mut walks = Journal::open(&folder.join(file::WALKS), key_of)?;
     let is_done = |item: &&ComparisonItem| {
-        let mut names = crew.walk_names(item).into_iter();
+        let mut names = walk_maker.walk_names(item).into_iter();
         names
             .all(|(agent, set, text_index)| walks.has_key(&walk_key(&agent, &set, &item.episode.id, text_index as u64)))
     };
-    let left: Vec<&ComparisonItem> = items.iter().filter(|item| !is_done(item)).collect();
-    if left.len() < items.len() {
+    let unwalked: Vec<&ComparisonItem> = items.iter().filter(|item| !is_done(item)).collect();
+    if unwalked.len() < items.len() {
         output.say(format_args!(
             "continuing: {} of {} done",
-            items.len() - left.len(),
+            items.len() - unwalked.len(),
             count_phrase(items.len(), "item")
         ));
     }
-    let _graceful = interrupt::finish_first(calls);
+    let _interrupt_guard = interrupt::finish_first(calls);
     let bar = output.progress_bar(items.len(), "items");
-    bar.set_position((items.len() - left.len()) as u64);
+    bar.set_position((items.len() - unwalked.len()) as u64);
     bar.reset_eta();
     let (mut walked, mut failed, mut unflushed) = (0, 0, 0);
     let mut losses = LossCounter::default();
     let mut held_back = WithheldWalks::default();
     let workers = calls.map_or_else(core_count, ModelCalls::worker_count);
     in_order(
-        &left,
+        &unwalked,
         workers,
-        |item| crew.make_walks(item),
+        |item| walk_maker.make_walks(item),
         |item, made| {
             bar.inc(1);
-            let is_gone = losses.are_enough(made.as_ref().err().and_then(model_failure));
+            let is_service_gone = losses.are_enough(made.as_ref().err().and_then(model_failure));
             match made {
                 Ok(made) => {
                     walked += 1;
                     held_back.take_walks(made)?.iter().flatten().try_for_each(|walk| walks.append(walk))?;
                 }
                 // The service is gone: the other items would wait for it too.
-                Err(error) if is_gone => return Err(error.into()),
+                Err(error) if is_service_gone => return Err(error.into()),
                 Err(error) if is_of_item(&error) && walked == 0 && failed + 1 == MAX_FRUITLESS_ITEMS => {
                     return Err(error.into());
                 }

@@ -23,7 +23,7 @@ pub(super) struct ComparisonOutputs {
 }
 
 impl ComparisonOutputs {
-    /// Collects it from the walks of a folder.
+    /// Collects the scores, successes and trajectories from the walks of a folder.
     ///
     /// # Errors
     /// When one cannot be read or scored.
@@ -31,6 +31,7 @@ impl ComparisonOutputs {
         let mut gathered = Self::default();
         judge.for_each_walk(folder, |walk, score, _: &EpisodeDemand| {
             let cluster = judge.path_of_item(&walk.item);
+            // Walks without a text, or by the swapped texts of a set `SET~SWAP`, are no results of a set.
             if walk.set != UNREAD_SET_NAME && !walk.set.contains('~') {
                 gathered.followed.extend(judge.follow_result(&walk, &score));
                 gathered
@@ -48,14 +49,14 @@ impl ComparisonOutputs {
 
 /// A walk in the form that the official evaluators read.
 fn to_submission(walk: &AgentWalkRecord) -> SubmittedTrajectory {
-    let posed = |step: &wayword_navigation::walk::AgentStep| TrajectoryPose {
+    let to_pose = |step: &wayword_navigation::walk::AgentStep| TrajectoryPose {
         viewpoint: step.viewpoint.clone(),
         heading: step.heading_rad,
         elevation_rad: 0.0,
     };
     SubmittedTrajectory {
         instr_id: format!("{}_{}", walk.item, walk.text_index),
-        trajectory: walk.steps.iter().map(posed).collect(),
+        trajectory: walk.steps.iter().map(to_pose).collect(),
         object: walk.object.clone(),
     }
 }
@@ -75,8 +76,8 @@ pub(super) fn write_outputs(
     write_whole(&folder.join(file::MARKDOWN), &pages::comparison::markdown_tables(comparison))?;
     write_whole(&folder.join(file::LATEX), &pages::comparison::latex_table(comparison))?;
     let mut lines = String::new();
-    for one in &gathered.followed {
-        let line = serde_json::to_string(one)
+    for result in &gathered.followed {
+        let line = serde_json::to_string(result)
             .map_err(|error| CommandError::usage(format!("a walk cannot be kept: {error}"), "report this as a bug"))?;
         lines.push_str(&line);
         lines.push('\n');

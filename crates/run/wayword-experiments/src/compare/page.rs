@@ -18,54 +18,55 @@ use wayword_run::{error::CommandError, run_folder, text_file};
 
 /// Whether a folder holds a comparison, finished or not.
 pub fn is_comparison(folder: &Path) -> bool {
-    run_folder::table_of(folder).is_ok_and(|kept| kept.contains_key("agents"))
+    run_folder::table_of(folder).is_ok_and(|config| config.contains_key("agents"))
 }
 
 /// Writes the page of a finished comparison from its folder. It needs the platform and the episodes, but not the sets of instructions.
 ///
 /// # Errors
 /// When the folder, the platform or the episodes cannot be read, or the page cannot be written.
-pub fn write_of_folder(folder: &Path, out: &Path, most: usize) -> Result<WrittenComparison, CommandError> {
-    let kept: ComparisonSettings = run_folder::config_of(folder)?;
+pub fn write_of_folder(folder: &Path, out: &Path, max_replays: usize) -> Result<WrittenComparison, CommandError> {
+    let config: ComparisonSettings = run_folder::config_of(folder)?;
     let path = folder.join(file::COMPARISON);
     if !path.is_file() {
         let problem = format!("{} holds a comparison that was not finished", folder.display());
         return Err(CommandError::usage(problem, "give the same `wayword compare` command again"));
     }
-    if kept.inputs.get("episodes") != Some(&run_folder::hash_of_file(&kept.episodes)?) {
-        let problem = format!("{}: the file has changed since the comparison", kept.episodes.display());
+    if config.inputs.get("episodes") != Some(&run_folder::hash_of_file(&config.episodes)?) {
+        let problem = format!("{}: the file has changed since the comparison", config.episodes.display());
         return Err(CommandError::usage(problem, "put the old file back, or compare again in another folder"));
     }
-    let found: AgentComparison = serde_json::from_str(&text_file::read_text_file(&path, "read the comparison")?)
+    let result: AgentComparison = serde_json::from_str(&text_file::read_text_file(&path, "read the comparison")?)
         .map_err(|error| {
             CommandError::usage(
                 format!("{}: {error}", path.display()),
                 "run `wayword compare` with the same --out again",
             )
         })?;
-    let platform = kept.open_platform()?;
-    let mut episodes = episodes::read_episodes(&kept.episodes, platform.as_ref())?;
-    episodes.truncate(kept.limit.unwrap_or(usize::MAX));
+    let platform = config.open_platform()?;
+    let mut episodes = episodes::read_episodes(&config.episodes, platform.as_ref())?;
+    episodes.truncate(config.limit.unwrap_or(usize::MAX));
     let items: Vec<_> = episodes.into_iter().map(|episode| instruction_sets::item_with_texts(episode, &[])).collect();
-    // Without the rule, because it may not apply to items that no set has, and those are not walked.
-    let mut judge = WalkJudge::new(&kept, &items, &PlatformDemands::new(platform.as_ref()), None)?;
-    judge.rule = found.about.rule;
-    write_page(folder, out, &found, &judge, platform.as_ref(), most)
+    // The judge is made without the comparison's rule, which may not apply to items that no set has. They were not walked, so the
+    // rule can be set afterwards.
+    let mut judge = WalkJudge::new(&config, &items, &PlatformDemands::new(platform.as_ref()), None)?;
+    judge.rule = result.about.rule;
+    write_page(folder, out, &result, &judge, platform.as_ref(), max_replays)
 }
 
-/// Writes the page of a comparison with at most `most` replays.
+/// Writes the page of a comparison with at most `max_replays` replays.
 ///
 /// # Errors
 /// When the walks cannot be read, or the page cannot be written.
 pub(super) fn write_page(
     folder: &Path,
     out: &Path,
-    found: &AgentComparison,
+    result: &AgentComparison,
     judge: &WalkJudge<'_>,
     platform: &dyn Platform,
-    most: usize,
+    max_replays: usize,
 ) -> Result<WrittenComparison, CommandError> {
-    let (chosen, left_out) = choose_walks(folder, judge, most)?;
+    let (chosen, left_out) = choose_walks(folder, judge, max_replays)?;
     let mut graphs: BTreeMap<SceneId, Arc<ViewpointGraph>> = BTreeMap::new();
     for shown in &chosen {
         let scene = &shown.walk.scene;
@@ -81,7 +82,7 @@ pub(super) fn write_page(
             Some(WalkReplay { walk, graph, reference, score, rule: judge.rule })
         })
         .collect();
-    comparison::write_comparison(out, found, &replays, left_out)
+    comparison::write_comparison(out, result, &replays, left_out)
 }
 
 /// A walk that the page replays.
@@ -92,8 +93,12 @@ struct ReplayedWalk {
 }
 
 /// Chooses the walks to replay. It reads all walks twice, so that only the chosen ones are in memory.
-fn choose_walks(folder: &Path, judge: &WalkJudge<'_>, most: usize) -> Result<(Vec<ReplayedWalk>, usize), CommandError> {
-    let mut sample = WalkSample::with_limit(most);
+fn choose_walks(
+    folder: &Path,
+    judge: &WalkJudge<'_>,
+    max_replays: usize,
+) -> Result<(Vec<ReplayedWalk>, usize), CommandError> {
+    let mut sample = WalkSample::with_limit(max_replays);
     let mut at = 0_usize;
     judge.for_each_walk(folder, |walk, score, _| {
         let is_success = score.get(TrajectoryMetric::SuccessRate, judge.rule).is_some_and(|rate| rate > 0.0);

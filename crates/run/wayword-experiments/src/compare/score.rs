@@ -29,10 +29,11 @@ const CONFIDENCE_LEVEL: f64 = 0.95;
 pub(super) struct WalkJudge<'a> {
     /// For each item, the distances of its scene, and what a walk has to reach.
     demands: BTreeMap<&'a str, (Arc<SceneDistances>, EpisodeDemand)>,
+    /// For each item, the name of its path. Intervals are clustered by path.
     clusters: BTreeMap<&'a str, String>,
     /// What counts as success.
     pub(super) rule: TrajectorySuccessRule,
-    /// Whether agents that walk by phrases can name an object at all, and whether the agent by a language model can.
+    /// Whether agents that walk by phrases can name an object at all, and whether the agent `tools` can.
     name_objects: [bool; 2],
     /// The first item without a target object of known place. Such an item can only be judged by distance.
     pub(super) without_object: Option<&'a str>,
@@ -45,25 +46,28 @@ impl<'a> WalkJudge<'a> {
     /// # Errors
     /// When a scene cannot be read, or the rule cannot be applied.
     pub(super) fn new(
-        kept: &ComparisonSettings,
+        config: &ComparisonSettings,
         items: &'a [ComparisonItem],
-        all: &PlatformDemands<'_>,
+        platform_demands: &PlatformDemands<'_>,
         rule: Option<TrajectorySuccessRule>,
     ) -> Result<Self, CommandError> {
         let mut demands = BTreeMap::new();
         for item in items {
-            let (distances, demand) = all.for_episode(&item.episode)?;
+            let (distances, demand) = platform_demands.for_episode(&item.episode)?;
             if let Some(unknown) = demand.reference.iter().find(|viewpoint| !distances.has_viewpoint(viewpoint)) {
-                let (file, id) = (kept.episodes.display(), &item.episode.id);
+                let (file, id) = (config.episodes.display(), &item.episode.id);
                 let problem = format!("{file}: episode {id}: scene {} has no viewpoint {unknown}", item.episode.scene);
                 return Err(CommandError::usage(problem, "use episodes and viewpoint graphs of the same release"));
             }
             demands.insert(item.episode.id.as_str(), (distances, demand));
         }
-        let blind = items.iter().find(|item| demands[item.episode.id.as_str()].1.visible_from.is_none());
-        let rule = match (rule, blind) {
-            (Some(TrajectorySuccessRule::Visible), Some(blind)) => {
-                let problem = format!("--rule visible: item {} names no object whose place is known", blind.episode.id);
+        let item_without_object = items.iter().find(|item| demands[item.episode.id.as_str()].1.visible_from.is_none());
+        let rule = match (rule, item_without_object) {
+            (Some(TrajectorySuccessRule::Visible), Some(item_without_object)) => {
+                let problem = format!(
+                    "--rule visible: item {} names no object whose place is known",
+                    item_without_object.episode.id
+                );
                 return Err(CommandError::usage(problem, "judge by distance with --rule distance"));
             }
             (Some(rule), _) => rule,
@@ -73,10 +77,10 @@ impl<'a> WalkJudge<'a> {
         let clusters =
             items.iter().map(|item| (item.episode.id.as_str(), episodes::episode_path_name(&item.episode))).collect();
         // Labels name objects, and boxes point to them; a grounder that compares whole pictures does neither.
-        let grounder_names = kept.grounder.starts_with("labels") || kept.detects_views();
-        let is_shown_names = kept.tools.as_ref().is_some_and(|tools| tools.see.are_labels());
-        let name_objects = [grounder_names, grounder_names || is_shown_names];
-        let without_object = blind.map(|item| item.episode.id.as_str());
+        let grounder_names = config.grounder.starts_with("labels") || config.detects_views();
+        let is_shown_labels = config.tools.as_ref().is_some_and(|tools| tools.see.are_labels());
+        let name_objects = [grounder_names, grounder_names || is_shown_labels];
+        let without_object = item_without_object.map(|item| item.episode.id.as_str());
         Ok(Self { demands, clusters, rule, name_objects, without_object })
     }
 
@@ -130,8 +134,8 @@ impl<'a> WalkJudge<'a> {
 
 /// Compares agents and sets by the results of all walks.
 pub(super) fn build_comparison(
-    kept: &ComparisonSettings,
-    crew: &ItemWalkMaker<'_>,
+    config: &ComparisonSettings,
+    walk_maker: &ItemWalkMaker<'_>,
     sets: Vec<InstructionSet>,
     judge: &WalkJudge<'_>,
     results: &WalkScores,
@@ -139,46 +143,47 @@ pub(super) fn build_comparison(
 ) -> AgentComparison {
     let (items, paths) = results.count_items_and_paths();
     let about = ComparisonInfo {
-        platform: kept.platform.clone(),
-        episodes: last_part(&kept.episodes.to_string_lossy()),
-        grounder: crew.grounders.views.name().to_owned(),
-        detector: crew.grounders.boxes.name().to_owned(),
-        detector_score: crew.grounders.score.clone(),
-        encoder: kept.encoder.clone(),
-        splitter: crew.splitter.name().to_owned(),
-        tools: kept.tools.as_ref().map(|tools| (tools.llm.clone(), tools.see.to_string())),
+        platform: config.platform.clone(),
+        episodes: last_part(&config.episodes.to_string_lossy()),
+        grounder: walk_maker.grounders.views.name().to_owned(),
+        detector: walk_maker.grounders.boxes.name().to_owned(),
+        detector_score: walk_maker.grounders.score.clone(),
+        encoder: config.encoder.clone(),
+        splitter: walk_maker.splitter.name().to_owned(),
+        tools: config.tools.as_ref().map(|tools| (tools.llm.clone(), tools.see.to_string())),
         rule: judge.rule,
         level: CONFIDENCE_LEVEL,
         resamples,
-        seed: kept.seed,
+        seed: config.seed,
         items,
         paths,
         failed,
-        swept: is_swept(kept),
-        prior: kept.prior.clone(),
-        parameters: named_parameters(kept),
+        swept: is_swept(config),
+        prior: config.prior.clone(),
+        parameters: named_parameters(config),
         wayword: env!("CARGO_PKG_VERSION").to_owned(),
     };
-    let walkers: Vec<ComparedAgent> = crew.agents.iter().map(WalkingAgent::as_compared_agent).collect();
-    compare_agents(about, sets, &walkers, &kept.swaps, results)
+    let walkers: Vec<ComparedAgent> = walk_maker.agents.iter().map(WalkingAgent::as_compared_agent).collect();
+    compare_agents(about, sets, &walkers, &config.swaps, results)
 }
 
 /// The agents' parameters, by agent and name.
-fn named_parameters(kept: &ComparisonSettings) -> BTreeMap<String, BTreeMap<String, String>> {
-    let of_phrases = kept.parameters.iter().map(|(agent, of)| (agent.clone(), of.by_name()));
-    let named = |least: f32| BTreeMap::from([("phrase_threshold".to_owned(), least.to_string())]);
-    let of_tools = kept.tools.as_ref().map(|tools| (TOOLS_AGENT_NAME.to_owned(), tools.limits.by_name()));
+fn named_parameters(config: &ComparisonSettings) -> BTreeMap<String, BTreeMap<String, String>> {
+    let of_phrases = config.parameters.iter().map(|(agent, parameters)| (agent.clone(), parameters.by_name()));
+    let threshold_by_name = |threshold: f32| BTreeMap::from([("phrase_threshold".to_owned(), threshold.to_string())]);
+    let of_tools = config.tools.as_ref().map(|tools| (TOOLS_AGENT_NAME.to_owned(), tools.limits.by_name()));
     of_phrases
         .chain(of_tools)
-        .chain(kept.reader_threshold.map(|least| (READER_AGENT_NAME.to_owned(), named(least))))
+        .chain(config.reader_threshold.map(|threshold| (READER_AGENT_NAME.to_owned(), threshold_by_name(threshold))))
         .collect()
 }
 
 /// Whether the agents use thresholds that were chosen for their grounder.
-fn is_swept(kept: &ComparisonSettings) -> bool {
+fn is_swept(config: &ComparisonSettings) -> bool {
     let has_sweep =
-        kept.grounder == "labels/lexical" || kept.encoder.as_deref().is_some_and(|encoder| encoder != "words");
-    let is_default =
-        |(agent, of): (&String, &PhraseWalkParameters)| *of == PhraseWalkParameters::default_of(agent, &kept.grounder);
-    kept.detector.is_none() && has_sweep && kept.parameters.iter().all(is_default)
+        config.grounder == "labels/lexical" || config.encoder.as_deref().is_some_and(|encoder| encoder != "words");
+    let is_default = |(agent, parameters): (&String, &PhraseWalkParameters)| {
+        *parameters == PhraseWalkParameters::default_of(agent, &config.grounder)
+    };
+    config.detector.is_none() && has_sweep && config.parameters.iter().all(is_default)
 }

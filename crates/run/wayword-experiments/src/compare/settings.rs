@@ -59,7 +59,7 @@ pub(crate) struct ComparisonSettings {
     pub(crate) detector: Option<String>,
     /// What splits instructions into phrases.
     pub(crate) split: RolePlayer,
-    /// Base URL of that model, if it is not its provider's default.
+    /// Base URL of the provider of the models, if it is not the provider's default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) base_url: Option<String>,
     /// Swaps of the first set.

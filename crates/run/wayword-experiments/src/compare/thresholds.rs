@@ -5,18 +5,19 @@ use std::{collections::BTreeMap, path::Path};
 use wayword_navigation::agents::{BacktrackParameters, PhraseWalkParameters, ToolWalkLimits};
 use wayword_run::{error::CommandError, text_file};
 
-/// The agent that reads every clause and knows only where it was, and the one that also knows the map.
+/// The agent that reads every clause and knows only the places where it was.
 pub(super) const READER_AGENT_NAME: &str = "reader";
+/// The agent that reads every clause and knows the map.
 pub(super) const READER_MAP: &str = "reader-map";
 /// The agent whose moves a language model decides.
 pub(super) const TOOLS_AGENT_NAME: &str = "tools";
-/// The agent that uses a detector.
+/// The agent that walks by phrases and looks for them with a detector.
 pub(super) const BY_DETECTOR: &str = "glip-nav";
 
 /// The value of `--grounder` that means the detector of `--detector`.
 pub(super) const BY_NAME: &str = "detector";
 
-/// The thresholds of the agents.
+/// The thresholds and limits of all agents of a comparison.
 #[derive(Debug, Default)]
 pub(super) struct AgentThresholds {
     /// The thresholds of the agents that walk by phrases, by agent.
@@ -41,39 +42,39 @@ pub(super) fn read_thresholds(
     }
     let mut tables = toml::Table::new();
     if let Some(file) = file {
-        let wrong = |error: toml::de::Error| parameter_error(file, error.to_string().trim());
-        tables = text_file::read_text_file(file, "read the parameters")?.parse().map_err(wrong)?;
+        let parse_error = |error: toml::de::Error| parameter_error(file, error.to_string().trim());
+        tables = text_file::read_text_file(file, "read the parameters")?.parse().map_err(parse_error)?;
     }
-    let mut all = AgentThresholds::default();
+    let mut thresholds = AgentThresholds::default();
     for name in names {
         let default = PhraseWalkParameters::default_of(name, scored_by(name, grounder, detector));
-        let own = tables.remove(name);
+        let user_values = tables.remove(name);
         if name == TOOLS_AGENT_NAME {
-            let limits = own.map_or(Ok(ToolWalkLimits::default()), parse_tool_limits);
-            all.of_tools = limits.map_err(|problem| parameter_error(file.unwrap_or(Path::new("")), &problem))?;
+            let limits = user_values.map_or(Ok(ToolWalkLimits::default()), parse_tool_limits);
+            thresholds.of_tools = limits.map_err(|problem| parameter_error(file.unwrap_or(Path::new("")), &problem))?;
             continue;
         }
         let is_reader = name == READER_AGENT_NAME && !grounder.starts_with("labels");
-        let changed = match (name.as_str(), own) {
+        let changed = match (name.as_str(), user_values) {
             (_, None) => Ok(default),
-            (READER_AGENT_NAME, Some(own)) if is_reader => changed_for_reader(&default, own),
+            (READER_AGENT_NAME, Some(user_values)) if is_reader => changed_for_reader(&default, user_values),
             (READER_AGENT_NAME | READER_MAP, Some(_)) => {
                 Err(format!("{name} has no thresholds here: it is told the labels"))
             }
-            (_, Some(own)) => change_parameters(&default, own),
+            (_, Some(user_values)) => change_parameters(&default, user_values),
         };
         let changed = changed.map_err(|problem| parameter_error(file.unwrap_or(Path::new("")), &problem))?;
         match name.as_str() {
-            READER_AGENT_NAME if is_reader => all.of_reader = Some(changed.phrase_threshold),
+            READER_AGENT_NAME if is_reader => thresholds.of_reader = Some(changed.phrase_threshold),
             READER_AGENT_NAME | READER_MAP => {}
-            _ => drop(all.of_phrases.insert(name.clone(), changed)),
+            _ => drop(thresholds.of_phrases.insert(name.clone(), changed)),
         }
     }
     match (tables.keys().next(), file) {
         (Some(unused), Some(file)) => {
             Err(parameter_error(file, &format!("no agent of this command is named {unused}")))
         }
-        _ => Ok(all),
+        _ => Ok(thresholds),
     }
 }
 
@@ -90,8 +91,8 @@ fn parameter_error(file: &Path, problem: &str) -> CommandError {
 }
 
 /// The limits of a walk of the agent `tools`: hops, calls and money.
-fn parse_tool_limits(own: toml::Value) -> Result<ToolWalkLimits, String> {
-    let limits: ToolWalkLimits = own.try_into().map_err(|error: toml::de::Error| error.message().to_owned())?;
+fn parse_tool_limits(user_values: toml::Value) -> Result<ToolWalkLimits, String> {
+    let limits: ToolWalkLimits = user_values.try_into().map_err(|error: toml::de::Error| error.message().to_owned())?;
     let are_sane = limits.max_hops <= 1000 && (1..=1000).contains(&limits.max_calls) && limits.memory <= 12;
     let is_money = limits.max_usd.is_none_or(|usd| usd.is_finite() && usd > 0.0);
     if are_sane && is_money {
@@ -102,21 +103,28 @@ fn parse_tool_limits(own: toml::Value) -> Result<ToolWalkLimits, String> {
 }
 
 /// Overrides the threshold of the agent that reads. It has only one, and no other value may be set.
-fn changed_for_reader(default: &PhraseWalkParameters, own: toml::Value) -> Result<PhraseWalkParameters, String> {
-    let has_other = |own: &toml::Table| own.keys().any(|key| key != "phrase_threshold");
-    match own {
-        toml::Value::Table(own) if has_other(&own) => Err("reader has no threshold but phrase_threshold".to_owned()),
-        own => change_parameters(default, own),
+fn changed_for_reader(
+    default: &PhraseWalkParameters,
+    user_values: toml::Value,
+) -> Result<PhraseWalkParameters, String> {
+    let has_other = |user_values: &toml::Table| user_values.keys().any(|key| key != "phrase_threshold");
+    match user_values {
+        toml::Value::Table(user_values) if has_other(&user_values) => {
+            Err("reader has no threshold but phrase_threshold".to_owned())
+        }
+        user_values => change_parameters(default, user_values),
     }
 }
 
 /// Overrides some values of default parameters, and checks the result.
-fn change_parameters(default: &PhraseWalkParameters, own: toml::Value) -> Result<PhraseWalkParameters, String> {
+fn change_parameters(default: &PhraseWalkParameters, user_values: toml::Value) -> Result<PhraseWalkParameters, String> {
     let mut table = toml::Table::try_from(default).map_err(|error| error.to_string())?;
-    let toml::Value::Table(own) = own else { return Err("the thresholds of an agent must be a table".to_owned()) };
-    for (name, value) in own {
+    let toml::Value::Table(user_values) = user_values else {
+        return Err("the thresholds of an agent must be a table".to_owned());
+    };
+    for (name, value) in user_values {
         match (table.get_mut(&name), value) {
-            (Some(toml::Value::Table(inner)), toml::Value::Table(own)) => inner.extend(own),
+            (Some(toml::Value::Table(inner)), toml::Value::Table(user_values)) => inner.extend(user_values),
             (_, value) => drop(table.insert(name, value)),
         }
     }

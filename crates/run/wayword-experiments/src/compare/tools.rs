@@ -25,6 +25,7 @@ use wayword_synthesis::observe::talk_about;
 /// The agent `tools` with its model, the model's price, its eyes and its limits.
 pub(super) struct AgentToolbox {
     model: Arc<dyn LanguageModel>,
+    /// The cost in US dollars of so many tokens in and tokens out; `None` if the price of the model is not known.
     price: Option<Box<dyn Fn(u64, u64) -> f64 + Send + Sync>>,
     sight: ToolboxSight,
     limits: ToolWalkLimits,
@@ -35,8 +36,11 @@ pub(super) struct AgentToolbox {
 
 /// How the agent sees.
 enum ToolboxSight {
+    /// The platform's labels describe the views.
     Labels,
+    /// The agent's own model is shown the pictures.
     Pictures,
+    /// Another model describes the pictures.
     Captions(TeamCaptions),
 }
 
@@ -49,12 +53,12 @@ impl AgentToolbox {
     /// # Errors
     /// When a model cannot be reached by its name.
     pub(super) fn open(
-        kept: &ComparisonSettings,
+        config: &ComparisonSettings,
         settings: &RunSettings,
         (calls, models, items): (Option<&ModelCalls>, &JobModels<'_>, usize),
         platform: &dyn Platform,
     ) -> Result<Option<Self>, CommandError> {
-        let Some((tools, calls)) = kept.tools.as_ref().zip(calls) else { return Ok(None) };
+        let Some((tools, calls)) = config.tools.as_ref().zip(calls) else { return Ok(None) };
         Ok(Some(Self {
             model: calls.open_model(&tools.llm)?,
             price: models
@@ -63,7 +67,7 @@ impl AgentToolbox {
                 .map(|price| Box::new(move |tokens_in, tokens_out| price.cost_usd(tokens_in, tokens_out)) as _),
             sight: ToolboxSight::from_settings(tools, settings, calls, platform)?,
             limits: tools.limits,
-            seed: kept.seed,
+            seed: config.seed,
             at_once: calls.views_at_once(items),
         }))
     }
@@ -129,8 +133,8 @@ pub(super) fn describing_settings(settings: &RunSettings) -> RunSettings {
 ///
 /// # Errors
 /// When there is a limit but no price.
-pub(super) fn refuse_unknown_price(kept: &ComparisonSettings, models: &JobModels<'_>) -> Result<(), CommandError> {
-    match &kept.tools {
+pub(super) fn refuse_unknown_price(config: &ComparisonSettings, models: &JobModels<'_>) -> Result<(), CommandError> {
+    match &config.tools {
         Some(ToolAgentSettings { llm, limits: ToolWalkLimits { max_usd: Some(usd), .. }, .. })
             if models.model_price(llm).is_none() =>
         {
@@ -147,8 +151,11 @@ pub(super) fn refuse_unknown_price(kept: &ComparisonSettings, models: &JobModels
 /// at all leaves no worthless walks in the folder.
 #[derive(Debug, Default)]
 pub(super) struct WithheldWalks {
+    /// The withheld walks, item by item.
     items: Vec<Vec<AgentWalkRecord>>,
+    /// How many walks the model has made so far.
     walks: usize,
+    /// Whether a reply was of use. From then on no walk is withheld.
     has_spoken: bool,
 }
 

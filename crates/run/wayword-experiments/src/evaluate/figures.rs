@@ -18,7 +18,7 @@ use wayword_run::count::count_phrase;
 const BY_RULE: [TrajectoryMetric; 4] =
     [TrajectoryMetric::SuccessRate, TrajectoryMetric::OracleSuccessRate, TrajectoryMetric::Spl, TrajectoryMetric::Sdtw];
 
-/// How the intervals are drawn.
+/// The settings of the bootstrap that gives the intervals: the number of resamples and the seed.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(super) struct SubmissionResampling {
     pub(super) resamples: usize,
@@ -30,6 +30,7 @@ pub(super) struct SubmissionResampling {
 pub(super) struct SubmissionReport {
     submission: String,
     episodes: String,
+    /// Instructions that were scored, and the items and paths that they belong to.
     instructions: usize,
     items: usize,
     paths: usize,

@@ -44,15 +44,17 @@ pub fn run_evaluate(args: &Args, output: &CommandOutput) -> Result<Exit, Command
     let platform = platforms::open_at(args.platform.name(), (&args.platform).into())?;
     let episodes = episodes::read_episodes(&args.episodes, platform.as_ref())?;
     let limit = args.limit.map_or(usize::MAX, |limit| limit as usize).min(episodes.len());
-    let (episodes, beyond) = episodes.split_at(limit);
+    let (episodes, later_episodes) = episodes.split_at(limit);
     let reading = submission::read_submission(&args.submission);
     if let Some(error) = no_submission(&args.submission, &reading) {
         return Err(error);
     }
     let judge = TrajectoryJudge::new(episodes, platform.as_ref())?;
-    let names = |episode: &Episode| (0..episode.instructions.len()).map(|place| instr_id(episode, place)).collect();
-    let beyond: BTreeSet<String> = beyond.iter().flat_map(|episode| -> Vec<String> { names(episode) }).collect();
-    let (scores, left_out) = match judge.score_all(&reading, &beyond, args.partial) {
+    let instruction_names =
+        |episode: &Episode| (0..episode.instructions.len()).map(|place| instr_id(episode, place)).collect();
+    let later_instructions: BTreeSet<String> =
+        later_episodes.iter().flat_map(|episode| -> Vec<String> { instruction_names(episode) }).collect();
+    let (scores, left_out) = match judge.score_all(&reading, &later_instructions, args.partial) {
         Ok(scored) => scored,
         Err(problems) => {
             let refusal = SubmissionRefusal::new(&args.submission, problems);
@@ -104,6 +106,7 @@ fn success_rules(args: &Args, scores: &SubmissionScores) -> Result<Vec<Trajector
     }
 }
 
+/// Writes the figures of each instruction to the file of `--per-item`, one JSON object per line.
 fn write_each(file: &Path, scores: &SubmissionScores) -> Result<(), CommandError> {
     let mut lines = String::new();
     for line in scores.score_records() {

@@ -6,13 +6,14 @@ use std::{fmt, path::Path};
 use wayword_formats::submission::SubmissionReading;
 use wayword_run::{count::count_phrase, error::CommandError};
 
-/// Most problems that the screen shows.
+/// Most problems that the screen shows. It only counts the others; `--json` lists more of them.
 const MAX_SHOWN_PROBLEMS: usize = 20;
 
 /// A submission that is not scored, with its problems.
 #[derive(Debug, Serialize)]
 pub(super) struct SubmissionRefusal {
     submission: String,
+    /// How many trajectories were scored: always 0, because a submission with problems is not scored.
     scored: usize,
     #[serde(flatten)]
     problems: TrajectoryProblems,

@@ -89,31 +89,31 @@ impl TrajectoryJudge {
 
     /// The index of an instruction. It looks at the index `likely` first.
     fn find_place(&self, instruction: &str, likely: usize) -> Option<usize> {
-        let is_it = self.instructions.get(likely).is_some_and(|known| known.name == instruction);
-        if is_it { Some(likely) } else { self.places.get(instruction).copied() }
+        let is_right = self.instructions.get(likely).is_some_and(|known| known.name == instruction);
+        if is_right { Some(likely) } else { self.places.get(instruction).copied() }
     }
 
-    /// Scores a file of trajectories. Those for the instructions in `beyond` are left out; returns their number too.
+    /// Scores a file of trajectories. Those for the instructions in `ignored` are left out; returns their number too.
     ///
     /// # Errors
     /// All problems: those of the file first.
     pub fn score_all(
         &self,
         reading: &SubmissionReading,
-        beyond: &BTreeSet<String>,
+        ignored: &BTreeSet<String>,
         is_partial: bool,
     ) -> Result<(SubmissionScores, usize), TrajectoryProblems> {
         let mut scoring = self.begin_submission();
         let mut left_out = 0;
         for submitted in &reading.submitted {
-            if beyond.contains(&submitted.instr_id) {
+            if ignored.contains(&submitted.instr_id) {
                 left_out += 1;
                 continue;
             }
             let viewpoints = submitted.trajectory.iter().map(|posed| posed.viewpoint.as_str());
             scoring.take_trajectory(&submitted.instr_id, viewpoints, submitted.object.as_ref().map(ObjectId::as_str));
         }
-        for flawed in reading.flawed.iter().filter(|flawed| !beyond.contains(*flawed)) {
+        for flawed in reading.flawed.iter().filter(|flawed| !ignored.contains(*flawed)) {
             scoring.take_flawed(flawed);
         }
         // If the file breaks off, the lost part may have contained the trajectories that are missing.
@@ -141,6 +141,7 @@ pub struct SubmissionScoring<'j> {
     /// The index after that of the last trajectory. Most submissions are in the order of the episodes, so it is tried first.
     next: usize,
     rows: Vec<ScoredTrajectory>,
+    /// The problems of unknown instructions, and the number of all problems beyond the limit.
     unknown: TrajectoryProblems,
     /// The instructions whose trajectory is wrong, and why.
     wrong: Vec<(usize, TrajectoryProblem)>,
@@ -157,9 +158,9 @@ impl SubmissionScoring<'_> {
         let Some(place) = self.claim_place(instruction) else { return };
         match self.judge.score_trajectory(place, viewpoints, object) {
             Ok(score) => self.rows.push(ScoredTrajectory { instruction: place, names_object: object.is_some(), score }),
-            Err(all) => {
-                for wrong in all {
-                    self.add_problem(place, wrong.to_string());
+            Err(errors) => {
+                for error in errors {
+                    self.add_problem(place, error.to_string());
                 }
             }
         }

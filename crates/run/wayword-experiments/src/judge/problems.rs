@@ -3,7 +3,7 @@
 use serde::Serialize;
 use wayword_formats::submission;
 
-/// Most problems that are kept; a hostile file can hold millions.
+/// Most problems that are kept, because a hostile file can hold millions. The others are only counted.
 pub(super) const MAX_KEPT_PROBLEMS: usize = 100_000;
 
 /// One problem of a submission.
@@ -19,6 +19,7 @@ pub struct TrajectoryProblem {
 #[derive(Debug, Default, Serialize)]
 pub struct TrajectoryProblems {
     #[serde(rename = "problems")]
+    /// The problems that are kept, in the order in which they were found.
     told: Vec<TrajectoryProblem>,
     /// The number of problems beyond those that are kept.
     untold: usize,
@@ -36,9 +37,9 @@ impl TrajectoryProblems {
     /// Takes over the problems of the file itself.
     #[must_use]
     pub fn from_file(found: &submission::SubmissionProblems) -> Self {
-        let of_file =
+        let to_problem =
             |problem: &wayword_formats::FormatError| TrajectoryProblem { instr_id: None, problem: problem.to_string() };
-        Self { told: found.told.iter().map(of_file).collect(), untold: found.untold, missing: 0 }
+        Self { told: found.told.iter().map(to_problem).collect(), untold: found.untold, missing: 0 }
     }
 
     /// Appends other problems.

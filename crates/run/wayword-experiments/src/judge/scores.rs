@@ -22,8 +22,9 @@ pub(super) struct JudgedInstruction {
 /// The figures of one trajectory.
 #[derive(Debug)]
 pub struct ScoredTrajectory {
+    /// The index of its instruction in the list of [`SubmissionScores`].
     pub(super) instruction: usize,
-    /// Whether an object was named.
+    /// Whether the trajectory names an object as the target.
     pub names_object: bool,
     /// The figures.
     pub score: TrajectoryScore,

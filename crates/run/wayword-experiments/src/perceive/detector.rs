@@ -36,8 +36,8 @@ struct LabelledPath {
     frames: Vec<FrameEvidence>,
 }
 
-/// Lets the detector look at the views along the paths of a plan until `most_views` are reached. In those of each path it looks
-/// for the things that labels list, and for as many others, chosen at random among the usual nouns.
+/// Lets the detector look at the views along the paths of a plan until `most_views` are reached. In the views of each
+/// path it looks for the things that labels list, and for as many others, chosen at random among the usual nouns.
 ///
 /// # Errors
 /// When a view cannot be had, the detector fails, or no view has both a picture and labels.
@@ -63,11 +63,11 @@ pub fn measure_detector(
         }
         let world = RememberingPlatform::new(plan.platform);
         let Some(path) = item_path(item, &plan.job.settings, &world)? else { continue };
-        let Some(known) = look_along_path(plan, &world, &path)? else { continue };
-        let there = landmark_names(&known);
-        let names = looked_for(&there, &nouns, &known, plan.job.settings.seed);
-        count_finds(&mut figures, &known, &names, lookout)?;
-        let looked_at = known.views.iter().map(Vec::len).sum::<usize>();
+        let Some(labelled) = look_along_path(plan, &world, &path)? else { continue };
+        let listed = landmark_names(&labelled);
+        let names = looked_for(&listed, &nouns, &labelled, plan.job.settings.seed);
+        count_finds(&mut figures, &labelled, &names, lookout)?;
+        let looked_at = labelled.views.iter().map(Vec::len).sum::<usize>();
         views += looked_at;
         bar.inc(looked_at as u64);
     }
@@ -108,8 +108,8 @@ fn look_along_path(
 }
 
 /// The names in the labels of a path, restricted to things that people use as landmarks.
-fn landmark_names(known: &LabelledPath) -> BTreeSet<String> {
-    let things = known.frames.iter().flat_map(|frame| &frame.things);
+fn landmark_names(labelled: &LabelledPath) -> BTreeSet<String> {
+    let things = labelled.frames.iter().flat_map(|frame| &frame.things);
     things.map(|seen| normalise_name(&seen.name)).filter(|name| is_landmark(name)).collect()
 }
 
@@ -117,34 +117,36 @@ fn is_landmark(name: &str) -> bool {
     find_thing(name).is_some_and(|thing| thing.salience >= 1)
 }
 
-/// The names of the things that are there, and as many names of things that are not.
-fn looked_for(there: &BTreeSet<String>, nouns: &[String], known: &LabelledPath, seed: u64) -> Vec<String> {
-    let is_there = |noun: &&String| there.iter().any(|name| names_agree(name, noun));
-    let mut absent: Vec<&String> = nouns.iter().filter(|noun| !is_there(noun)).collect();
-    absent.shuffle(&mut seeded_rng(seed, &["detector", known.scene.as_str(), &known.id]));
-    there.iter().chain(absent.into_iter().take(there.len())).cloned().collect()
+/// The names of the things that the labels list, and as many names of things that they do not list.
+fn looked_for(listed: &BTreeSet<String>, nouns: &[String], labelled: &LabelledPath, seed: u64) -> Vec<String> {
+    let is_listed = |noun: &&String| listed.iter().any(|name| names_agree(name, noun));
+    let mut absent: Vec<&String> = nouns.iter().filter(|noun| !is_listed(noun)).collect();
+    absent.shuffle(&mut seeded_rng(seed, &["detector", labelled.scene.as_str(), &labelled.id]));
+    listed.iter().chain(absent.into_iter().take(listed.len())).cloned().collect()
 }
 
+/// Lets the detector look for the names in all views of a path. Counts for each name in how many frames it is labelled, and in how
+/// many it is found.
 fn count_finds(
     figures: &mut DetectorFigures,
-    known: &LabelledPath,
+    labelled: &LabelledPath,
     names: &[String],
     lookout: &DetectorLookout,
 ) -> Result<(), CommandError> {
     let seeker = lookout.to_seeker();
-    let views: Vec<&View> = known.views.iter().flatten().collect();
+    let views: Vec<&View> = labelled.views.iter().flatten().collect();
     let phrases: Vec<&str> = names.iter().map(String::as_str).collect();
-    let found = seeker.detector.detect_phrases(&views, &phrases).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let detections = seeker.detector.detect_phrases(&views, &phrases).into_iter().collect::<Result<Vec<_>, _>>()?;
     for (at, name) in names.iter().enumerate() {
-        let mut boxes = found.iter();
-        let frames: Vec<(bool, bool)> = known
+        let mut in_view_order = detections.iter();
+        let frames: Vec<(bool, bool)> = labelled
             .frames
             .iter()
-            .zip(&known.views)
+            .zip(&labelled.views)
             .map(|(frame, views)| {
-                let of_frame = boxes.by_ref().take(views.len());
-                let hits = of_frame.filter(|found| {
-                    found.get(at).is_some_and(|found| found.iter().any(|found| found.score >= figures.found_from))
+                let frame_detections = in_view_order.by_ref().take(views.len());
+                let hits = frame_detections.filter(|by_phrase| {
+                    by_phrase.get(at).is_some_and(|boxes| boxes.iter().any(|found| found.score >= figures.found_from))
                 });
                 let is_found = hits.count() > 0;
                 (frame.things.iter().any(|thing| names_agree(&thing.name, name)), is_found)

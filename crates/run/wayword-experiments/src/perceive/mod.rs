@@ -132,7 +132,7 @@ pub fn measure_perception(
     let plan = RunPlan::for_looking(job, platform)?;
     let views = labelled_views(&plan, extent.views)?;
     let calls = plan.models.open_calls(&fresh_id("perceive"), output)?;
-    let _graceful = interrupt::finish_first(calls.as_ref());
+    let _interrupt_guard = interrupt::finish_first(calls.as_ref());
     let mut measured = PerceptionMeasurement {
         platform: job.settings.platform.clone(),
         views: views.len(),
@@ -165,8 +165,8 @@ pub fn measure_perception(
     }
     if let Some(lookout) = &lookout {
         let corrected = correct_captions(&by_way, &views, lookout, output)?;
-        for (row, with) in measured.rows.iter_mut().zip(corrected) {
-            row.with_detector = Some(with);
+        for (row, figures) in measured.rows.iter_mut().zip(corrected) {
+            row.with_detector = Some(figures);
         }
     }
     if let Some(calls) = &calls {
@@ -196,8 +196,8 @@ fn caption_views(
     output: &CommandOutput,
 ) -> Result<(Vec<Option<ScoredCaption>>, PerceptionRow), CommandError> {
     let team = RoleTeam::new(settings, calls, platform)?;
-    let asked = || calls.map_or(0, |calls| calls.spent_so_far().answered + calls.spent_so_far().from_ledger);
-    let before = asked();
+    let calls_so_far = || calls.map_or(0, |calls| calls.spent_so_far().answered + calls.spent_so_far().from_ledger);
+    let calls_before = calls_so_far();
     let bar = output.progress_bar(views.len(), "views");
     let mut captions = Vec::new();
     let make = |view: &LabelledView| talk_about(&view.view, team.observers());
@@ -214,7 +214,7 @@ fn caption_views(
         interrupt::check_interrupt().map(|()| true)
     })?;
     bar.finish_and_clear();
-    let row = PerceptionRow::from_captions(settings.perception, &captions, asked() - before);
+    let row = PerceptionRow::from_captions(settings.perception, &captions, calls_so_far() - calls_before);
     Ok((captions, row))
 }
 
@@ -232,17 +232,17 @@ fn correct_captions(
     for (at, view) in views.iter().enumerate() {
         for (captions, scores) in by_way.iter().zip(&mut scores) {
             let Some(ScoredCaption { caption, .. }) = captions.get(at).and_then(Option::as_ref) else { continue };
-            let seen = seek_in(&view.view, caption.clone(), seeker)?;
-            scores.push(score_caption(&seen.text, &view.labels));
+            let corrected = seek_in(&view.view, caption.clone(), seeker)?;
+            scores.push(score_caption(&corrected.text, &view.labels));
         }
         bar.inc(1);
         interrupt::check_interrupt()?;
     }
     bar.finish_and_clear();
-    let with = |(captions, after): (&Vec<Option<ScoredCaption>>, &Vec<CaptionScore>)| {
+    let corrected_figures = |(captions, after): (&Vec<Option<ScoredCaption>>, &Vec<CaptionScore>)| {
         DetectorCorrectedFigures::from_scores(captions.iter().flatten().map(|captioned| &captioned.score), after)
     };
-    Ok(by_way.iter().zip(&scores).map(with).collect())
+    Ok(by_way.iter().zip(&scores).map(corrected_figures).collect())
 }
 
 /// Writes the figures of a detector to the file of `--figures`.

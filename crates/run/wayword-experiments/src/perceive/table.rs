@@ -17,17 +17,17 @@ pub struct PerceptionRow {
     pub failed: usize,
     /// Different objects that captions named, summed over captions.
     pub named: usize,
-    /// Share of them that a label agrees with.
+    /// Share of the named objects that a label agrees with.
     pub precision: f64,
-    /// Share of them that no label confirms.
+    /// Share of the named objects that no label confirms.
     pub hallucination_rate: f64,
     /// Share of the different labels of a view that its caption names.
     pub recall: f64,
     /// Share of captions that name a hallucinated object.
     pub captions_with_hallucinations: f64,
-    /// Questions per view that were answered, the opening among them.
+    /// Answered questions per view, with the opening question.
     pub questions_per_view: f64,
-    /// Calls to models per view, those among them that the ledger answered.
+    /// Calls to models per view, with those that the ledger answered.
     pub calls_per_view: f64,
     /// The figures after a detector corrected the captions, if one was named.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -37,9 +37,9 @@ pub struct PerceptionRow {
 /// The figures of captions that a detector corrected.
 #[derive(Debug, Serialize)]
 pub struct DetectorCorrectedFigures {
-    /// Hallucinated objects that it struck out.
+    /// Hallucinated objects that the detector struck out.
     pub struck_out: usize,
-    /// Objects that a label confirms and that it struck out all the same.
+    /// Objects that a label confirms, but that the detector struck out all the same.
     pub lost: usize,
     /// Share of the objects still named that a label agrees with.
     pub precision: f64,
@@ -71,10 +71,10 @@ impl DetectorCorrectedFigures {
 impl PerceptionRow {
     pub(super) fn from_captions(perception: Perception, captions: &[Option<ScoredCaption>], calls: u64) -> Self {
         let captioned: Vec<&ScoredCaption> = captions.iter().flatten().collect();
-        let sum = |count: fn(&ScoredCaption) -> usize| captioned.iter().map(|one| count(one)).sum::<usize>();
-        let named = sum(|one| one.score.named);
-        let hallucinated = sum(|one| one.score.hallucinated.len());
-        let with_hallucinations = sum(|one| usize::from(!one.score.hallucinated.is_empty()));
+        let sum = |count: fn(&ScoredCaption) -> usize| captioned.iter().map(|scored| count(scored)).sum::<usize>();
+        let named = sum(|scored| scored.score.named);
+        let hallucinated = sum(|scored| scored.score.hallucinated.len());
+        let with_hallucinations = sum(|scored| usize::from(!scored.score.hallucinated.is_empty()));
         Self {
             perception,
             captions: captioned.len(),
@@ -82,9 +82,9 @@ impl PerceptionRow {
             named,
             precision: count_share(named - hallucinated, named),
             hallucination_rate: count_share(hallucinated, named),
-            recall: count_share(sum(|one| one.score.found), sum(|one| one.score.labelled)),
+            recall: count_share(sum(|scored| scored.score.found), sum(|scored| scored.score.labelled)),
             captions_with_hallucinations: count_share(with_hallucinations, captioned.len()),
-            questions_per_view: count_share(sum(|one| one.caption.transcript.len()), captioned.len()),
+            questions_per_view: count_share(sum(|scored| scored.caption.transcript.len()), captioned.len()),
             calls_per_view: calls as f64 / captions.len().max(1) as f64,
             with_detector: None,
         }

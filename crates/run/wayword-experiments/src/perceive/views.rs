@@ -13,12 +13,12 @@ pub(super) struct LabelledView {
     pub(super) labels: Vec<SeenThing>,
 }
 
-/// The first `most` views with labels, in the order of the paths.
-pub(super) fn labelled_views(plan: &RunPlan<'_>, most: usize) -> Result<Vec<LabelledView>, CommandError> {
+/// The first `max_views` views with labels, in the order of the paths.
+pub(super) fn labelled_views(plan: &RunPlan<'_>, max_views: usize) -> Result<Vec<LabelledView>, CommandError> {
     let (settings, platform) = (&plan.job.settings, plan.platform);
     let mut views = Vec::new();
     let mut looked_at = BTreeSet::new();
-    let mut blind = 0;
+    let mut views_without_labels = 0;
     'paths: for item in &plan.items {
         let Some(path) = item_path(item, settings, platform)? else { continue };
         let looks = path
@@ -26,7 +26,7 @@ pub(super) fn labelled_views(plan: &RunPlan<'_>, most: usize) -> Result<Vec<Labe
             .iter()
             .flat_map(|frame| frame_gazes(frame, settings.frames).into_iter().map(move |gaze| (frame, gaze)));
         for (frame, gaze) in looks {
-            if views.len() == most {
+            if views.len() == max_views {
                 break 'paths;
             }
             let place = (path.scene.clone(), frame.place_key(), micro_rad(gaze));
@@ -35,13 +35,13 @@ pub(super) fn labelled_views(plan: &RunPlan<'_>, most: usize) -> Result<Vec<Labe
             }
             match labelled_view(platform, &path, frame, gaze)? {
                 Some(view) => views.push(view),
-                None => blind += 1,
+                None => views_without_labels += 1,
             }
         }
     }
     if views.is_empty() {
         return Err(CommandError::usage(
-            format!("none of {} has labels to check a caption against", count_phrase(blind, "view")),
+            format!("none of {} has labels to check a caption against", count_phrase(views_without_labels, "view")),
             "give a platform or data folder with labels, or other --episodes or --scan",
         ));
     }
@@ -61,10 +61,12 @@ pub(super) fn item_path(
     }
 }
 
+/// The heading of a gaze in whole microradians, which can be compared exactly.
 fn micro_rad(gaze: ViewGaze) -> u64 {
     (gaze.heading.rad() * 1e6).round() as u64
 }
 
+/// The view from a frame with its labels; `None` if the platform has none for it.
 fn labelled_view(
     platform: &dyn Platform,
     path: &Path,
@@ -72,8 +74,8 @@ fn labelled_view(
     gaze: ViewGaze,
 ) -> Result<Option<LabelledView>, CommandError> {
     let view = platform.look_from(&path.scene, frame, gaze)?;
-    let one = Path { frames: vec![frame.clone()], ..path.clone() };
-    let evidence = Evidence::from_labels(&one, &[vec![view.clone()]]);
+    let single_frame = Path { frames: vec![frame.clone()], ..path.clone() };
+    let evidence = Evidence::from_labels(&single_frame, &[vec![view.clone()]]);
     let labels = evidence.and_then(|evidence| evidence.frames.into_iter().next()).map(|frame| frame.things);
     let labels = labels.filter(|labels| !labels.is_empty());
     Ok(labels.map(|labels| LabelledView { scene: path.scene.clone(), view, labels }))

@@ -33,10 +33,10 @@ impl BaseRun {
     pub(super) fn read_run(folder: &FilePath, limit: Option<u32>) -> Result<Self, CommandError> {
         let settings = RunSettings { per_path: 1, ..settings_of(folder)? };
         let styles = styles::find_styles(&settings.style)?;
-        let most = limit.map_or(usize::MAX, |limit| limit as usize);
+        let max_paths = limit.map_or(usize::MAX, |limit| limit as usize);
         let mut paths: Vec<Path> = Vec::new();
         lines::each_line(&folder.join(file::WALKS), |line| {
-            if paths.len() < most {
+            if paths.len() < max_paths {
                 let WalkRecord { mut path, .. } = line.parse()?;
                 // The words that distinguish the target from other things depend on the world, so every world finds them anew.
                 if let Some(target) = &mut path.target {
@@ -65,12 +65,12 @@ impl BaseRun {
         &self,
         texts: impl Iterator<Item = (&'t str, &'t str, Option<&'t str>)>,
     ) -> RepeatedTexts {
-        let mut again = RepeatedTexts::default();
+        let mut repeated = RepeatedTexts::default();
         for (path, style, text) in texts {
             let before = self.texts.get(&(path.to_owned(), style.to_owned())).map(String::as_str);
-            again.of += 1;
-            again.equal += usize::from(before == text);
+            repeated.of += 1;
+            repeated.equal += usize::from(before == text);
         }
-        again
+        repeated
     }
 }

@@ -28,22 +28,22 @@ pub(super) struct SetVarianceReport {
 /// # Errors
 /// When a folder has no walks, or there is a single set.
 pub(super) fn compare_sets(folders: &[PathBuf], drawing: BootstrapOptions) -> Result<SetVarianceReport, CommandError> {
-    let mut all: Vec<FollowResult> = Vec::new();
+    let mut results: Vec<FollowResult> = Vec::new();
     for folder in folders {
         refuse_other_format::<ComparisonSettings>(folder)?;
-        let found: Vec<FollowResult> = read_lines(&folder.join(file::FOLLOWED))?;
-        if found.is_empty() {
+        let folder_results: Vec<FollowResult> = read_lines(&folder.join(file::FOLLOWED))?;
+        if folder_results.is_empty() {
             let problem = format!("{}: it has no {}", folder.display(), file::FOLLOWED);
             return Err(CommandError::usage(problem, "finish it with the same `wayword compare` command"));
         }
         let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        let named = |one: FollowResult| match folders.len() {
-            1 => one,
-            _ => FollowResult { set: format!("{name}/{}", one.set), ..one },
+        let named = |result: FollowResult| match folders.len() {
+            1 => result,
+            _ => FollowResult { set: format!("{name}/{}", result.set), ..result },
         };
-        all.extend(found.into_iter().map(named));
+        results.extend(folder_results.into_iter().map(named));
     }
-    let sets: BTreeSet<String> = all.iter().map(|one| one.set.clone()).collect();
+    let sets: BTreeSet<String> = results.iter().map(|result| result.set.clone()).collect();
     if sets.len() < 2 {
         let problem = "there is a single set, so nothing varies among sets";
         return Err(CommandError::usage(
@@ -51,11 +51,11 @@ pub(super) fn compare_sets(folders: &[PathBuf], drawing: BootstrapOptions) -> Re
             "compare several: `wayword compare --instructions A=… --instructions B=…`",
         ));
     }
-    let agents = agent_success_rates(&all, drawing);
+    let agents = agent_success_rates(&results, drawing);
     if agents.is_empty() {
         return Err(CommandError::usage("the sets have no path in common", "compare sets of the same paths"));
     }
-    Ok(SetVarianceReport { sets, agents, rankings: compare_rankings(&all, drawing), level: drawing.level })
+    Ok(SetVarianceReport { sets, agents, rankings: compare_rankings(&results, drawing), level: drawing.level })
 }
 
 impl fmt::Display for SetVarianceReport {
@@ -67,11 +67,11 @@ impl fmt::Display for SetVarianceReport {
             "success rate, %", "mean", "spread", "least", "most", "paths"
         )?;
         for AgentSuccess { agent, of_set, mean, spread, paths, .. } in &self.agents {
-            let ends = of_set.values().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], one| {
-                [f64::min(low, *one), f64::max(high, *one)]
+            let ends = of_set.values().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], rate| {
+                [f64::min(low, *rate), f64::max(high, *rate)]
             });
             let [mean, spread, least, most] =
-                [*mean, spread.unwrap_or(f64::NAN), ends[0], ends[1]].map(|one| one * 100.0);
+                [*mean, spread.unwrap_or(f64::NAN), ends[0], ends[1]].map(|rate| rate * 100.0);
             writeln!(f, "{agent:<20} {mean:>7.1} {spread:>7.1} {least:>7.1} {most:>7.1} {paths:>6}")?;
         }
         let level = self.level * 100.0;
@@ -85,8 +85,8 @@ impl fmt::Display for SetVarianceReport {
                 )?;
                 continue;
             };
-            let cells = [scene, path, set, rest].map(|of| {
-                let [share, low, high] = of.map(|one| one * 100.0);
+            let cells = [scene, path, set, rest].map(|estimate| {
+                let [share, low, high] = estimate.map(|share| share * 100.0);
                 format!("{share:.0} [{low:.0}, {high:.0}]")
             });
             writeln!(f, "{agent:<20} {:>17} {:>17} {:>17} {:>17}", cells[0], cells[1], cells[2], cells[3])?;

@@ -6,8 +6,9 @@ use wayword_run::error::CommandError;
 /// The share of its recall that an eye loses at the end of a dose's range, unless `--eye` sets `falls`.
 const DEFAULT_RECALL_FALL_SHARE: f64 = 0.8;
 
-/// Parses `recall=0.9,mistakes=0.05,falls=0.8,rises=0.1,guesses-sides`. Parts that are left out have the values of an eye
-/// that sees everything, and loses recall with the dose.
+/// Parses `recall=0.9,mistakes=0.05,falls=0.8,rises=0.1,guesses-sides`. `falls` and `rises` are the shares by which the
+/// recall falls and the mistakes rise at the end of a dose's range. Parts that are left out have the values of an eye that sees
+/// everything, and loses recall with the dose.
 pub(super) fn parse_eye(typed: &str) -> Result<EyeQuality, CommandError> {
     let mut eye = EyeQuality { falls: DEFAULT_RECALL_FALL_SHARE, ..EyeQuality::PERFECT };
     for part in typed.split(',').map(str::trim) {

@@ -19,7 +19,7 @@ use wayword_robustness::{
     ratio::{BootstrapOptions, PathAgreements, dose_slope, falls_at, robustness_ratios},
 };
 
-/// A change matters if its R is below this.
+/// A change matters if its R (1: no more than asking again, 0: as much as another path) is below this.
 const MIN_HARMLESS_R: f64 = 0.8;
 /// Most pairs of texts, before and after, that are shown of each change.
 const MAX_CHANGE_EXAMPLES: usize = 5;
@@ -45,7 +45,7 @@ pub(super) fn figures_for_style(
     StyleResults {
         style: style.to_owned(),
         curves: dose_curves(&measured),
-        changes: measured.into_iter().map(|(_, found)| found).collect(),
+        changes: measured.into_iter().map(|(_, results)| results).collect(),
         expectations: exact.into_iter().map(|change| texts.expectation_figures(change)).collect(),
     }
 }
@@ -66,14 +66,14 @@ impl<'a> StyleTexts<'a> {
 
     /// The statements of a path's text in an arm, located by the frames of the run's path.
     fn facts_in_arm(&self, arm: &str, path: &str) -> Option<TextFacts> {
-        let (line, told) = self.text_in_arm(arm, path)?;
-        let place = |frame: usize| line.base_frame_of.get(frame).copied().unwrap_or(frame);
-        Some(TextFacts::from_mentions(told.text.as_ref()?, &told.mentions, place))
+        let (line, arm_text) = self.text_in_arm(arm, path)?;
+        let base_frame = |frame: usize| line.base_frame_of.get(frame).copied().unwrap_or(frame);
+        Some(TextFacts::from_mentions(arm_text.text.as_ref()?, &arm_text.mentions, base_frame))
     }
 
     fn change_figures(&self, change: &Change, drawing: BootstrapOptions) -> ChangeResults {
         let id = change.id();
-        let mut found = ChangeResults {
+        let mut results = ChangeResults {
             change: change.to_string(),
             paths: 0,
             lost: 0,
@@ -85,10 +85,10 @@ impl<'a> StyleTexts<'a> {
         for path in &self.base.paths {
             let Some(before) = self.facts_in_arm("unchanged", &path.id) else { continue };
             let Some(after) = self.facts_in_arm(&id, &path.id) else {
-                found.lost += usize::from(self.text_in_arm(&id, &path.id).is_some());
+                results.lost += usize::from(self.text_in_arm(&id, &path.id).is_some());
                 continue;
             };
-            found.paths += 1;
+            results.paths += 1;
             let agreement =
                 |arm: &str| self.facts_in_arm(arm, &path.id).map(|facts| TextAgreement::from_facts(&before, &facts));
             let scene = path.scene.as_str().to_owned();
@@ -100,22 +100,22 @@ impl<'a> StyleTexts<'a> {
                     other,
                 });
             }
-            let arrived = |arm: &str| self.text_in_arm(arm, &path.id).and_then(|(_, told)| told.arrived);
+            let arrived = |arm: &str| self.text_in_arm(arm, &path.id).and_then(|(_, arm_text)| arm_text.arrived);
             if let Some((then, now)) = arrived("unchanged").zip(arrived(&id)) {
                 success.push((scene, now - then));
             }
-            if found.examples.len() < MAX_CHANGE_EXAMPLES {
-                found.examples.extend(self.text_example(&id, &path.id, String::new()));
+            if results.examples.len() < MAX_CHANGE_EXAMPLES {
+                results.examples.extend(self.text_example(&id, &path.id, String::new()));
             }
         }
-        found.figures = robustness_ratios(&paths, drawing).into_iter().map(RobustnessFigure::from).collect();
-        found.success = clustered_interval(&success, drawing.resamples, drawing.level, drawing.seed);
-        found
+        results.figures = robustness_ratios(&paths, drawing).into_iter().map(RobustnessFigure::from).collect();
+        results.success = clustered_interval(&success, drawing.resamples, drawing.level, drawing.seed);
+        results
     }
 
     fn expectation_figures(&self, change: &Change) -> ExpectationResult {
         let id = change.id();
-        let mut found = ExpectationResult {
+        let mut results = ExpectationResult {
             change: change.to_string(),
             expected: expected_outcome(change).to_owned(),
             told: 0,
@@ -124,17 +124,17 @@ impl<'a> StyleTexts<'a> {
         };
         for path in &self.base.paths {
             let Some(outcome) = self.expectation_outcome(change, &path.id) else { continue };
-            found.told += usize::from(outcome != ExpectationOutcome::NotTold);
+            results.told += usize::from(outcome != ExpectationOutcome::NotTold);
             match outcome {
-                ExpectationOutcome::Holds => found.holds += 1,
+                ExpectationOutcome::Holds => results.holds += 1,
                 ExpectationOutcome::NotTold => {}
-                ExpectationOutcome::Differs(why) if found.examples.len() < MAX_BROKEN_EXAMPLES => {
-                    found.examples.extend(self.text_example(&id, &path.id, why));
+                ExpectationOutcome::Differs(why) if results.examples.len() < MAX_BROKEN_EXAMPLES => {
+                    results.examples.extend(self.text_example(&id, &path.id, why));
                 }
                 ExpectationOutcome::Differs(_) => {}
             }
         }
-        found
+        results
     }
 
     /// Whether the texts of a path before and after a change keep its expectation; `None` if one of them is missing.
@@ -151,12 +151,12 @@ impl<'a> StyleTexts<'a> {
         let base = AnnotatedText { text, mentions: &before.mentions, last_frame };
         let changed = AnnotatedText { text: changed, mentions: &after.mentions, last_frame };
         let edit = after.edit.as_ref();
-        let gone = || edit.map(|edit| ChangedThing { name: &edit.name, seen_from: &edit.seen_from });
+        let changed_thing = || edit.map(|edit| ChangedThing { name: &edit.name, seen_from: &edit.seen_from });
         Some(match whole {
             WholeChange::Mirror => metamorphic::check_mirrored_world(base, changed),
             WholeChange::Turn => metamorphic::check_turned_world(base, changed),
-            WholeChange::Remove => metamorphic::check_removed_thing(base, changed, gone()?),
-            WholeChange::Add => metamorphic::check_added_thing(base, changed, gone()?),
+            WholeChange::Remove => metamorphic::check_removed_thing(base, changed, changed_thing()?),
+            WholeChange::Add => metamorphic::check_added_thing(base, changed, changed_thing()?),
             WholeChange::Material => {
                 let [old, new] = edit?.colours.as_ref()?;
                 metamorphic::check_changed_material(base, changed, old, new)
@@ -189,9 +189,9 @@ fn expected_outcome(change: &Change) -> &'static str {
 /// A curve of R over the dose for each change with several doses.
 fn dose_curves(measured: &[(&Change, ChangeResults)]) -> Vec<DoseCurve> {
     let mut curves: Vec<DoseCurve> = Vec::new();
-    for (change, found) in measured {
+    for (change, results) in measured {
         let Some(dose) = change.dose_value() else { continue };
-        let r = found.figures.last().and_then(|mean| mean.r);
+        let r = results.figures.last().and_then(|mean| mean.r);
         match curves.iter_mut().find(|curve| curve.change == change.name()) {
             Some(curve) => curve.points.push((dose, r)),
             None => curves.push(DoseCurve {

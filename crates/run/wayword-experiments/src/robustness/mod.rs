@@ -126,7 +126,7 @@ pub fn run_robustness(args: &RobustnessArgs, output: &CommandOutput) -> Result<E
     if changes.is_empty() {
         return Err(CommandError::usage("no change is left to make", "see `wayword robustness --list`"));
     }
-    let _held = begin_folder(args, &base, out)?;
+    let _folder_lock = begin_folder(args, &base, out)?;
     let id = run_folder::id_of(out, "robustness")?;
     let calls = JobModels::for_job(&job)?.open_calls(&id, output)?;
     if calls.is_some() {
@@ -164,7 +164,7 @@ fn parse_changes(typed: &[String]) -> Result<Vec<Change>, CommandError> {
     Ok(if typed.is_empty() { Change::default_set() } else { changes })
 }
 
-/// The job of the run, with how models are reached now.
+/// The job of the run. Its models are reached as the flags and the settings file of this command require, and not as in the run.
 fn job_with_service(args: &RobustnessArgs, settings: &RunSettings) -> Result<RunJob, CommandError> {
     let AskedSettings { service, providers, .. } = settings_file::read_call_settings(args.config.as_deref())?;
     let asked = AskedSettings { service: args.service.clone(), ..AskedSettings::default() };
@@ -198,9 +198,9 @@ fn change_setting<'a>(
 fn sorted_out(changes: Vec<Change>, setting: &ChangeSetting<'_>) -> (Vec<Change>, Vec<RefusedChange>) {
     let (mut made, mut refused) = (Vec::new(), Vec::new());
     for change in changes {
-        let unknown =
+        let platform_reason =
             || if let Change::Platform(spec) = &change { other_platform::platform_refusal(spec) } else { None };
-        match unknown().or_else(|| change.refusal_reason(setting)) {
+        match platform_reason().or_else(|| change.refusal_reason(setting)) {
             Some(reason) => refused.push(RefusedChange { change: change.to_string(), reason }),
             None => made.push(change),
         }
@@ -246,9 +246,10 @@ fn make_texts(
     };
     let (team, again) = (team(0)?, team(1)?);
     let threads = calls.map_or(1, |calls| calls.views_at_once(base.paths.len()));
-    let crew = ArmTextWriter { base, platform: world, team: &team, again: &again, eye, seed: args.seed, threads };
+    let text_writer =
+        ArmTextWriter { base, platform: world, team: &team, again: &again, eye, seed: args.seed, threads };
     let mut journal = Journal::open(&out.join(file::TEXTS), ArmPathRecord::key_of)?;
-    let _graceful = interrupt::finish_first(calls);
+    let _interrupt_guard = interrupt::finish_first(calls);
     let workers = calls.map_or_else(core_count, ModelCalls::worker_count);
     let arms = RobustnessArm::for_changes(changes);
     let names = scene_names::parse_names(&args.scene_name)?;
@@ -257,21 +258,22 @@ fn make_texts(
     let mut unchanged = UnchangedRecords::new();
     for arm in &arms {
         bar.set_message(arm.progress_label());
-        let walks = write_texts::walked_platform(arm, world);
-        let left: Vec<&Path> =
+        let walked_platform = write_texts::walked_platform(arm, world);
+        let unwritten: Vec<&Path> =
             base.paths.iter().filter(|path| !journal.has_key(&record_key(&arm.id(), &path.id))).collect();
         let elsewhere = match arm {
-            RobustnessArm::Changed(Change::Platform(spec)) if !left.is_empty() => {
+            RobustnessArm::Changed(Change::Platform(spec)) if !unwritten.is_empty() => {
                 Some(OtherPlatformScenes::open(spec, base, platform, (out, &names))?)
             }
             _ => None,
         };
-        let (scenes, demands) = (KnownScenes::new(), PlatformDemands::new(walks.as_ref()));
-        let within = ArmContext { arm, scenes, walks: walks.as_ref(), demands, elsewhere, unchanged: &unchanged };
-        bar.inc((base.paths.len() - left.len()) as u64);
-        let making = |path: &&Path| {
+        let (scenes, demands) = (KnownScenes::new(), PlatformDemands::new(walked_platform.as_ref()));
+        let context =
+            ArmContext { arm, scenes, walks: walked_platform.as_ref(), demands, elsewhere, unchanged: &unchanged };
+        bar.inc((base.paths.len() - unwritten.len()) as u64);
+        let make = |path: &&Path| {
             interrupt::check_interrupt()?;
-            crew.make_record(&within, path)
+            text_writer.make_record(&context, path)
         };
         let mut keep = |path: &&Path, made: Result<ArmPathRecord, CommandError>| {
             bar.inc(1);
@@ -285,13 +287,13 @@ fn make_texts(
             }
             Ok(true)
         };
-        if within.elsewhere.is_some() {
+        if context.elsewhere.is_some() {
             // A simulator shows one scene at a time, and takes seconds to show another.
-            for paths in by_scene(left) {
-                in_order(&paths, workers, making, &mut keep)?;
+            for paths in by_scene(unwritten) {
+                in_order(&paths, workers, make, &mut keep)?;
             }
         } else {
-            in_order(&left, workers, making, &mut keep)?;
+            in_order(&unwritten, workers, make, &mut keep)?;
         }
         if *arm == RobustnessArm::Unchanged {
             unchanged = read_text_records(out)?.remove(&arm.id()).unwrap_or_default();
@@ -334,7 +336,7 @@ fn compute_results(
     let drawing = BootstrapOptions { resamples: args.resamples as usize, level: CONFIDENCE_LEVEL, seed: args.seed };
     let unchanged = lines.get(&RobustnessArm::Unchanged.id());
     let texts = unchanged.into_iter().flat_map(BTreeMap::values).flat_map(|line| {
-        line.texts.iter().map(|told| (line.path.id.as_str(), told.style.as_str(), told.text.as_deref()))
+        line.texts.iter().map(|arm_text| (line.path.id.as_str(), arm_text.style.as_str(), arm_text.text.as_deref()))
     });
     let roles = &base.settings.roles;
     let styles =

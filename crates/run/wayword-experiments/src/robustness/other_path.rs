@@ -28,9 +28,9 @@ pub(super) fn find_other_path(
     unchanged: &UnchangedRecords,
     seed: u64,
 ) -> Result<Option<OtherPathChoice>, CommandError> {
-    let told: Vec<&ArmPathRecord> = unchanged.values().filter(|line| is_other(path, &line.path)).collect();
-    let at = derive_seed(seed, &["robustness", "other", &path.id]).checked_rem(told.len() as u64);
-    if let Some(line) = at.and_then(|at| told.get(usize::try_from(at).ok()?)) {
+    let candidates: Vec<&ArmPathRecord> = unchanged.values().filter(|line| is_other(path, &line.path)).collect();
+    let choice = derive_seed(seed, &["robustness", "other", &path.id]).checked_rem(candidates.len() as u64);
+    if let Some(line) = choice.and_then(|choice| candidates.get(usize::try_from(choice).ok()?)) {
         return Ok(Some(OtherPathChoice::Told(Box::new((*line).clone()))));
     }
     let Some(length_m) = path.length_m() else { return Ok(None) };

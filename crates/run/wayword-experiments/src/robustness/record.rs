@@ -60,14 +60,14 @@ pub(super) struct ThingEdit {
 impl ArmText {
     /// Makes the record of a text from the outcome of its writing.
     pub(super) fn from_outcome(style: &str, outcome: WritingOutcome) -> Self {
-        let none =
+        let without_text =
             Self { style: style.to_owned(), text: None, candidate: 0, mentions: Vec::new(), edit: None, arrived: None };
         match outcome {
             WritingOutcome::Accepted(Instruction { text, mentions, provenance, .. }) => {
                 let candidate = provenance.chosen.map_or(0, |chosen| chosen.number);
-                Self { text: Some(text), candidate, mentions, ..none }
+                Self { text: Some(text), candidate, mentions, ..without_text }
             }
-            WritingOutcome::Rejected { .. } => none,
+            WritingOutcome::Rejected { .. } => without_text,
         }
     }
 }
@@ -90,11 +90,11 @@ impl ArmPathRecord {
 
     /// The number of the candidate that each text is, by style.
     pub(super) fn candidates_by_style(&self) -> BTreeMap<String, u32> {
-        self.texts.iter().map(|told| (told.style.clone(), told.candidate)).collect()
+        self.texts.iter().map(|text| (text.style.clone(), text.candidate)).collect()
     }
 
     /// The text of a style.
     pub(super) fn text_in_style(&self, style: &str) -> Option<&ArmText> {
-        self.texts.iter().find(|told| told.style == style)
+        self.texts.iter().find(|text| text.style == style)
     }
 }

@@ -75,8 +75,8 @@ pub(super) fn format_results(results: &RobustnessResults) -> String {
                 let _ = writeln!(text, "{}", change_row(change));
             }
         }
-        for one in &style.expectations {
-            let _ = writeln!(text, "{}", expectation_row(one));
+        for expectation in &style.expectations {
+            let _ = writeln!(text, "{}", expectation_row(expectation));
         }
     }
     text
@@ -101,8 +101,9 @@ fn change_row(change: &ChangeResults) -> String {
     format!("{:<28}{figures}  {success}", change.change)
 }
 
-fn expectation_row(one: &ExpectationResult) -> String {
-    let ExpectationResult { change, expected, told, holds, .. } = one;
-    let share = one.share_that_holds().map_or_else(|| "-".to_owned(), |share| format!("{:.1} %", share * 100.0));
+fn expectation_row(expectation: &ExpectationResult) -> String {
+    let ExpectationResult { change, expected, told, holds, .. } = expectation;
+    let share =
+        expectation.share_that_holds().map_or_else(|| "-".to_owned(), |share| format!("{:.1} %", share * 100.0));
     format!("{change:<28} {share:>10}  {holds} of {told}: {expected}")
 }

@@ -29,28 +29,28 @@ pub(super) fn world_for_arm<'a>(
     path: &Path,
     seed: u64,
 ) -> Result<ChangedWorld<'a>, String> {
-    let walked = |ChangedPath { path, base_frame_of }: ChangedPath| ChangedWorld {
+    let same_platform = |ChangedPath { path, base_frame_of }: ChangedPath| ChangedWorld {
         platform: Box::new(platform),
         path,
         base_frame_of,
     };
     let change = match arm {
         RobustnessArm::Changed(change) => change,
-        RobustnessArm::Forward => return Ok(walked(paths::face_first_hop(path))),
+        RobustnessArm::Forward => return Ok(same_platform(paths::face_first_hop(path))),
         _ => return Err("the world is not changed".to_owned()),
     };
     Ok(match change {
         Change::Whole(WholeChange::Mirror) => altered_world(platform, WorldMirror, path),
         Change::Whole(WholeChange::Turn) => altered_world(platform, QuarterTurn, path),
-        Change::Whole(WholeChange::Reverse) => walked(paths::reverse_path(path)),
+        Change::Whole(WholeChange::Reverse) => same_platform(paths::reverse_path(path)),
         Change::By(DoseKind::CameraHeight, height_m) => {
             altered_world(platform, CameraHeight { height_m: *height_m, eye_m: EYE_M }, path)
         }
         Change::By(DoseKind::FieldOfView, deg) => altered_world(platform, FieldOfView { deg: *deg }, path),
         Change::By(DoseKind::HeadingNoise, deg) => altered_world(platform, HeadingNoise { deg: *deg, seed }, path),
-        Change::By(DoseKind::FrameSpacing, spacing_m) => walked(paths::space_frames(path, *spacing_m)),
-        Change::By(DoseKind::DroppedFrames, percent) => walked(paths::drop_frames(path, *percent, seed)),
-        Change::By(DoseKind::StartHeading, deg) => walked(paths::start_heading(path, *deg)),
+        Change::By(DoseKind::FrameSpacing, spacing_m) => same_platform(paths::space_frames(path, *spacing_m)),
+        Change::By(DoseKind::DroppedFrames, percent) => same_platform(paths::drop_frames(path, *percent, seed)),
+        Change::By(DoseKind::StartHeading, deg) => same_platform(paths::start_heading(path, *deg)),
         Change::By(DoseKind::Pitch, deg) => tilted_world(platform, path, CameraTilt::new(*deg, 0.0))?,
         Change::By(DoseKind::Roll, deg) => tilted_world(platform, path, CameraTilt::new(0.0, *deg))?,
         other => match pixel_change(other, seed) {

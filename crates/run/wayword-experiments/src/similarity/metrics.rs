@@ -54,6 +54,7 @@ struct MetricProtocol {
     judged: usize,
     /// The other texts of these items in A, which are not judged.
     not_judged: usize,
+    /// Items of A that B lacks.
     only_in_a: usize,
 }
 
@@ -71,24 +72,24 @@ struct MetricTextReader<'a> {
 }
 
 impl MetricTextReader<'_> {
-    fn read_text(&mut self, said: &str) -> NumberedText {
-        let said = collapse_white_space(said);
-        let most = self.args.truncate_characters.map_or(usize::MAX, |most| most as usize);
-        let end = said.char_indices().nth(most).map_or(said.len(), |(end, _)| end);
+    fn read_text(&mut self, text: &str) -> NumberedText {
+        let text = collapse_white_space(text);
+        let max_chars = self.args.truncate_characters.map_or(usize::MAX, |max_chars| max_chars as usize);
+        let end = text.char_indices().nth(max_chars).map_or(text.len(), |(end, _)| end);
         let tokens = match self.args.tokens {
-            MetricTokens::Ptb => ptb_tokens(&said[..end]),
-            MetricTokens::Split => split_tokens(&said[..end]),
+            MetricTokens::Ptb => ptb_tokens(&text[..end]),
+            MetricTokens::Split => split_tokens(&text[..end]),
         };
         self.vocabulary.number_text(&tokens)
     }
 
     /// The tokenised texts of each item, with its id and its path.
     fn read_items<'i>(&mut self, items: &'i TextSet) -> Vec<(&'i str, &'i str, Vec<NumberedText>)> {
-        let of_item = |(id, item): (&'i String, &'i ItemTexts)| {
-            let texts = item.texts.iter().map(|said| self.read_text(said)).collect();
+        let to_item = |(id, item): (&'i String, &'i ItemTexts)| {
+            let texts = item.texts.iter().map(|text| self.read_text(text)).collect();
             (id.as_str(), item.path.as_str(), texts)
         };
-        items.iter().map(of_item).collect()
+        items.iter().map(to_item).collect()
     }
 }
 
@@ -111,7 +112,7 @@ pub(super) fn measure_texts(
         not_judged += texts.len() - 1;
         items.push(CaptionItem { id, cluster, text, references: references.iter().collect() });
     }
-    let told = |items: &[(&str, &str, Vec<NumberedText>)]| {
+    let diversity_of_side = |items: &[(&str, &str, Vec<NumberedText>)]| {
         let all: Vec<(&str, &NumberedText)> =
             items.iter().flat_map(|(_, path, texts)| texts.iter().map(move |text| (*path, text))).collect();
         measure_diversity(&all, args.seed)
@@ -132,7 +133,7 @@ pub(super) fn measure_texts(
         figures: anchored_caption_figures(&sets, &drawing),
         outside: java::run_java_scorers(args, &sets, &reader.vocabulary)?,
         pictures,
-        diversity: SideDiversity { a: told(&judged), b: told(&references) },
+        diversity: SideDiversity { a: diversity_of_side(&judged), b: diversity_of_side(&references) },
     })
 }
 
@@ -156,7 +157,7 @@ impl fmt::Display for TextMetricsReport {
         }
         for JavaScores { name, all, rest, person, other_path } in &self.outside {
             let [all, rest, person, other] = [all, rest, person, other_path]
-                .map(|of| of.map_or_else(|| "-".to_owned(), |value| format!("{:.1}", value * 100.0)));
+                .map(|score| score.map_or_else(|| "-".to_owned(), |value| format!("{:.1}", value * 100.0)));
             writeln!(f, "{name}: A {all}; but the first {rest}, another person {person}, another path {other}")?;
         }
         if let Some(pictures) = &self.pictures {
@@ -192,15 +193,16 @@ impl fmt::Display for MetricProtocol {
     }
 }
 
-fn of_diversity(of: &TextDiversity) -> [(&'static str, Option<f64>); 6] {
-    let [one, two, three] = of.distinct;
+/// The rows of the table of diversity: each figure with its name.
+fn of_diversity(diversity: &TextDiversity) -> [(&'static str, Option<f64>); 6] {
+    let [one, two, three] = diversity.distinct;
     [
-        ("self-BLEU-4 (less is more diverse)", of.self_bleu_4),
+        ("self-BLEU-4 (less is more diverse)", diversity.self_bleu_4),
         ("distinct words", one),
         ("distinct pairs", two),
         ("distinct triples", three),
-        ("type-token ratio in 50 words", of.mattr_50),
-        ("homogenisation: ROUGE-L of two paths' texts", of.homogenisation),
+        ("type-token ratio in 50 words", diversity.mattr_50),
+        ("homogenisation: ROUGE-L of two paths' texts", diversity.homogenisation),
     ]
 }
 

@@ -58,11 +58,11 @@ pub fn run_similarity(args: &Args, output: &CommandOutput) -> Result<Exit, Comma
 }
 
 fn vectors_by_item<'a>(items: &'a TextSet, vectors: &'a BTreeMap<&str, Vec<f32>>) -> BTreeMap<String, ItemVectors<'a>> {
-    let of = |item: &'a text_sets::ItemTexts| ItemVectors {
+    let item_vectors = |item: &'a text_sets::ItemTexts| ItemVectors {
         cluster: item.path.clone(),
         vectors: item.texts.iter().filter_map(|text| vectors.get(text.as_str()).map(Vec::as_slice)).collect(),
     };
-    items.iter().map(|(id, item)| (id.clone(), of(item))).collect()
+    items.iter().map(|(id, item)| (id.clone(), item_vectors(item))).collect()
 }
 
 /// The similarity of two sets of texts.

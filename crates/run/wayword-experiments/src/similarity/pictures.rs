@@ -39,7 +39,7 @@ struct CommonItem<'a> {
     path: &'a str,
     /// A's first text.
     text: &'a str,
-    /// B's first text.
+    /// B's first text. For other items it serves as the text of another path.
     first: &'a str,
     /// B's first text that differs from A's.
     person: Option<&'a str>,
@@ -60,30 +60,31 @@ pub(super) fn measure_pictures(
         return Ok(None);
     };
     let mut common: Vec<CommonItem<'_>> = Vec::new();
-    for (id, of_a) in a {
-        let Some(of_b) = b.get(id) else { continue };
-        let (Some(text), Some(first)) = (of_a.texts.first(), of_b.texts.first()) else { continue };
-        let person = of_b.texts.iter().find(|other| *other != text).map(String::as_str);
-        common.push(CommonItem { id, path: &of_a.path, text, first, person });
+    for (id, item_a) in a {
+        let Some(item_b) = b.get(id) else { continue };
+        let (Some(text), Some(first)) = (item_a.texts.first(), item_b.texts.first()) else { continue };
+        let person = item_b.texts.iter().find(|other| *other != text).map(String::as_str);
+        common.push(CommonItem { id, path: &item_a.path, text, first, person });
     }
     let names: Vec<(&str, &str)> = common.iter().map(|item| (item.id, item.path)).collect();
     let others = draw_other_paths(&names, drawing.seed);
     let bar = output.progress_bar(common.len(), "items");
-    let mut seen = Vec::new();
+    let mut pictured = Vec::new();
     for (at, item) in common.iter().enumerate() {
         interrupt::check_interrupt()?;
         let pictures = critic.frames.views_for_item(item.id, item.path)?;
         let other = others.as_ref().map(|others| common[others[at]].first);
-        let asked: Vec<&str> = [Some(item.text), item.person, other].into_iter().flatten().collect();
-        let mut found = critic.score_texts(&pictures, &asked)?.into_iter();
+        let texts: Vec<&str> = [Some(item.text), item.person, other].into_iter().flatten().collect();
+        let mut scores = critic.score_texts(&pictures, &texts)?.into_iter();
+        // The scores come in the order of the texts. A text that there is not has no score.
         let mut next =
-            |is_asked: bool| -> Option<PictureScores> { if is_asked { found.next().flatten() } else { None } };
+            |has_text: bool| -> Option<PictureScores> { if has_text { scores.next().flatten() } else { None } };
         let (text, person, other_path) = (next(true), next(item.person.is_some()), next(other.is_some()));
-        seen.extend(text.map(|text| PicturedItem { cluster: item.path, text, person, other_path }));
+        pictured.extend(text.map(|text| PicturedItem { cluster: item.path, text, person, other_path }));
         bar.inc(1);
     }
     bar.finish_and_clear();
-    if seen.is_empty() {
+    if pictured.is_empty() {
         let problem = format!("--clip: there is no picture of any of {}", count_phrase(common.len(), "item"));
         return Err(CommandError::usage(
             problem,
@@ -93,9 +94,9 @@ pub(super) fn measure_pictures(
     Ok(Some(PictureAgreementReport {
         clip: critic.name().to_owned(),
         prefix: CLIP_PROMPT_PREFIX,
-        figures: anchored_picture_figures(&seen, drawing),
-        without_pictures: common.len() - seen.len(),
-        without_person: seen.iter().filter(|item| item.person.is_none()).count(),
+        figures: anchored_picture_figures(&pictured, drawing),
+        without_pictures: common.len() - pictured.len(),
+        without_person: pictured.iter().filter(|item| item.person.is_none()).count(),
     }))
 }
 

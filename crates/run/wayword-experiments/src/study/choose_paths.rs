@@ -21,7 +21,7 @@ use wayword_run::{count::count_phrase, error::CommandError, output::CommandOutpu
 use wayword_study::{ConditionKind, StudyCondition, StudyTask, StudyText};
 use wayword_world::path_of;
 
-/// The names of the two control conditions.
+/// The names of the two control conditions: texts that people wrote, and texts of other paths.
 const PEOPLE_CONDITION: &str = "people";
 const OTHER_PATH: &str = "other-path";
 
@@ -113,22 +113,22 @@ pub(super) fn choose_walks(
     output: &CommandOutput,
 ) -> Result<Vec<StudyWalk>, CommandError> {
     let demands = PlatformDemands::new(platform);
-    let mut bare = read_candidates(args, mode, platform)?;
+    let mut candidates = read_candidates(args, mode, platform)?;
     if mode == StudyTask::Follow {
-        let before = bare.len();
-        bare = keep_walkable(bare, platform, &demands)?;
-        if bare.len() < before {
-            let left = count_phrase(before - bare.len(), "path");
+        let before = candidates.len();
+        candidates = keep_walkable(candidates, platform, &demands)?;
+        if candidates.len() < before {
+            let left = count_phrase(before - candidates.len(), "path");
             output.say(format_args!(
                 "left out: {left} whose viewpoints do not lead from the start to a goal 3 m away or more"
             ));
         }
     }
     let sets = read_run_texts(conditions)?;
-    let mut drawn = seeded_rng(args.seed, &["study", "texts"]);
+    let mut rng = seeded_rng(args.seed, &["study", "texts"]);
     // If an item has several texts of a condition, one is drawn.
     let mut texts: Vec<BTreeMap<&str, String>> = Vec::new();
-    for item in &bare {
+    for item in &candidates {
         let mut of_item = BTreeMap::new();
         // Two conditions of one source have the same text, because they are to differ only in their marks.
         let mut of_source: BTreeMap<&str, String> = BTreeMap::new();
@@ -139,7 +139,7 @@ pub(super) fn choose_walks(
                 ConditionKind::OtherPath => None,
             };
             if let Some(found) = found.filter(|found| !found.is_empty()) {
-                let draw = || found[drawn.random_range(0..found.len())].clone();
+                let draw = || found[rng.random_range(0..found.len())].clone();
                 let text = of_source.entry(condition.source.as_str()).or_insert_with(draw).clone();
                 of_item.insert(condition.name.as_str(), text);
             }
@@ -152,15 +152,15 @@ pub(super) fn choose_walks(
         .find(|condition| condition.kind == ConditionKind::OtherPath)
         .map(|condition| &condition.source);
     let has_source = |at: usize| source.is_some_and(|source| texts[at].contains_key(source.as_str()));
-    let elsewhere = match source {
-        Some(_) => find_other_paths(&bare, &demands, args.seed, &has_source)?,
-        None => vec![None; bare.len()],
+    let other_indices = match source {
+        Some(_) => find_other_paths(&candidates, &demands, args.seed, &has_source)?,
+        None => vec![None; candidates.len()],
     };
-    let told = |at: usize| -> Option<Vec<StudyText>> {
+    let texts_for_path = |at: usize| -> Option<Vec<StudyText>> {
         let text = |condition: &StudyCondition| {
             let text = match condition.kind {
                 ConditionKind::OtherPath => {
-                    texts.get(elsewhere.get(at).copied().flatten()?)?.get(condition.source.as_str())
+                    texts.get(other_indices.get(at).copied().flatten()?)?.get(condition.source.as_str())
                 }
                 _ => texts[at].get(condition.name.as_str()),
             };
@@ -168,23 +168,23 @@ pub(super) fn choose_walks(
         };
         conditions.iter().map(text).collect()
     };
-    let mut order: Vec<usize> = (0..bare.len()).collect();
+    let mut order: Vec<usize> = (0..candidates.len()).collect();
     order.shuffle(&mut seeded_rng(args.seed, &["study", "paths"]));
-    let told: BTreeMap<usize, Vec<StudyText>> = order.iter().filter_map(|at| Some((*at, told(*at)?))).collect();
+    let mut chosen_texts: BTreeMap<usize, Vec<StudyText>> =
+        order.iter().filter_map(|at| Some((*at, texts_for_path(*at)?))).collect();
     let mut seen = BTreeSet::new();
-    order.retain(|at| told.contains_key(at) && seen.insert(bare[*at].name.clone()));
+    order.retain(|at| chosen_texts.contains_key(at) && seen.insert(candidates[*at].name.clone()));
     if order.is_empty() {
-        let problem = format!("none of {} has a text of every condition", count_phrase(bare.len(), "path"));
+        let problem = format!("none of {} has a text of every condition", count_phrase(candidates.len(), "path"));
         let hint =
             "items are matched by id: give runs of the same paths; other-path needs a second path in the same scene";
         return Err(CommandError::usage(problem, hint));
     }
-    let mut told = told;
-    let mut bare: Vec<Option<CandidatePath>> = bare.into_iter().map(Some).collect();
+    let mut candidates: Vec<Option<CandidatePath>> = candidates.into_iter().map(Some).collect();
     let walk = |at: usize| {
-        let CandidatePath { name, path, viewpoints, .. } = bare[at].take()?;
+        let CandidatePath { name, path, viewpoints, .. } = candidates[at].take()?;
         let start_heading = path.frames.first().map_or(Heading::NORTH, |frame| frame.pose.heading);
-        Some(StudyWalk { name, path, viewpoints, start_heading, told: told.remove(&at)? })
+        Some(StudyWalk { name, path, viewpoints, start_heading, told: chosen_texts.remove(&at)? })
     };
     Ok(order.into_iter().filter_map(walk).collect())
 }
@@ -192,12 +192,12 @@ pub(super) fn choose_walks(
 /// Keeps the paths that can be walked over the viewpoint graph and end far enough from their start. With a nearer goal, a
 /// participant who stops at once would have arrived.
 fn keep_walkable(
-    bare: Vec<CandidatePath>,
+    candidates: Vec<CandidatePath>,
     platform: &dyn Platform,
     demands: &PlatformDemands<'_>,
 ) -> Result<Vec<CandidatePath>, CommandError> {
-    let mut all = Vec::new();
-    for item in bare {
+    let mut walkable = Vec::new();
+    for item in candidates {
         let scene = &item.path.scene;
         let distances = demands.scene_distances(scene)?;
         let ends = item.viewpoints.first().zip(item.viewpoints.last());
@@ -205,10 +205,10 @@ fn keep_walkable(
         let graph = platform.graph_for_scene(scene)?;
         let is_known = item.viewpoints.iter().all(|viewpoint| graph.position_of(viewpoint).is_some());
         if is_known && apart_m.is_some_and(|apart_m| apart_m >= SAME_GOAL_M) {
-            all.push(item);
+            walkable.push(item);
         }
     }
-    Ok(all)
+    Ok(walkable)
 }
 
 /// Reads the texts of each run, by item.
@@ -237,7 +237,7 @@ fn read_candidates(
         } else {
             wayword_formats::read_any_format(&file)?
         };
-        let bare = |episode: wayword_formats::Episode| {
+        let to_candidate = |episode: wayword_formats::Episode| {
             let object = episode.target_object.as_ref();
             let path =
                 path_of(platform, &*episode.id, &episode.scene, &episode.viewpoints, episode.start_heading, object)?;
@@ -250,38 +250,38 @@ fn read_candidates(
                 people: episode.instructions,
             })
         };
-        return read.into_iter().map(bare).collect();
+        return read.into_iter().map(to_candidate).collect();
     }
     let viewpoints: BTreeMap<String, Vec<ViewpointId>> = if is_walked {
         episodes::read_episodes(&file, platform)?.into_iter().map(|episode| (episode.id, episode.viewpoints)).collect()
     } else {
         BTreeMap::new()
     };
-    let mut all: Vec<CandidatePath> = Vec::new();
+    let mut candidates: Vec<CandidatePath> = Vec::new();
     let mut index: BTreeMap<String, usize> = BTreeMap::new();
     for record in jsonl::read_records(&file)? {
         let at = *index.entry(record.path.id.clone()).or_insert_with(|| {
             let id = record.path.id.clone();
             let name = episodes::path_name(&record.path.scene, &record.path_id());
             let viewpoints = viewpoints.get(&id).cloned().unwrap_or_default();
-            all.push(CandidatePath { id, name, path: record.path.clone(), viewpoints, people: Vec::new() });
-            all.len() - 1
+            candidates.push(CandidatePath { id, name, path: record.path.clone(), viewpoints, people: Vec::new() });
+            candidates.len() - 1
         });
-        all[at].people.push(record.instruction.text);
+        candidates[at].people.push(record.instruction.text);
     }
-    Ok(all)
+    Ok(candidates)
 }
 
-/// For each path, the index of another one in the same scene with another goal, among those for which `may_stand` is true.
+/// For each path, the index of another one in the same scene with another goal, among those for which `has_text` is true.
 fn find_other_paths(
-    bare: &[CandidatePath],
+    paths: &[CandidatePath],
     demands: &PlatformDemands<'_>,
     seed: u64,
-    may_stand: &dyn Fn(usize) -> bool,
+    has_text: &dyn Fn(usize) -> bool,
 ) -> Result<Vec<Option<usize>>, CommandError> {
     let mut distances: BTreeMap<SceneId, Arc<SceneDistances>> = BTreeMap::new();
-    let mut candidates = Vec::new();
-    for item in bare {
+    let mut swap_candidates = Vec::new();
+    for item in paths {
         let scene = item.path.scene.clone();
         let goal =
             item.viewpoints.last().or_else(|| item.path.frames.last().and_then(|frame| frame.viewpoint.as_ref()));
@@ -293,19 +293,19 @@ fn find_other_paths(
         let Some(goal) = goal else {
             return Err(CommandError::usage(format!("item {}: it has no usable id", item.id), "give it another"));
         };
-        candidates.push(SwapCandidate { id: item.id.clone(), scene, goal, cluster: item.name.clone() });
+        swap_candidates.push(SwapCandidate { id: item.id.clone(), scene, goal, cluster: item.name.clone() });
     }
     let is_far = |a: &SwapCandidate, b: &SwapCandidate| {
         let apart_m = distances.get(&a.scene).and_then(|distances| distances.metres_between(&a.goal, &b.goal));
         apart_m.is_none_or(|apart_m| apart_m >= SAME_GOAL_M)
     };
-    let standing: Vec<usize> = (0..bare.len()).filter(|at| may_stand(*at)).collect();
+    let lenders: Vec<usize> = (0..paths.len()).filter(|at| has_text(*at)).collect();
     let other = |at: usize| {
         // The path itself comes first, and the others after it.
-        let among: Vec<usize> =
-            std::iter::once(at).chain(standing.iter().copied().filter(|other| *other != at)).collect();
-        let candidates: Vec<SwapCandidate> = among.iter().map(|index| candidates[*index].clone()).collect();
-        other_path(&candidates, 0, seed, &is_far).map(|found| among[found])
+        let indices: Vec<usize> =
+            std::iter::once(at).chain(lenders.iter().copied().filter(|other| *other != at)).collect();
+        let swap_candidates: Vec<SwapCandidate> = indices.iter().map(|index| swap_candidates[*index].clone()).collect();
+        other_path(&swap_candidates, 0, seed, &is_far).map(|found| indices[found])
     };
-    Ok((0..bare.len()).map(other).collect())
+    Ok((0..paths.len()).map(other).collect())
 }

@@ -65,8 +65,8 @@ fn show_status(args: &StudyStatus, output: &CommandOutput) -> Result<(), Command
     // Results that were written before a deletion still contain the deleted answers.
     let exports = if progress.forgotten > 0 { study.list_exports()? } else { Vec::new() };
     let participants = args.participants.then(|| study.into_data().map(|data| data.participants)).transpose()?;
-    let standing = StudyStatusReport { progress, exports, participants };
-    output.print_result(&standing, &standing);
+    let report = StudyStatusReport { progress, exports, participants };
+    output.print_result(&report, &report);
     Ok(())
 }
 

@@ -49,7 +49,7 @@ impl fmt::Display for NewStudySummary {
 }
 
 pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), CommandError> {
-    let _graceful = interrupt::finish_first(None);
+    let _interrupt_guard = interrupt::finish_first(None);
     let mode = match args.mode {
         StudyMode::Follow => StudyTask::Follow,
         StudyMode::Rate => StudyTask::Rate,
@@ -78,9 +78,9 @@ pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), 
         StudyTask::Follow => pictures::draw_scenes(&walks, &*platform, &folder, output)?,
         StudyTask::Rate | StudyTask::Pair => Vec::new(),
     };
-    let made = routes_of(&walks, mode, &*platform, &folder, output)?;
+    let study_routes = routes_of(&walks, mode, &*platform, &folder, output)?;
     let pictures = scenes.iter().map(|scene| scene.places.len()).sum::<usize>()
-        + made.iter().map(|route| route.film.len()).sum::<usize>();
+        + study_routes.iter().map(|route| route.film.len()).sum::<usize>();
     let items = study_items(&walks, mode, has_practice);
     let style = first_style(args);
     let per_participant = args.per_participant.min(u32::try_from(routes).unwrap_or(u32::MAX));
@@ -90,7 +90,7 @@ pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), 
     settings.examples = style_examples(&style);
     let plan = StudyDesign { mode, seed: args.seed, per_item: args.per_item, per_participant, conditions, style };
     let wanted = items.iter().filter(|item| !item.is_practice).count();
-    let told = NewStudySummary {
+    let summary = NewStudySummary {
         study: args.out.clone(),
         mode,
         conditions: plan.conditions.iter().map(|condition: &StudyCondition| condition.name.clone()).collect(),
@@ -100,11 +100,12 @@ pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), 
         pictures,
         has_practice,
     };
-    Study { folder: args.out.clone(), plan, settings, items, routes: made, scenes }.create()?;
-    output.print_result(&told, &told);
+    Study { folder: args.out.clone(), plan, settings, items, routes: study_routes, scenes }.create()?;
+    output.print_result(&summary, &summary);
     Ok(())
 }
 
+/// Refuses a platform in which participants cannot walk, and pictures that the user may not show to them.
 fn check_pictures(args: &StudyNew, mode: StudyTask, platform: &dyn Platform) -> Result<(), CommandError> {
     let name = platform.name();
     if mode == StudyTask::Follow && name == "recording" {
@@ -148,12 +149,12 @@ fn study_items(walks: &[StudyWalk], mode: StudyTask, has_practice: bool) -> Vec<
     let mut items: Vec<StudyItem> = Vec::new();
     for (route, walk) in (0..).zip(walks) {
         let is_practice = has_practice && route as usize == walks.len() - 1;
-        let each: Vec<Vec<StudyText>> = match mode {
+        let text_groups: Vec<Vec<StudyText>> = match mode {
             StudyTask::Pair => text_pairs(&walk.told),
-            StudyTask::Follow | StudyTask::Rate => walk.told.iter().map(|told| vec![told.clone()]).collect(),
+            StudyTask::Follow | StudyTask::Rate => walk.told.iter().map(|text| vec![text.clone()]).collect(),
         };
-        let each = if is_practice { &each[..1] } else { &each[..] };
-        for texts in each {
+        let text_groups = if is_practice { &text_groups[..1] } else { &text_groups[..] };
+        for texts in text_groups {
             let id = u32::try_from(items.len()).unwrap_or(u32::MAX);
             items.push(StudyItem { id, route, is_practice, texts: texts.clone() });
         }
@@ -161,9 +162,10 @@ fn study_items(walks: &[StudyWalk], mode: StudyTask, has_practice: bool) -> Vec<
     items
 }
 
-fn text_pairs(told: &[StudyText]) -> Vec<Vec<StudyText>> {
-    let later = |at: usize| told[at + 1..].iter().map(move |other| vec![told[at].clone(), other.clone()]);
-    (0..told.len()).flat_map(later).collect()
+/// Each two of these texts, in their order.
+fn text_pairs(texts: &[StudyText]) -> Vec<Vec<StudyText>> {
+    let pairs_with_later = |at: usize| texts[at + 1..].iter().map(move |other| vec![texts[at].clone(), other.clone()]);
+    (0..texts.len()).flat_map(pairs_with_later).collect()
 }
 
 /// The style of the first run, if its source names one; otherwise empty.

@@ -48,16 +48,16 @@ pub(super) fn draw_scenes(
         let mut reached: BTreeSet<ViewpointId> = BTreeSet::new();
         for start in starts {
             if !reached.contains(start) {
-                let found = graph.distances_from(start);
-                let found =
-                    found.map_err(|source| wayword_core::PlatformError::Graph { scene: scene.clone(), source })?;
-                reached.extend(found.into_keys().cloned());
+                let distances = graph.distances_from(start);
+                let distances =
+                    distances.map_err(|source| wayword_core::PlatformError::Graph { scene: scene.clone(), source })?;
+                reached.extend(distances.into_keys().cloned());
             }
         }
         wanted.push((scene.clone(), graph, reached));
     }
-    let all: usize = wanted.iter().map(|(_, _, reached)| reached.len()).sum();
-    let bar = output.progress_bar(all, "panoramas");
+    let place_count: usize = wanted.iter().map(|(_, _, reached)| reached.len()).sum();
+    let bar = output.progress_bar(place_count, "panoramas");
     let draw = |(scene, graph, reached): (SceneId, std::sync::Arc<ViewpointGraph>, BTreeSet<ViewpointId>)| {
         let place = |id: &ViewpointId| {
             interrupt::check_interrupt()?;
@@ -73,6 +73,7 @@ pub(super) fn draw_scenes(
     drawn
 }
 
+/// Draws the panorama of one viewpoint, unless an earlier command has drawn it.
 fn draw_place(
     scene: &SceneId,
     graph: &ViewpointGraph,
@@ -85,7 +86,7 @@ fn draw_place(
     let position = graph.position_of(id).ok_or_else(unknown)?;
     let level = graph.level_of(id);
     let frame = Frame { pose: Pose::looking_level(position, Heading::NORTH), viewpoint: Some(id.clone()), level };
-    // The name holds all that the picture depends on: a command that was stopped and given anew with other paths draws others.
+    // The name is a hash of everything that the picture depends on, so that a command with other paths does not take a wrong picture.
     let panorama = file_name(&["panorama", platform.name(), scene.as_str(), id.as_str(), &format!("{position:?}")]);
     let file = folder.join(&panorama);
     // A command that was stopped goes on with the pictures that it has.

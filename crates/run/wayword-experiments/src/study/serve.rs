@@ -22,7 +22,7 @@ struct ServedSite {
 }
 
 pub(super) fn run_serve(args: &StudyServe, output: &CommandOutput) -> Result<Exit, CommandError> {
-    let _graceful = interrupt::finish_first(None);
+    let _interrupt_guard = interrupt::finish_first(None);
     let study = Study::open(&args.study)?;
     let security = match &args.tls {
         Some(files) => SiteSecurity::Tls { certificate: files[0].clone(), key: files[1].clone() },
@@ -35,11 +35,11 @@ pub(super) fn run_serve(args: &StudyServe, output: &CommandOutput) -> Result<Exi
             .say("warning: without TLS, others in this network can read what participants send, and take their place");
     }
     let listen = ListenOptions { address: args.listen, security, public: args.public.clone() };
-    let told = study.clone();
-    let mut made = Ok(());
-    let started = |started: &SiteAddress| made = announce_site(&told, started, args, output);
+    let announced_study = study.clone();
+    let mut announced = Ok(());
+    let started = |started: &SiteAddress| announced = announce_site(&announced_study, started, args, output);
     serve_study(study, &listen, started, interrupt::is_asked)?;
-    made?;
+    announced?;
     output.say("stopped; the same command goes on");
     Ok(Exit::Done)
 }

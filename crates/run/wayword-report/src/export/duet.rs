@@ -38,12 +38,12 @@ pub(super) fn write_duet(
         return Err(CommandError::usage(problem, format!("give --tokenizer {XLM_ROBERTA}, or another --dataset")));
     }
     fs::create_dir_all(out).map_err(CommandError::io(out, "make the folder"))?;
-    let mut parts: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    let mut indices_by_split: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (index, split) in splits.iter().enumerate() {
-        parts.entry(split).or_default().push(index);
+        indices_by_split.entry(split).or_default().push(index);
     }
     let mut files = Vec::new();
-    for (split, indices) in parts {
+    for (split, indices) in indices_by_split {
         let file = out.join(file_name(dataset, split, is_xlm));
         tell_overwriting(&file, output);
         files.extend(write_split(args, dataset, split, &file, (records, &ids, &indices), output)?);
@@ -78,28 +78,28 @@ fn write_split(
         AgentDataset::Reverie => DatasetFormat::Reverie,
         AgentDataset::Rxr => DatasetFormat::Rxr,
     };
-    let of_split: Vec<InstructionRecord> = indices.iter().map(|index| records[*index].clone()).collect();
-    let mut episodes = items::episodes_from_records(format, &args.run, &of_split, output);
+    let split_records: Vec<InstructionRecord> = indices.iter().map(|index| records[*index].clone()).collect();
+    let mut episodes = items::episodes_from_records(format, &args.run, &split_records, output);
     for (episode, index) in episodes.iter_mut().zip(indices) {
         episode.split = Some(split.to_owned());
         episode.encodings = vec![ids[*index].clone()];
     }
-    let beside = items::write_items(format, file, &of_split, episodes)?;
-    Ok([file.to_owned()].into_iter().chain(beside).collect())
+    let provenance_file = items::write_items(format, file, &split_records, episodes)?;
+    Ok([file.to_owned()].into_iter().chain(provenance_file).collect())
 }
 
 /// The dataset that the texts resemble: the one that their style is named after, else REVERIE if most of them name a target, else R2R.
 fn usual_dataset(records: &[InstructionRecord]) -> AgentDataset {
-    let is = |name: &str| records.iter().all(|record| record.instruction.style == name);
+    let all_have_style = |name: &str| records.iter().all(|record| record.instruction.style == name);
     let names_target = |record: &&InstructionRecord| {
         record.path.target.is_some()
             && record.instruction.mentions.iter().any(|mention| mention.kind == MentionKind::Target)
     };
-    if is("r2r") {
+    if all_have_style("r2r") {
         AgentDataset::R2r
-    } else if is("rxr") {
+    } else if all_have_style("rxr") {
         AgentDataset::Rxr
-    } else if is("reverie") || records.iter().filter(names_target).count() * 2 > records.len() {
+    } else if all_have_style("reverie") || records.iter().filter(names_target).count() * 2 > records.len() {
         AgentDataset::Reverie
     } else {
         AgentDataset::R2r

@@ -1,6 +1,6 @@
-//! Adds the data to VLN-CE episodes that the simulator Habitat needs: the scene's file, the corners of the path, and the distance over the
-//! navmesh. A VLN-CE
-//! path consists of straight lines, but the way between two frames can bend around furniture: hence the corners.
+//! Adds the data to VLN-CE episodes that the simulator Habitat needs: the scene's file, the corners of the path, and the distance
+//! over the navmesh. A VLN-CE path consists of straight lines, but the way between two frames can bend around furniture: hence the
+//! corners.
 
 use std::path::{Path, PathBuf};
 use wayword_core::{DVec3, Path as Walk, Platform, PlatformError, SceneId};
@@ -60,13 +60,13 @@ impl HabitatSceneSource {
 
     /// The warning if Habitat scenes could not be opened.
     pub(super) fn lack_warning(&self) -> Option<String> {
-        let told = |lack: &String| {
+        let warning = |lack: &String| {
             format!(
                 "warning: the Habitat scenes cannot be opened ({lack}), so the path corners and distances in their episodes \
                  come from the frames, not from the navmesh; make the scenes available and export again"
             )
         };
-        self.lack.as_ref().map(told)
+        self.lack.as_ref().map(warning)
     }
 }
 
@@ -105,8 +105,8 @@ fn below_scenes(file: &Path, data: &Path) -> String {
     let below = match parts.iter().rposition(|part| part == SCENES_FOLDER) {
         Some(at) => &parts[at + 1..],
         None => {
-            let above = if data.is_dir() { data.iter().count() } else { parts.len().saturating_sub(1) };
-            &parts[above.min(parts.len())..]
+            let skipped = if data.is_dir() { data.iter().count() } else { parts.len().saturating_sub(1) };
+            &parts[skipped.min(parts.len())..]
         }
     };
     below.join("/")
@@ -143,8 +143,9 @@ fn around_corners(platform: &dyn Platform, walk: &Walk, episode: &Episode) -> Re
     let floors = &episode.floor_positions;
     let mut path: Vec<DVec3> = floors.first().copied().into_iter().collect();
     for (frames, floor) in walk.frames.windows(2).zip(floors.iter().skip(1)) {
-        let way = platform.ground().ground_route(&walk.scene, &frames[0], &frames[1])?;
-        let corners = way.as_ref().map_or(&[][..], |way| &way.corners);
+        let route = platform.ground().ground_route(&walk.scene, &frames[0], &frames[1])?;
+        let corners = route.as_ref().map_or(&[][..], |route| &route.corners);
+        // The first and the last corner are the two frames themselves.
         for corner in corners.iter().skip(1).rev().skip(1).rev() {
             let is_new = path.last().is_none_or(|last| last.distance(*corner) > SAME_M);
             if is_new && corner.distance(*floor) > SAME_M {

@@ -96,16 +96,16 @@ fn file_of(name: &Path, end: &str) -> PathBuf {
 /// Checks the chosen texts, of a run or of a file, and returns their doubts.
 fn find_highlights(args: &ExportArgs, output: &CommandOutput) -> Result<DoubtHighlights, CommandError> {
     refuse_what_datasets_bear(args)?;
-    let how = CheckOptions { world: args.world, doubts: true, ..CheckOptions::default() };
+    let options = CheckOptions { world: args.world, doubts: true, ..CheckOptions::default() };
     let report = match (&args.texts, &args.run[..]) {
         (Some(texts), []) => {
             let settings = AskedSettings::from(args.platform.clone()).resolve()?;
-            check_file(texts, &settings, how, output)?
+            check_file(texts, &settings, options, output)?
         }
         (None, [run]) => {
             refuse_a_platform(args)?;
-            let how = CheckOptions { captions: Some(run), ..how };
-            check_file(&run.join(file::INSTRUCTIONS), &settings_of(run)?, how, output)?
+            let options = CheckOptions { captions: Some(run), ..options };
+            check_file(&run.join(file::INSTRUCTIONS), &settings_of(run)?, options, output)?
         }
         _ => {
             let problem = "--highlight takes the texts of one run, or of one file";
@@ -117,8 +117,8 @@ fn find_highlights(args: &ExportArgs, output: &CommandOutput) -> Result<DoubtHig
     if highlights.texts.is_empty() {
         let styles = styles.into_iter().collect::<Vec<_>>().join(", ");
         let hint = if styles.is_empty() { "give a file with texts".to_owned() } else { format!("there are: {styles}") };
-        let of = args.style.as_ref().map_or_else(String::new, |style| format!(" of style {style}"));
-        return Err(CommandError::usage(format!("there is no text{of}"), hint));
+        let style_words = args.style.as_ref().map_or_else(String::new, |style| format!(" of style {style}"));
+        return Err(CommandError::usage(format!("there is no text{style_words}"), hint));
     }
     Ok(highlights)
 }

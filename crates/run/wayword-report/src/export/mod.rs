@@ -66,7 +66,8 @@ struct WrittenSplits {
     files: Vec<PathBuf>,
 }
 
-/// Runs `wayword export`: writes the instructions of runs as a dataset, or those of one item as a page.
+/// Runs `wayword export`: writes the instructions of runs as a dataset, or, with `--highlight`, as a page with
+/// the doubtful words marked.
 ///
 /// # Errors
 /// When the flags do not fit together, a run cannot be read or has no instruction, or a file cannot be written.
@@ -173,21 +174,21 @@ fn one_file(
     records: &[InstructionRecord],
     output: &CommandOutput,
 ) -> Result<(), CommandError> {
-    let Some(of_file) = format.file_format() else { return Ok(()) };
+    let Some(file_format) = format.file_format() else { return Ok(()) };
     let splits = splits_of(args, format, records, output)?;
     tell_overwriting(out, output);
     let mut scene_needs = BTreeSet::new();
-    let provenance = if of_file == DatasetFormat::Wayword {
+    let provenance = if file_format == DatasetFormat::Wayword {
         jsonl::write_records(out, records)?;
         None
     } else {
         items::refuse_without_poses(format, records)?;
-        let mut episodes = items::episodes_from_records(of_file, &args.run, records, output);
+        let mut episodes = items::episodes_from_records(file_format, &args.run, records, output);
         for (episode, split) in episodes.iter_mut().zip(splits) {
             episode.split = Some(split);
         }
         scene_needs.extend(episodes.iter().filter_map(|episode| episode.in_habitat.scene_needs.clone()));
-        items::write_items(of_file, out, records, episodes)?
+        items::write_items(file_format, out, records, episodes)?
     };
     tell_needs(&scene_needs, output);
     tell_terms(records, output);

@@ -36,7 +36,7 @@ pub(super) fn of_records(args: &ExportArgs, records: &[InstructionRecord]) -> Re
         Some(_) => DeclaredSplits::new(),
         None => read_declared_splits(&args.run, records)?,
     };
-    let of = |record: &InstructionRecord| {
+    let split_of_record = |record: &InstructionRecord| {
         let official = OfficialSplit::for_scene(&record.path.scene);
         let split = match (&args.split, record.split) {
             (Some(split), _) => split.clone(),
@@ -53,7 +53,7 @@ pub(super) fn of_records(args: &ExportArgs, records: &[InstructionRecord]) -> Re
         refuse_held_out(&split, official, &record.path.scene)?;
         Ok(split)
     };
-    records.iter().map(of).collect()
+    records.iter().map(split_of_record).collect()
 }
 
 /// Reports how many texts lie in scenes that are officially held out, for files that do not name their split.
@@ -100,13 +100,13 @@ fn read_declared_splits(runs: &[PathBuf], records: &[InstructionRecord]) -> Resu
         let episodes = run_folder::settings_of(run).ok().and_then(|settings| settings.episodes);
         let Some(episodes) = episodes else { continue };
         let by_item = of_items(&episodes);
-        let of_file = of_file_name(&episodes);
-        let of_run = match runs {
+        let split_of_file = of_file_name(&episodes);
+        let run_records = match runs {
             [_] => records.to_vec(),
             _ => jsonl::read_records(&run.join(file::INSTRUCTIONS))?,
         };
-        for record in of_run {
-            if let Some(split) = by_item.get(&record.path.id).map(String::as_str).or(of_file) {
+        for record in run_records {
+            if let Some(split) = by_item.get(&record.path.id).map(String::as_str).or(split_of_file) {
                 declared.insert((record.platform, record.path.id), split.to_owned());
             }
         }
@@ -116,8 +116,9 @@ fn read_declared_splits(runs: &[PathBuf], records: &[InstructionRecord]) -> Resu
 
 /// The split of each item of a file; empty if the file is gone or its format has no field for splits.
 fn of_items(episodes: &Path) -> BTreeMap<String, String> {
-    let says = matches!(wayword_formats::detect_format(episodes), Ok(DatasetFormat::Rxr | DatasetFormat::Wayword));
-    let read = says.then(|| wayword_formats::read_any_format(episodes).ok()).flatten().unwrap_or_default();
+    let has_splits =
+        matches!(wayword_formats::detect_format(episodes), Ok(DatasetFormat::Rxr | DatasetFormat::Wayword));
+    let read = has_splits.then(|| wayword_formats::read_any_format(episodes).ok()).flatten().unwrap_or_default();
     read.into_iter().filter_map(|episode| Some((episode.id, episode.split?))).collect()
 }
 

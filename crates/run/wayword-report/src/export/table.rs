@@ -43,12 +43,12 @@ pub(super) fn publish_tables(
     let card = card::card_text(args, out, records, &splits)?;
     let data = out.join("data");
     fs::create_dir_all(&data).map_err(CommandError::io(&data, "make the folder"))?;
-    let mut parts: BTreeMap<&str, Vec<ParquetRow<'_>>> = BTreeMap::new();
+    let mut rows_by_split: BTreeMap<&str, Vec<ParquetRow<'_>>> = BTreeMap::new();
     for (record, split) in records.iter().zip(&splits) {
-        parts.entry(split).or_default().push(ParquetRow { record, split });
+        rows_by_split.entry(split).or_default().push(ParquetRow { record, split });
     }
     let mut files = Vec::new();
-    for (split, rows) in parts {
+    for (split, rows) in rows_by_split {
         let file = data.join(card::file_name(split));
         table::write_table(&file, &rows)?;
         files.push(file);
@@ -61,6 +61,7 @@ pub(super) fn publish_tables(
     Ok(())
 }
 
+/// Refuses to publish texts about somebody's scenes unless the user confirms the right to do so.
 fn check_terms(args: &ExportArgs, records: &[InstructionRecord]) -> Result<(), CommandError> {
     let platforms: BTreeSet<&str> = records.iter().map(|record| record.platform.as_str()).collect();
     for platform in platforms {

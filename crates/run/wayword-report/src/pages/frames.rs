@@ -12,13 +12,13 @@ use wayword_core::{
 };
 use wayword_run::run_folder::WalkRecord;
 
-/// Most sightings that a frame's card names.
+/// Most sightings that a frame's card names. It only counts the others.
 const MOST_ON_CARD: usize = 6;
 
-/// Most boxes that are drawn on a picture.
+/// Most boxes that are drawn on a picture; those with the lowest scores are left out.
 const MOST_BOXES: usize = 8;
 
-/// Directions that differ by less are the same.
+/// Directions that differ by less count as the same, radians.
 const SAME_RAD: f64 = 0.01;
 
 /// A frame.
@@ -150,16 +150,16 @@ fn sighting_words(sighting: &ObjectSighting) -> String {
 
 fn look_view(look: &CaptionedView, heading: Heading) -> LookView {
     let names = |witness| {
-        let of = look.caption.sightings.iter().filter(|sighting| sighting.witness == witness);
-        of.map(sighting_words).collect::<Vec<_>>().join("; ")
+        let named = look.caption.sightings.iter().filter(|sighting| sighting.witness == witness);
+        named.map(sighting_words).collect::<Vec<_>>().join("; ")
     };
-    let said = [("seen", WitnessAnswer::Seen), ("denied", WitnessAnswer::Denied), ("unsure", WitnessAnswer::Unsure)];
+    let answers = [("seen", WitnessAnswer::Seen), ("denied", WitnessAnswer::Denied), ("unsure", WitnessAnswer::Unsure)];
     LookView {
         direction: direction_words(look.gaze.heading, heading),
         caption: look.caption.text.clone(),
         by: look.caption.by.clone(),
         transcript: look.caption.transcript.iter().map(exchange_view).collect(),
-        said: said
+        said: answers
             .map(|(word, witness)| (word, names(witness)))
             .into_iter()
             .filter(|(_, names)| !names.is_empty())
@@ -184,13 +184,13 @@ fn exchange_view(exchange: &DialogueExchange) -> ExchangeView {
 
 /// The direction of a gaze in words: ahead if it follows the walker's heading, else a point of the compass or a side of the walker.
 fn direction_words(gaze: Heading, walker: Heading) -> &'static str {
-    let is = |other: Heading| gaze.turn_to(other).abs() < SAME_RAD;
-    if is(walker) {
+    let looks_to = |other: Heading| gaze.turn_to(other).abs() < SAME_RAD;
+    if looks_to(walker) {
         return "ahead";
     }
     CompassPoint::ALL
         .into_iter()
-        .find(|point| is(point.to_heading()))
+        .find(|point| looks_to(point.to_heading()))
         .map_or_else(|| side_words(walker.side_of(gaze)), CompassPoint::word)
 }
 

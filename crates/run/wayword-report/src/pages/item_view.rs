@@ -72,11 +72,11 @@ fn level_words(levels: impl Iterator<Item = u32> + Clone) -> Option<String> {
 }
 
 fn target_words(target: &PathTarget) -> String {
-    let told: Vec<String> = target.told_by.iter().take(3).map(ObjectDistinction::to_predicate).collect();
+    let distinctions: Vec<String> = target.told_by.iter().take(3).map(ObjectDistinction::to_predicate).collect();
     let name = &target.name;
-    match (told.is_empty(), target.has_namesake) {
+    match (distinctions.is_empty(), target.has_namesake) {
         (true, false) => name.clone(),
         (true, true) => format!("{name} (one of several)"),
-        (false, _) => format!("{name} ({})", told.join(", ")),
+        (false, _) => format!("{name} ({})", distinctions.join(", ")),
     }
 }

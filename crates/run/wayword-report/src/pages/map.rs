@@ -70,15 +70,15 @@ pub(crate) struct MapSpot {
 /// A map as wide as a phone, so that its numbers are readable there. The graph goes on beyond its edge.
 const ITEM_MAP_LIMITS: SheetLimits =
     SheetLimits { most: [360.0, 330.0], least: [220.0, 170.0], padding: 34.0, margin_m: 1.2, most_scale: 42.0 };
-/// Radius of a frame's number.
+/// Radius of the badge with a frame's number, units of the drawing.
 pub(crate) const BADGE_RADIUS: f64 = 9.5;
-/// How near two numbers may come: they may touch, but each has to be readable.
+/// The smallest distance between the centres of two badges, units: they may overlap a little, but each has to be readable.
 const LEAST_APART: f64 = 1.5 * BADGE_RADIUS;
 /// How far the control point of a hop back is from the straight line, units.
 const HOP_BACK_BEND: f64 = 32.0;
-/// Widest part of a scene that is drawn, metres.
+/// A map with a stop farther than this from the first one, on either axis, is not drawn; nodes that far are left out. Metres.
 pub(crate) const MOST_SPAN_M: f64 = 2_000.0;
-/// Most nodes and edges of the graph that are drawn.
+/// Most nodes of the graph that are drawn. The limits on edges are multiples of it.
 pub(crate) const MOST_NODES: usize = 4_000;
 
 impl MapView {
@@ -96,13 +96,13 @@ impl MapView {
     pub(super) fn draw_trail(map: &PathMap, trail: &MapTrail<'_>) -> Option<Self> {
         let first = *trail.stops.first()?;
         let is_near = |x: f64, y: f64| (x - first.x).abs() <= MOST_SPAN_M && (y - first.y).abs() <= MOST_SPAN_M;
-        let on_it = || trail.stops.iter().chain(trail.annotated);
-        if !on_it().all(|stop| is_near(stop.x, stop.y) && stop.z.is_finite()) {
+        let all_stops = || trail.stops.iter().chain(trail.annotated);
+        if !all_stops().all(|stop| is_near(stop.x, stop.y) && stop.z.is_finite()) {
             return None;
         }
         let nodes: Vec<Option<[f64; 2]>> =
             map.nodes.iter().take(MOST_NODES).map(|[x, y]| is_near(*x, *y).then_some([*x, *y])).collect();
-        let sheet = MapSheet::around_points(on_it().map(|stop| [stop.x, stop.y]), &ITEM_MAP_LIMITS)?;
+        let sheet = MapSheet::around_points(all_stops().map(|stop| [stop.x, stop.y]), &ITEM_MAP_LIMITS)?;
         let places: Vec<Option<[f64; 2]>> = nodes.iter().map(|node| node.map(|node| sheet.place_point(node))).collect();
         let at: Vec<[f64; 2]> = trail.stops.iter().map(|stop| sheet.place_point([stop.x, stop.y])).collect();
         let (bar, bar_m) = sheet.scale_bar();
@@ -178,14 +178,14 @@ fn map_hops(trail: &MapTrail<'_>, at: &[[f64; 2]]) -> Vec<MapHop> {
     (0..at.len().saturating_sub(1)).map(hop).collect()
 }
 
-/// A bent line, so that a hop back does not hide the hop there.
+/// A bent line for a hop back, so that it does not hide the straight hop in the other direction.
 fn bow_data(from: [f64; 2], to: [f64; 2]) -> String {
     let [x, y] = [0, 1].map(|axis| to[axis] - from[axis]);
     let length = x.hypot(y).max(1.0);
-    let over =
+    let control =
         [(from[0] + to[0]) / 2.0 - y / length * HOP_BACK_BEND, (from[1] + to[1]) / 2.0 + x / length * HOP_BACK_BEND]
             .map(round_to_tenth);
-    format!("M{} {}Q{} {} {} {}", from[0], from[1], over[0], over[1], to[0], to[1])
+    format!("M{} {}Q{} {} {} {}", from[0], from[1], control[0], control[1], to[0], to[1])
 }
 
 fn annotated_path(path: &[DVec3], sheet: &MapSheet) -> Option<AnnotatedPathView> {
@@ -212,6 +212,7 @@ pub(crate) fn place_spots(trail: &MapTrail<'_>, at: &[[f64; 2]], size: [f64; 2])
             is_inside
                 && spots.iter().all(|other| (spot[0] - other.badge[0]).hypot(spot[1] - other.badge[1]) >= LEAST_APART)
         };
+        // Distances from the frame, in radii of a badge.
         let beside = [2.3, 3.6, 5.0].into_iter().flat_map(|far| {
             ASIDE_DIRECTIONS.map(|way| [0, 1].map(|axis| round_to_tenth(place[axis] + way[axis] * far * BADGE_RADIUS)))
         });

@@ -89,28 +89,28 @@ pub fn write_report(run: &Path, out: &Path, most_items: usize) -> Result<Written
 
 fn write_paged(run: &Path, out: &Path, most_items: usize, per_page: usize) -> Result<WrittenReport, CommandError> {
     let records = ReportRecords::read_run(run, most_items)?;
-    let book = ReportFiles::new(out, run, records.items.len(), per_page);
-    book.refuse_to_replace_others()?;
+    let files = ReportFiles::new(out, run, records.items.len(), per_page);
+    files.refuse_to_replace_others()?;
     let mut written = WrittenReport {
         page: out.display().to_string(),
-        pages: (1..=book.page_count()).map(|page| book.page_file(page).display().to_string()).collect(),
+        pages: (1..=files.page_count()).map(|page| files.page_file(page).display().to_string()).collect(),
         items: records.items.len(),
         left_out: records.left_out,
         pictures: 0,
         pictures_left_out: 0,
     };
     let templates = load_templates().map_err(template_error)?;
-    let sheet = ReportPageSource { records: &records, book: &book, templates: &templates, run };
+    let source = ReportPageSource { records: &records, book: &files, templates: &templates, run };
     let mut unfinished = Vec::new();
-    for page in (1..=book.page_count()).map(Some).chain([None]) {
-        let file = page.map_or_else(|| out.to_owned(), |page| book.page_file(page));
-        let (made, pictures) = UnfinishedPage::write_aside(&file, |take| sheet.draw_page(page, take))?;
+    for page in (1..=files.page_count()).map(Some).chain([None]) {
+        let file = page.map_or_else(|| out.to_owned(), |page| files.page_file(page));
+        let (made, pictures) = UnfinishedPage::write_aside(&file, |take| source.draw_page(page, take))?;
         unfinished.push(made);
         written.pictures += pictures.shown;
         written.pictures_left_out += pictures.left_out;
     }
     unfinished.into_iter().try_for_each(UnfinishedPage::finish)?;
-    book.remove_older_pages()?;
+    files.remove_older_pages()?;
     Ok(written)
 }
 
@@ -122,9 +122,9 @@ fn replace_page<T>(
     out: &Path,
     render: impl FnOnce(&mut PageSink<'_>) -> Result<T, CommandError>,
 ) -> Result<T, CommandError> {
-    let (page, told) = UnfinishedPage::write_aside(out, render)?;
+    let (page, result) = UnfinishedPage::write_aside(out, render)?;
     page.finish()?;
-    Ok(told)
+    Ok(result)
 }
 
 /// A page under a temporary name. If it is dropped before it is finished, it is removed.
@@ -143,9 +143,9 @@ impl UnfinishedPage {
         let unfinished = Self { file: out.with_file_name(name), out: out.to_owned() };
         let file = &unfinished.file;
         let mut page = BufWriter::new(File::create(file).map_err(CommandError::io(file, "write"))?);
-        let told = render(&mut |part| page.write_all(part.as_bytes()).map_err(CommandError::io(file, "write")))?;
+        let result = render(&mut |part| page.write_all(part.as_bytes()).map_err(CommandError::io(file, "write")))?;
         page.into_inner().map_err(io::IntoInnerError::into_error).map_err(CommandError::io(file, "write"))?;
-        Ok((unfinished, told))
+        Ok((unfinished, result))
     }
 
     fn finish(self) -> Result<(), CommandError> {
@@ -163,6 +163,7 @@ impl Drop for UnfinishedPage {
 /// Everything from which the pages of a report are drawn.
 struct ReportPageSource<'a> {
     records: &'a ReportRecords,
+    /// The files of the report, with the links between them.
     book: &'a ReportFiles<'a>,
     templates: &'a Environment<'static>,
     run: &'a Path,

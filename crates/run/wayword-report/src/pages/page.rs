@@ -122,18 +122,18 @@ fn settings_in_words(settings: &RunSettings) -> Vec<(&'static str, String)> {
         TargetMode::Free => "the writer's choice",
     };
     let EvidenceSources { labels, captions, detector } = settings.evidence;
-    let heard = match (captions, detector) {
+    let without_labels = match (captions, detector) {
         (true, true) => "captions and the detector",
         (false, true) => "the detector only",
         (_, false) => "captions only",
     };
     let against = if labels {
-        format!("labels if there are any, else {}", heard.trim_end_matches(" only"))
+        format!("labels if there are any, else {}", without_labels.trim_end_matches(" only"))
     } else {
-        heard.to_owned()
+        without_labels.to_owned()
     };
     let calibration = settings.calibration.as_deref().map(|path| ("Calibration of labels", file(path)));
-    let mut told = vec![
+    let mut rows = vec![
         ("Paths", paths),
         ("Styles", settings.style.iter().map(style).collect::<Vec<_>>().join(", ")),
         ("Views", views.to_owned()),
@@ -144,14 +144,14 @@ fn settings_in_words(settings: &RunSettings) -> Vec<(&'static str, String)> {
         ("Texts written, of which one is kept", settings.candidates.to_string()),
         ("Seed", settings.seed.to_string()),
     ];
-    told.extend(calibration);
-    told.extend(settings.roles.detector.clone().map(|name| ("Detector", name)));
-    told.extend(settings.reject_ambiguous.then(|| ("Ambiguous texts", "rejected".to_owned())));
+    rows.extend(calibration);
+    rows.extend(settings.roles.detector.clone().map(|name| ("Detector", name)));
+    rows.extend(settings.reject_ambiguous.then(|| ("Ambiguous texts", "rejected".to_owned())));
     if !settings.scan.is_empty() {
-        told.insert(1, ("Scenes", settings.scan.join(", ")));
+        rows.insert(1, ("Scenes", settings.scan.join(", ")));
     }
     if let Some(limit) = settings.limit {
-        told.insert(1, ("Limit", format!("the first {limit}")));
+        rows.insert(1, ("Limit", format!("the first {limit}")));
     }
-    told
+    rows
 }

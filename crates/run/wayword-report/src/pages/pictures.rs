@@ -8,7 +8,7 @@ use wayword_run::{
     run_folder::file,
 };
 
-/// All pictures of a page together, bytes, so that a phone can open it.
+/// Most bytes of all pictures of a page together, 64 MiB, so that a phone can open it. Pictures beyond are left out.
 const MOST_BYTES_TOGETHER: u64 = 64 << 20;
 
 /// A picture inside a page.
@@ -23,6 +23,7 @@ pub(super) struct PagePicture {
 /// The pictures of a run.
 pub(super) struct PagePictures {
     folder: PathBuf,
+    /// How many bytes of pictures may still be added to the page.
     left_bytes: u64,
     /// How many the page shows.
     pub(super) shown: usize,

@@ -23,7 +23,7 @@ use wayword_run::{
     settings::RunSettings,
 };
 
-/// Most bytes of lines in memory, however many items the user wants to see.
+/// Most bytes of lines in memory, 128 MiB, however many items the user wants to see. Items beyond are only counted.
 const MOST_BYTES: usize = 128 << 20;
 /// Most different sets of roles that are shown.
 const MOST_ROLES: usize = 16;
@@ -65,6 +65,7 @@ pub(super) struct RolesPlayed {
     pub(super) answerer: String,
     pub(super) summariser: String,
     pub(super) writer: String,
+    /// The first writer, if all its texts failed their checks and `writer` finished for it.
     pub(super) finished_for: Option<String>,
     pub(super) checked_against: String,
     pub(super) wayword: String,
@@ -153,6 +154,7 @@ impl ReportRecords {
         }
     }
 
+    /// The counts of a style; `None` for a new style beyond the limit.
     fn counts_of(&mut self, style: &str) -> Option<&mut StyleCounts> {
         if !self.counts.contains_key(style) && self.counts.len() >= MOST_STYLES {
             return None;

@@ -14,10 +14,10 @@ use wayword_run::error::CommandError;
 /// Paths on a page: with five pictures each, they make about ten megabytes, and thirty sheets of paper.
 pub(super) const WALKS_PER_PAGE: usize = 50;
 
-/// Characters that are not escaped in an address.
+/// Characters that are escaped in an address: all but letters, digits and `-._~`.
 const IN_ADDRESS: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
 
-/// A page's mark ends within so many bytes from its beginning, however long the two names in it are.
+/// How many bytes from the beginning of a page are searched for its mark. The mark ends within them, however long its names are.
 const MARK_WITHIN: u64 = 4096;
 
 /// The files of a report.
@@ -134,7 +134,7 @@ impl<'a> ReportFiles<'a> {
         Ok(())
     }
 
-    /// Whether a file is a page of paths of this very report.
+    /// Whether a file carries the mark of this report, so that it is one of the report's pages of paths.
     fn is_ours(&self, file: &Path) -> bool {
         let mut beginning = Vec::new();
         let read = File::open(file).and_then(|file| file.take(MARK_WITHIN).read_to_end(&mut beginning));

@@ -8,14 +8,14 @@ use serde::Serialize;
 use std::collections::BTreeSet;
 use wayword_run::run_folder::FailedItem;
 
-/// Longest text of a row, characters; the path's own section shows it whole.
+/// Most characters of a text in a row. The rest is cut off; the section of the path shows the whole text.
 const MOST_CHARS: usize = 700;
-/// Most styles, and most scenes, that can be chosen from.
+/// Most styles, and most scenes, that a reader can choose from. With more of them there is no choice.
 const MOST_CHOICES: usize = 200;
-/// Rows that are printed.
+/// Most rows that are printed on paper; the screen shows all.
 const MAX_PRINTED_ROWS: usize = 100;
 
-/// The list.
+/// The list of texts, with the choices to filter it.
 #[derive(Debug, Serialize)]
 pub(super) struct TextList {
     rows: Vec<TextRow>,
@@ -35,7 +35,7 @@ struct TextRow {
     id: String,
     scene: Option<String>,
     style: String,
-    /// Place among the scenes and styles that can be chosen.
+    /// The index of the scene among those that can be chosen, and that of the style; `None` if there is no choice.
     scene_at: Option<usize>,
     style_at: Option<usize>,
     text: String,
@@ -111,6 +111,7 @@ fn failed_row(failed: &FailedItem) -> TextRow {
     }
 }
 
+/// The rows of an item: one for each of its texts, or a single one if it has none.
 fn of_item(item: &ItemRecord, href: &str) -> Vec<TextRow> {
     let row = |state, style: &str, text: &str, reason: Option<&str>| TextRow {
         state,

@@ -1,10 +1,10 @@
 //! Converts world coordinates to places on a map: metres to units of the drawing, north up.
 
-/// The limits of a sheet.
+/// The limits of a sheet, in units of the drawing.
 pub(crate) struct SheetLimits {
-    /// Largest sheet.
+    /// Largest width and height of the sheet.
     pub(crate) most: [f64; 2],
-    /// Smallest sheet, so that north arrow and scale bar fit.
+    /// Smallest width and height of the sheet, so that north arrow and scale bar fit.
     pub(crate) least: [f64; 2],
     /// Room for signs around the drawing.
     pub(crate) padding: f64,

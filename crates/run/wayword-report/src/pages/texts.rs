@@ -45,9 +45,9 @@ struct PartView {
 #[derive(Debug, Serialize)]
 struct LinkView {
     kind: &'static str,
-    /// Of the frame, from 0.
+    /// The number of the frame, from 0.
     number: usize,
-    /// The frame's; `None` if the page does not show the frame.
+    /// The anchor of the frame; `None` if the page does not show the frame.
     anchor: Option<String>,
     colour: FrameColour,
     /// Name of the icon for a turn.
@@ -133,11 +133,11 @@ fn kind_name(kind: MentionKind) -> &'static str {
 /// The icon for the turn that the words describe. It may differ from the path's own turn, which the frame shows.
 fn turn_sign_from_words(words: &str) -> &'static str {
     let words = words.to_lowercase();
-    let tells = |word: &str| words.contains(word);
+    let has = |word: &str| words.contains(word);
     match () {
-        () if tells("left") => "left",
-        () if tells("right") => "right",
-        () if tells("around") || tells("back") || tells("u-turn") => "around",
+        () if has("left") => "left",
+        () if has("right") => "right",
+        () if has("around") || has("back") || has("u-turn") => "around",
         () => "straight",
     }
 }
@@ -155,10 +155,10 @@ fn finding_views(instruction: &Instruction) -> Vec<FindingView> {
 /// The possible meanings of an instruction, if there are several, and the thing by which its own end differs from the others.
 fn describe_ambiguity(instruction: &Instruction) -> Option<String> {
     let ambiguity = instruction.ambiguity.as_ref()?;
-    let told = ambiguity.to_sentence()?;
+    let meanings = ambiguity.to_sentence()?;
     Some(match &ambiguity.told_apart_by {
-        Some(by) => format!("{told}; only at its own end there is: {by}"),
-        None => told,
+        Some(by) => format!("{meanings}; only at its own end there is: {by}"),
+        None => meanings,
     })
 }
 

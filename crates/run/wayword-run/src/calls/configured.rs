@@ -11,7 +11,8 @@ use std::path::PathBuf;
 use wayword_ledger::Ledger;
 use wayword_remote::{PriceTable, ProviderConfig, RemoteConfig, RequestConcurrency};
 
-/// Most requests at a time for each provider. Unless the user gives a number, the program finds one up to this limit.
+/// Most requests at a time to one provider, where the user gives no number: the program raises the number step by step
+/// up to this.
 const MOST_AT_A_TIME: usize = 64;
 
 /// The path of the ledger: the one that a flag or the settings file gives, or else a file in the user's data folder. All runs share
@@ -89,6 +90,7 @@ pub(super) fn service_concurrency(service: &Service) -> RequestConcurrency {
     service.concurrency.map_or(RequestConcurrency::Adaptive { most: MOST_AT_A_TIME }, RequestConcurrency::Fixed)
 }
 
+/// The user's list of prices, or the built-in one. The errors of a list end in a hint, which is split off here.
 fn read_prices(service: &Service) -> Result<PriceTable, CommandError> {
     match &service.prices {
         None => Ok(PriceTable::built_in()),

@@ -1,13 +1,14 @@
 //! GGUF files: small instruct models. This program does not run them. Its error shows how to start a server with the file, and
 //! the name of the model then.
 //!
-//! Why not: candle reads the format, but the rest (positions, tokenizers, templates, sampling) took over a thousand lines, and
-//! was slower than llama.cpp with the same file.
+//! Why not: candle, the library that runs models in process, reads the format, but the rest (positions, tokenizers,
+//! templates, sampling) took over a thousand lines, and was slower than llama.cpp with the same file.
 
 use crate::{error::CommandError, settings::is_in_process};
 use std::{borrow::Cow, path::Path};
 
-/// Longest tag that Ollama takes.
+/// Longest tag that Ollama takes, characters. No Ollama command is shown for a longer file name, and aliases are cut to
+/// this.
 const LONGEST_TAG: usize = 80;
 
 /// The error for a model in process that is named by a GGUF file; `None` for any other name.
@@ -26,7 +27,7 @@ pub(super) fn refuse_gguf(name: &str) -> Option<CommandError> {
     ))
 }
 
-/// A file of a repository: both servers fetch it themselves.
+/// The commands for a file of a repository on Hugging Face, which both servers fetch by themselves.
 fn on_hub(repo: &str, file: &str) -> String {
     let alias = model_alias(file);
     let mut servers = String::new();
@@ -35,19 +36,20 @@ fn on_hub(repo: &str, file: &str) -> String {
         servers =
             server_line("Ollama", &format!("ollama run hf.co/{repo}:{file}"), &format!("ollama/hf.co/{repo}:{file}"));
     }
-    let starts = format!("llama-server -hf {repo} -hff {} --alias {alias}", quote_for_shell(file));
-    servers + &server_line("llama.cpp", &starts, &format!("llamacpp/{alias}"))
+    let start_command = format!("llama-server -hf {repo} -hff {} --alias {alias}", quote_for_shell(file));
+    servers + &server_line("llama.cpp", &start_command, &format!("llamacpp/{alias}"))
 }
 
-/// A file on this machine.
+/// The commands for a file on this machine.
 fn on_disk(path: &str) -> String {
     let (alias, path) = (model_alias(path), quote_for_shell(path));
-    let creates = format!("echo FROM {path} > {alias}.Modelfile && ollama create {alias} -f {alias}.Modelfile");
-    let starts = format!("llama-server -m {path} --alias {alias}");
-    server_line("Ollama", &creates, &format!("ollama/{alias}"))
-        + &server_line("llama.cpp", &starts, &format!("llamacpp/{alias}"))
+    let create_command = format!("echo FROM {path} > {alias}.Modelfile && ollama create {alias} -f {alias}.Modelfile");
+    let start_command = format!("llama-server -m {path} --alias {alias}");
+    server_line("Ollama", &create_command, &format!("ollama/{alias}"))
+        + &server_line("llama.cpp", &start_command, &format!("llamacpp/{alias}"))
 }
 
+/// A line of the hint: the command that starts the model in a server, and the name of the model then.
 fn server_line(server: &str, command: &str, name: &str) -> String {
     format!("\n  {server}: `{command}`, then name the model {name}")
 }

@@ -59,7 +59,7 @@ impl LocalCalls {
         Ok(self.models.get_detector(name)?)
     }
 
-    /// The manner in which a model is asked.
+    /// The manner in which a model is asked: with a bare question, or with a text to continue.
     pub(super) fn prompt_manner(&self, name: &str) -> Result<PromptManner, CommandError> {
         Ok(match self.models.get_model(name)?.kind() {
             EyeKind::Questions => PromptManner::Question,
@@ -84,6 +84,7 @@ impl LocalCalls {
     }
 }
 
+/// The device, number format and memory limit for weights, from the settings.
 fn loading_options(RunJob { settings, service, .. }: &RunJob) -> Result<LoadingOptions, CommandError> {
     let precision = settings.roles.precision.map(|precision| match precision {
         settings::AskedPrecision::F32 => WeightPrecision::F32,

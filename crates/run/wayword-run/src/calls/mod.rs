@@ -36,12 +36,15 @@ pub use spending::CallSpending;
 /// The models that one command may call.
 pub struct ModelCalls {
     services: ModelServices,
-    /// `Some` if a model in process is named.
+    /// The models in process; `None` if the settings name none.
     local: Option<LocalCalls>,
+    /// The name in the ledger that the calls are booked under, with its limits.
     run: LedgerRun,
-    /// The ledger, if it keeps the calls of each chunk in a recording of its own.
+    /// The ledger, if each chunk of the run keeps its calls in a recording of its own; else `None`.
     in_chunks: Option<Ledger>,
+    /// The file of `--record`.
     record: Option<PathBuf>,
+    /// Number of items to make at the same time.
     workers: usize,
     /// Whether calls wait for a network.
     waits: bool,
@@ -56,8 +59,8 @@ impl ModelCalls {
     /// recording to replay is missing, or the folder for a new recording is.
     pub fn rehearse_job(job: &RunJob) -> Result<BTreeMap<String, Option<ModelPrice>>, CommandError> {
         let RunJob { settings, service, .. } = job;
-        let nowhere = Ledger::in_memory()?.start_run("rehearsal", RunLimits::default())?;
-        let services = ModelServices::new(service_config(job)?, nowhere)?;
+        let rehearsal = Ledger::in_memory()?.start_run("rehearsal", RunLimits::default())?;
+        let services = ModelServices::new(service_config(job)?, rehearsal)?;
         let price = |name: &str| -> Result<Option<ModelPrice>, CommandError> {
             if let Some(refused) = gguf_refusal::refuse_gguf(name) {
                 return Err(refused);
@@ -72,8 +75,8 @@ impl ModelCalls {
             }
             Ok(services.model(name)?.price().cloned())
         };
-        let priced = |name: &str| Ok((name.to_owned(), price(name)?));
-        let prices = settings.roles.model_names().into_iter().map(priced).collect::<Result<_, CommandError>>()?;
+        let with_price = |name: &str| Ok((name.to_owned(), price(name)?));
+        let prices = settings.roles.model_names().into_iter().map(with_price).collect::<Result<_, CommandError>>()?;
         settings.roles.shown_pictures().into_iter().try_for_each(|name| services.takes_pictures(name))?;
         if let Some(recording) = &service.replay {
             File::open(recording).map_err(CommandError::io(recording, "read the recording"))?;
@@ -114,7 +117,8 @@ impl ModelCalls {
         }
         let in_process = models.iter().any(|name| is_in_process(name));
         let local = if in_process { Some(LocalCalls::open(job, run.clone(), output)?) } else { None };
-        // A command that does not wait for a network has no use for more items than cores.
+        // A command that does not wait for a network gains nothing from making more items at a time than there are
+        // cores.
         let waits = models.iter().any(|name| !is_in_process(name));
         let workers = if waits { service_concurrency(service).thread_count() } else { core_count() };
         Ok(Some(Self { services, local, run, in_chunks, record: service.record.clone(), workers, waits }))

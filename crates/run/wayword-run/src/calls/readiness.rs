@@ -30,17 +30,17 @@ impl ModelCalls {
                 unused.join(", ")
             ));
         }
-        let nowhere = Ledger::in_memory()?.start_run("rehearsal", RunLimits::default())?;
+        let rehearsal = Ledger::in_memory()?.start_run("rehearsal", RunLimits::default())?;
         let (local, remote): (Vec<&str>, Vec<&str>) = models.into_iter().partition(|name| is_in_process(name));
         if job.service.replay.is_none() && !remote.is_empty() {
-            let services = ModelServices::new(service_config(job)?, nowhere.clone())?;
+            let services = ModelServices::new(service_config(job)?, rehearsal.clone())?;
             remote.iter().try_for_each(|name| {
                 services.check_ready(name).or_else(|error| accept_if_answered(job, &services, name, error))
             })?;
             job.settings.roles.shown_pictures().into_iter().try_for_each(|name| services.check_sight(name))?;
         }
         if !local.is_empty() {
-            let files = LocalCalls::open(job, nowhere, output)?;
+            let files = LocalCalls::open(job, rehearsal, output)?;
             let detector = job.settings.roles.detector.as_deref();
             let ready = |name: &&str| match detector == Some(*name) {
                 true => files.detector_ready(name),

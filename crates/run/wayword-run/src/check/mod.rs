@@ -116,11 +116,11 @@ fn check_by(
 ) -> Result<CheckReport, CommandError> {
     let platform = platforms::open_platform(settings)?;
     let calibration = how.calibration.map(|file| calibration::read_calibration(file, platform.name())).transpose()?;
-    let held = CheckStyles::for_style(how.style)?;
+    let check_styles = CheckStyles::for_style(how.style)?;
     let walks = read_path_texts(file, platform.as_ref())?;
     let checking = TextChecker {
         platform: platform.as_ref(),
-        held: &held,
+        styles: &check_styles,
         how,
         lookout,
         sources,
@@ -144,7 +144,7 @@ pub fn doubts_of(
     let how = CheckOptions { doubts: true, ..CheckOptions::default() };
     let checking = TextChecker {
         platform,
-        held: &CheckStyles::for_style(None)?,
+        styles: &CheckStyles::for_style(None)?,
         how,
         lookout: None,
         sources: EvidenceSources::default(),
@@ -162,15 +162,17 @@ type CheckedWalk = (&'static str, Vec<(usize, CheckedText, Vec<CheckFinding>)>);
 /// Everything that the checks of all paths share.
 struct TextChecker<'a> {
     platform: &'a dyn Platform,
-    held: &'a CheckStyles,
+    /// The styles that the texts have to keep to.
+    styles: &'a CheckStyles,
     how: CheckOptions<'a>,
     /// The detector that looks for things that texts name.
     lookout: Option<&'a DetectorLookout>,
-    /// Whether labels count, and the detector.
+    /// Which sources of evidence count.
     sources: EvidenceSources,
     calibration: Option<&'a Calibration>,
     /// The captions of a run as evidence, by the ids of its paths.
     captions: BTreeMap<String, Evidence>,
+    /// The scenes that were surveyed so far.
     scenes: KnownScenes,
 }
 
@@ -191,14 +193,14 @@ impl TextChecker<'_> {
         let calibration = self.how.calibration.map(|file| file.display().to_string());
         let mut report = CheckReport { calibration, ..CheckReport::default() };
         let mut texts = Vec::new();
-        for (source, of_walk) in checked {
+        for (source, walk_texts) in checked {
             if !report.checked_against.iter().any(|other| other == source) {
                 report.checked_against.push(source.to_owned());
             }
-            texts.extend(of_walk);
+            texts.extend(walk_texts);
         }
         for text in walks.iter().flat_map(|walk| &walk.texts) {
-            self.held.count_text(text, &mut report);
+            self.styles.count_text(text, &mut report);
         }
         // Back into the order of the file: the texts of one path were checked together.
         texts.sort_by_key(|(at, _, _)| *at);
@@ -208,6 +210,7 @@ impl TextChecker<'_> {
         Ok(report)
     }
 
+    /// Checks all texts of a path: collects the evidence once, follows each text, and checks it in its world.
     fn check_walk(&self, walk: &PathTexts) -> Result<CheckedWalk, CommandError> {
         let Self { platform, how, lookout, sources, .. } = *self;
         let world = RememberingPlatform::new(platform);
@@ -221,40 +224,43 @@ impl TextChecker<'_> {
         let known = labels.or(detected).or_else(captions);
         let mut evidence = known.unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
         let source = evidence.source;
-        let world_of = |text: &FileText| world_of(text, how.world, platform.name(), source);
-        let some_are_open = walk.texts.iter().any(|text| world_of(text) == CheckWorld::Open);
+        let text_world = |text: &FileText| world_of(text, how.world, platform.name(), source);
+        let some_are_open = walk.texts.iter().any(|text| text_world(text) == CheckWorld::Open);
         let scene = Some(self.scenes.get_or_survey(platform, &walk.path.scene)?);
         evidence.beyond = scene.as_ref().map(|scene| scene.listed.beyond_end(&walk.path)).unwrap_or_default();
-        let around = scene.as_ref().and_then(|scene| PathSurroundings::around_path(&scene.listed, &walk.path));
-        let reach = WorldReach { surroundings: around.as_ref(), calibration: self.calibration };
+        let surroundings = scene.as_ref().and_then(|scene| PathSurroundings::around_path(&scene.listed, &walk.path));
+        let reach = WorldReach { surroundings: surroundings.as_ref(), calibration: self.calibration };
         let followed = (!how.without_route).then(|| FollowedPath::new(scene.as_deref(), &walk.path, &evidence));
-        let hears = some_are_open && !how.without_witnesses && walk.texts.len() > 1;
-        // Records of this format have one writer, who makes the same mistakes in all texts.
-        let testimony =
-            |text: &FileText| (hears && text.made.is_none()).then(|| Testimony::from_text(&text.words, &evidence));
+        let uses_witnesses = some_are_open && !how.without_witnesses && walk.texts.len() > 1;
+        // A text of a Wayword record is no witness: one writer wrote all texts of its run, with the same mistakes in
+        // each.
+        let testimony = |text: &FileText| {
+            (uses_witnesses && text.made.is_none()).then(|| Testimony::from_text(&text.words, &evidence))
+        };
         let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
-        let checked = walk.texts.iter().zip(&testimonies).map(|(text, own)| {
-            let known = self.held.style_of(text);
-            let told = followed.as_ref().map(|followed| match followed {
+        let checked = walk.texts.iter().zip(&testimonies).map(|(text, own_testimony)| {
+            let check_style = self.styles.style_of(text);
+            let follower = followed.as_ref().map(|followed| match followed {
                 Ok(followed) => followed.follow_text(&text.words, text.tag.as_deref()),
                 Err(why) => FollowerFindings::not_followed(why),
             });
             // People name a target as they like, so any object of the final viewpoint is accepted.
-            let subject = match world_of(text) {
-                CheckWorld::Closed => CheckSubject::closed_world(&evidence, &known.style, None),
-                CheckWorld::Open => CheckSubject::open_world(&evidence, &known.style, reach),
+            let subject = match text_world(text) {
+                CheckWorld::Closed => CheckSubject::closed_world(&evidence, &check_style.style, None),
+                CheckWorld::Open => CheckSubject::open_world(&evidence, &check_style.style, reach),
             };
-            let turns = told.as_ref().map_or(TurnJudge::NotJudged("the text is not followed"), |told| told.turns);
-            let subject = CheckSubject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&known.copies) };
+            let turns =
+                follower.as_ref().map_or(TurnJudge::NotJudged("the text is not followed"), |follower| follower.turns);
+            let subject = CheckSubject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&check_style.copies) };
             let mut checked = check_text(&text.words, subject);
-            if let Some(told) = &told {
-                told.add_to(&mut checked);
+            if let Some(follower) = &follower {
+                follower.add_to(&mut checked);
             }
-            if let Some(own) = own.as_ref().filter(|_| checked.world == CheckWorld::Open) {
+            if let Some(own) = own_testimony.as_ref().filter(|_| checked.world == CheckWorld::Open) {
                 let others: Vec<&Testimony> = testimonies.iter().flatten().collect();
                 lift_confirmed(&mut checked, own, &others);
             }
-            let ambiguity = told.as_ref().map(|told| told.text_ambiguity(&text.words, &evidence));
+            let ambiguity = follower.as_ref().map(|follower| follower.text_ambiguity(&text.words, &evidence));
             checked.add_findings(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(ambiguity_rejection));
             let mut shown = CheckedText::from_text(text, &checked);
             if how.doubts {
@@ -262,8 +268,8 @@ impl TextChecker<'_> {
                 shown.doubted = Some(find_doubts(followed.as_ref(), words, &checked, ambiguity.as_ref()));
             }
             shown.ambiguity = ambiguity;
-            if let Some(told) = told {
-                (shown.route, shown.turn_gain) = (told.route, told.turn_gain);
+            if let Some(follower) = follower {
+                (shown.route, shown.turn_gain) = (follower.route, follower.turn_gain);
             }
             (text.at, shown, checked.findings)
         });

@@ -17,10 +17,11 @@ pub(super) struct PathTexts {
 
 /// A text of the file.
 pub(super) struct FileText {
-    /// Its place in the file.
+    /// Its place among the texts of the file, from 0.
     pub(super) at: usize,
     /// The name of its path.
     pub(super) path: String,
+    /// Its words.
     pub words: String,
     /// The style that it was written in, if the file names it.
     pub(super) style: Option<StyleReference>,
@@ -96,8 +97,11 @@ pub(super) fn gather_by_path(texts: Vec<(Path, String)>) -> Vec<PathTexts> {
 /// Paths, gathered from texts.
 #[derive(Default)]
 struct PathTextIndex {
+    /// The paths, in the order of their first texts.
     all: Vec<PathTexts>,
+    /// The index in `all` of each path.
     places: BTreeMap<PathEvidenceKey, usize>,
+    /// Number of texts so far.
     texts: usize,
 }
 
@@ -105,6 +109,7 @@ struct PathTextIndex {
 type PathEvidenceKey = (SceneId, bool, Vec<(([u64; 3], Option<ViewpointId>), u64, Option<u32>)>);
 
 impl PathTextIndex {
+    /// Adds a text to its path, and numbers it.
     fn add_text(&mut self, path: Path, text: FileText) {
         let frames =
             path.frames.iter().map(|frame| (frame.place_key(), frame.pose.heading.rad().to_bits(), frame.level));

@@ -56,7 +56,7 @@ pub struct VerdictCounts {
 /// A text that may mean more than its path.
 #[derive(Debug, Clone, Serialize)]
 pub struct AmbiguousText {
-    /// Its path.
+    /// The id of its path.
     pub path: String,
     /// Its words.
     pub text: String,
@@ -67,11 +67,11 @@ pub struct AmbiguousText {
 /// A text with its findings.
 #[derive(Debug, Clone, Serialize)]
 pub struct CheckedText {
-    /// Its path.
+    /// The id of its path.
     pub path: String,
     /// Its words.
     pub text: String,
-    /// All checks together.
+    /// The verdict of all checks together.
     pub verdict: Verdict,
     /// The world in which it was checked: open or closed.
     pub world: &'static str,
@@ -97,14 +97,14 @@ pub struct CheckedText {
 /// A text with the words that a reader should doubt.
 #[derive(Debug, Clone, Serialize)]
 pub struct DoubtedText {
-    /// Its path.
+    /// The id of its path.
     pub path: String,
     /// The style that it was written in, if the file names it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub style: Option<String>,
     /// Its words.
     pub text: String,
-    /// All checks together.
+    /// The verdict of all checks together.
     pub verdict: Verdict,
     /// The world in which it was checked: open or closed.
     pub world: &'static str,
@@ -140,15 +140,17 @@ impl CheckedText {
 }
 
 impl CheckReport {
+    /// Counts a checked text by verdict, check and world, and keeps it if it did not pass. `findings` are all of its
+    /// findings, those that passed among them.
     pub(super) fn add_text(&mut self, mut text: CheckedText, findings: &[CheckFinding]) {
         if let Some(doubted) = text.doubted.take() {
             self.doubted.push(DoubtedText::from_checked(&text, doubted));
         }
         for check in CheckKind::ALL {
-            let of_check: Vec<CheckFinding> =
+            let check_findings: Vec<CheckFinding> =
                 findings.iter().filter(|finding| finding.check == check).cloned().collect();
-            if !of_check.is_empty() {
-                self.by_check.entry(check.name()).or_default().count_verdict(Verdict::from_findings(&of_check));
+            if !check_findings.is_empty() {
+                self.by_check.entry(check.name()).or_default().count_verdict(Verdict::from_findings(&check_findings));
             }
         }
         *self.worlds.entry(text.world).or_default() += 1;
@@ -208,11 +210,11 @@ impl fmt::Display for CheckReportText<'_> {
             write!(f, "\nambiguous: {} may mean several places or objects", count_phrase(report.ambiguous, "text"))?;
         }
         if !report.doubted.is_empty() {
-            let with = |grade: DoubtGrade| {
+            let count_grade = |grade: DoubtGrade| {
                 let texts = report.doubted.iter().filter(|text| text.has_grade(grade)).count();
                 format!("{} with words that are {}", count_phrase(texts, "text"), grade.reader_label())
             };
-            write!(f, "\ndoubts: {}", DoubtGrade::ALL.map(with).join(", "))?;
+            write!(f, "\ndoubts: {}", DoubtGrade::ALL.map(count_grade).join(", "))?;
         }
         if let Some(file) = &report.calibration {
             write!(f, "\ncalibration: {file}")?;

@@ -26,9 +26,10 @@ struct RunText {
 
 /// How a text in a file refers to a path of the run.
 enum RunPathKey {
-    /// Its name.
+    /// The id of the path.
     Id(String),
-    /// The fields of a dataset. The names count only if the dataset has no viewpoints.
+    /// The fields of a dataset. `names` are the ids of the episode and of its path; they count only if the dataset has
+    /// no viewpoints.
     Way { scene: SceneId, viewpoints: Vec<ViewpointId>, object: Option<ObjectId>, names: [String; 2] },
 }
 
@@ -37,19 +38,19 @@ enum RunPathKey {
 /// # Errors
 /// When the file or the run cannot be read, or a text is about a path that the run does not have.
 pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: CheckOptions<'_>) -> Result<CheckReport, CommandError> {
-    let held = CheckStyles::of_run(how.style, &settings_of(run)?)?;
+    let styles = CheckStyles::of_run(how.style, &settings_of(run)?)?;
     // The finds of a detector are part of the captions.
     let captions_were_evidence = matches!(checked_against(run)?.as_deref(), Some("captions" | "detector"));
     let mut wanted: Vec<Option<RunText>> = read_texts(texts)?.into_iter().map(Some).collect();
-    let mut found: Vec<(usize, CheckedText, Vec<CheckFinding>)> = Vec::new();
+    let mut checked_texts: Vec<(usize, CheckedText, Vec<CheckFinding>)> = Vec::new();
     let mut report = CheckReport::default();
     lines::each_line(&run.join(file::WALKS), |line| {
         let record: WalkRecord = line.parse()?;
-        let mut mine = Vec::new();
+        let mut path_texts = Vec::new();
         for slot in &mut wanted {
-            mine.extend(slot.take_if(|wanted| wanted.path.matches_path(&record.path)));
+            path_texts.extend(slot.take_if(|wanted| wanted.path.matches_path(&record.path)));
         }
-        if mine.is_empty() {
+        if path_texts.is_empty() {
             return Ok(());
         }
         let walk = ObservedWalk::new(record.path, record.observations);
@@ -58,9 +59,9 @@ pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: CheckOptions<'_>
         if !report.checked_against.iter().any(|other| other == source) {
             report.checked_against.push(source.to_owned());
         }
-        for RunText { text, .. } in mine {
-            held.count_text(&text, &mut report);
-            let known = held.style_of(&text);
+        for RunText { text, .. } in path_texts {
+            styles.count_text(&text, &mut report);
+            let check_style = styles.style_of(&text);
             let target = walk.path.target.as_ref();
             // If labels were the evidence, the captions show less than the texts were written from, so the world is open.
             let is_closed = match how.world {
@@ -69,23 +70,23 @@ pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: CheckOptions<'_>
                 AskedWorld::Auto => captions_were_evidence,
             };
             let subject = if is_closed {
-                CheckSubject::closed_world(&evidence, &known.style, target)
+                CheckSubject::closed_world(&evidence, &check_style.style, target)
             } else {
-                CheckSubject::open_world(&evidence, &known.style, WorldReach::default())
+                CheckSubject::open_world(&evidence, &check_style.style, WorldReach::default())
             };
             let turns = TurnJudge::NotJudged("without the platform the text is not followed");
-            let subject = CheckSubject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&known.copies) };
+            let subject = CheckSubject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&check_style.copies) };
             let checked = check_own(&text.words, subject);
-            found.push((text.at, CheckedText::from_text(&text, &checked), checked.findings));
+            checked_texts.push((text.at, CheckedText::from_text(&text, &checked), checked.findings));
         }
         Ok(())
     })?;
-    if let Some(lost) = wanted.iter().flatten().next() {
-        let problem = format!("{}: the run {} has no path {}", texts.display(), run.display(), lost.text.path);
+    if let Some(unmatched) = wanted.iter().flatten().next() {
+        let problem = format!("{}: the run {} has no path {}", texts.display(), run.display(), unmatched.text.path);
         return Err(CommandError::usage(problem, "give the run that the texts were exported from"));
     }
-    found.sort_by_key(|(at, _, _)| *at);
-    found.into_iter().for_each(|(_, text, findings)| report.add_text(text, &findings));
+    checked_texts.sort_by_key(|(at, _, _)| *at);
+    checked_texts.into_iter().for_each(|(_, text, findings)| report.add_text(text, &findings));
     Ok(report)
 }
 

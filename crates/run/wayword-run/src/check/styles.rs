@@ -58,13 +58,13 @@ impl CheckStyles {
         Ok(Self { given, known, sole: None, any: CheckStyle::from_style(any) })
     }
 
-    /// The same with the styles of a run, as far as their files are still there.
+    /// As [`Self::for_style`], with the styles of a run in addition, as far as their files are still there.
     pub(super) fn of_run(style: Option<&str>, run: &RunSettings) -> Result<Self, CommandError> {
-        let mut held = Self::for_style(style)?;
-        let own = styles::find_styles(&run.style).unwrap_or_default();
-        held.sole = (own.len() == 1).then_some(held.known.len());
-        held.known.extend(own.into_iter().map(CheckStyle::from));
-        Ok(held)
+        let mut check_styles = Self::for_style(style)?;
+        let run_styles = styles::find_styles(&run.style).unwrap_or_default();
+        check_styles.sole = (run_styles.len() == 1).then_some(check_styles.known.len());
+        check_styles.known.extend(run_styles.into_iter().map(CheckStyle::from));
+        Ok(check_styles)
     }
 
     /// The style of a text, or one without constraints.
@@ -72,6 +72,7 @@ impl CheckStyles {
         self.find_style(text).unwrap_or(&self.any)
     }
 
+    /// The style that was asked for, else the one that the text names, else the only one of its run.
     fn find_style(&self, text: &FileText) -> Option<&CheckStyle> {
         let sole = || self.known.get(self.sole.filter(|_| text.style.is_none())?);
         self.given.as_ref().or_else(|| self.own_style(text)).or_else(sole)

@@ -4,8 +4,9 @@ use super::path_texts::FileText;
 use crate::check::args::AskedWorld;
 use wayword_checks::{CheckWorld, EvidenceSource};
 
-/// The world of a text: the one that was asked for. Otherwise it is closed for a record with the same platform and source of
-/// evidence as in this check, and open for everything else.
+/// The world in which a text is checked. With `--world auto` it is closed for a record with the same platform and
+/// source of evidence as in this check, because such a text was written from this evidence, and open for every other
+/// text.
 pub(super) fn world_of(text: &FileText, asked: AskedWorld, platform: &str, source: EvidenceSource) -> CheckWorld {
     match (asked, &text.made) {
         (AskedWorld::Open, _) | (AskedWorld::Auto, None) => CheckWorld::Open,

@@ -30,11 +30,15 @@ use wayword_ledger::CallContext;
 
 /// Everything that making items needs. It is opened once, however many folders (chunks) are filled with it.
 pub(super) struct ItemWorkshop<'a> {
+    /// The items and styles of the run.
     pub(super) plan: &'a RunPlan<'a>,
     /// The settings as the run folder keeps them.
     pub(super) settings: &'a RunSettings,
+    /// The models; `None` if none takes part.
     pub(super) calls: Option<&'a ModelCalls>,
+    /// The players of the roles.
     pub(super) team: &'a RoleTeam,
+    /// The scenes that were surveyed so far.
     pub(super) scenes: KnownScenes,
 }
 
@@ -48,40 +52,41 @@ impl ItemWorkshop<'_> {
         output: &CommandOutput,
     ) -> Result<Option<RunStop>, CommandError> {
         let styles = &self.plan.styles;
-        let numbers = |measured: &MeasuredStyle| {
+        let style_texts = |measured: &MeasuredStyle| {
             let style = measured.style.name.clone();
             (0..self.settings.per_path).map(move |number| text_name(&style, number))
         };
-        let names: Vec<String> = styles.iter().flat_map(numbers).collect();
-        let left = run.items_left(items, &names);
-        if left.len() < items.len() {
-            let done = items.len() - left.len();
-            let (all, left) = (count_phrase(items.len(), "item"), left.len());
+        let names: Vec<String> = styles.iter().flat_map(style_texts).collect();
+        let unfinished = run.items_left(items, &names);
+        if unfinished.len() < items.len() {
+            let done = items.len() - unfinished.len();
+            let (all, left) = (count_phrase(items.len(), "item"), unfinished.len());
             output.say(format_args!("continuing: {done} of {all} done and kept, {left} to do"));
         }
-        let mut progress = RunProgress::new(output, items.len(), left.len(), self.calls, self.team.lookout());
-        let kept = self.make_items(run, data, &left, &mut progress, items.len(), output);
-        kept?;
+        let mut progress = RunProgress::new(output, items.len(), unfinished.len(), self.calls, self.team.lookout());
+        self.make_items(run, data, &unfinished, &mut progress, items.len(), output)?;
         run.arrange_lines(items.iter(), &names)?;
         run.sync()?;
         Ok(progress.into_stop())
     }
 
+    /// Makes the unfinished items on several threads, and keeps each in the folder in the order of the items, until the
+    /// progress ends the run. `all` is the number of items with the finished ones, for messages.
     fn make_items(
         &self,
         run: &mut RunFolder,
         data: &WorldData,
-        left: &[&RunItem],
+        unfinished: &[&RunItem],
         progress: &mut RunProgress<'_>,
         all: usize,
         output: &CommandOutput,
     ) -> Result<(), CommandError> {
         let (calls, styles) = (self.calls, &self.plan.styles);
         let workers = calls.map_or_else(core_count, ModelCalls::worker_count);
-        let expected = if calls.is_some() { self.plan.calls_per_item(left, self.team.lookout())? } else { 0.0 };
-        let pace = CallPace::new(left.len(), workers, expected);
+        let expected = if calls.is_some() { self.plan.calls_per_item(unfinished, self.team.lookout())? } else { 0.0 };
+        let pace = CallPace::new(unfinished.len(), workers, expected);
         let world = RunPlatform { platform: self.plan.platform, data: Some(data), scenes: &self.scenes };
-        let unmade = AtomicUsize::new(left.len());
+        let unmade = AtomicUsize::new(unfinished.len());
         let making = |item: &RunItem| {
             interrupt::check_interrupt()?;
             let threads = calls.map_or(1, |calls| calls.views_at_once(unmade.load(Ordering::Relaxed)));
@@ -89,9 +94,10 @@ impl ItemWorkshop<'_> {
             unmade.fetch_sub(1, Ordering::Relaxed);
             made
         };
-        let occasion = CallContext::from_current_thread();
+        // The threads that make items take over the span and the subscriber of this thread.
+        let call_context = CallContext::from_current_thread();
         let making = |item: &&RunItem| {
-            occasion.run_within(|| {
+            call_context.run_within(|| {
                 let mut span = ItemSpan::begin(item);
                 (span.make_within(|| making(item)), span)
             })
@@ -100,12 +106,12 @@ impl ItemWorkshop<'_> {
         thread::scope(|scope| {
             if let Some(calls) = calls {
                 let (pace, bar) = (&pace, &bar);
-                let said = |told: &str| output.in_lines(format_args!("{}/{all} items, {told}", bar.position()));
+                let print_line = |text: &str| output.in_lines(format_args!("{}/{all} items, {text}", bar.position()));
                 scope.spawn(move || {
-                    pace.watch_calls(|| calls.spent_so_far(), |told| bar.set_message(told.to_owned()), said);
+                    pace.watch_calls(|| calls.spent_so_far(), |text| bar.set_message(text.to_owned()), print_line);
                 });
             }
-            let kept = in_order(left, workers, making, |item, (made, span)| {
+            let kept = in_order(unfinished, workers, making, |item, (made, span)| {
                 let fate = keep_item(run, world, item, made, styles)?;
                 span.end_with(&fate);
                 pace.item_is_done();

@@ -45,6 +45,7 @@ pub(super) fn keep_item(
     }
 }
 
+/// Writes an item that was made: its path with its pictures, then a line for each text.
 fn made_item(
     run: &mut RunFolder,
     world: RunPlatform<'_>,

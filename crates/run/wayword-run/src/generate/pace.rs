@@ -14,12 +14,15 @@ use std::{
 
 /// The pace is measured over the last minute, because the first answers may come from the ledger, which is fast.
 const PACE_WINDOW: Duration = Duration::from_secs(60);
-/// After this many items their real number of calls counts as much as the expected one.
+/// After this many finished items, their real number of calls counts as much as the expected number; after more, it
+/// counts more.
 const HALF_TRUSTED: f64 = 3.0;
-/// Time between two looks at the calls. Without a terminal, lines are printed instead of a bar: the first after `FIRST_LINE`,
-/// the next ones at growing intervals up to `MAX_LINE_INTERVAL`.
+/// Time between two looks at the calls.
 const LOOK_INTERVAL: Duration = Duration::from_secs(1);
+/// Without a terminal, lines are printed instead of a bar: the first after this time, the next ones at growing
+/// intervals.
 const FIRST_LINE: Duration = Duration::from_secs(3);
+/// Longest time between two such lines.
 const MAX_LINE_INTERVAL: Duration = Duration::from_secs(60);
 
 /// The progress of a run's calls.
@@ -30,9 +33,13 @@ pub(super) struct CallPace {
     workers: usize,
     /// Expected calls per item, from the plan.
     expected: f64,
+    /// Items that are finished.
     done: AtomicUsize,
+    /// The looks within `PACE_WINDOW`: when, and how many calls were made until then.
     seen: Mutex<VecDeque<(Instant, u64)>>,
+    /// Whether the watch is over.
     ended: Mutex<bool>,
+    /// Wakes the watch when it is over.
     ends: Condvar,
 }
 
@@ -53,18 +60,18 @@ impl CallPace {
         self.ends.notify_all();
     }
 
-    /// Looks at the calls until the end, and reports their progress: to `shown` every second (for the bar), to `said` at growing
-    /// intervals (for lines).
-    pub(super) fn watch_calls(&self, spent: impl Fn() -> CallSpending, shown: impl Fn(&str), said: impl Fn(&str)) {
+    /// Looks at the calls until [`Self::end_watch`], and reports their progress: to `show` every second, for the bar,
+    /// and to `print_line` at growing intervals, for lines.
+    pub(super) fn watch_calls(&self, spent: impl Fn() -> CallSpending, show: impl Fn(&str), print_line: impl Fn(&str)) {
         let (mut wait, mut line) = (FIRST_LINE, Instant::now() + FIRST_LINE);
         let mut ended = lock_mutex(&self.ended);
         while !*ended {
             ended = self.ends.wait_timeout(ended, LOOK_INTERVAL).unwrap_or_else(PoisonError::into_inner).0;
             let (now, spent) = (Instant::now(), spent());
-            let told = self.describe_progress(now, spent.answered + spent.from_ledger);
-            shown(&told);
+            let text = self.describe_progress(now, spent.answered + spent.from_ledger);
+            show(&text);
             if now >= line && !*ended {
-                said(&told);
+                print_line(&text);
                 wait = (2 * wait).min(MAX_LINE_INTERVAL);
                 line = now + wait;
             }

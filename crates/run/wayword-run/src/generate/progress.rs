@@ -19,7 +19,9 @@ const FLUSH_INTERVAL_ITEMS: usize = 16;
 
 /// Why a run stopped before its end.
 pub(super) struct RunStop {
+    /// The reason, for the user.
     pub(super) reason: String,
+    /// The exit code that goes with it.
     pub(super) exit: Exit,
 }
 
@@ -31,10 +33,12 @@ pub(super) struct RunProgress<'a> {
     lookout: Option<&'a DetectorLookout>,
     /// Items that are not finished yet.
     left: usize,
+    /// Items since the last flush to the disk.
     unflushed: usize,
     losses: LossCounter,
     /// The reason and the number of the items so far, if all have failed for the same reason.
     nothing_but: Option<(String, usize)>,
+    /// Set once the run has to stop.
     stop: Option<RunStop>,
 }
 

@@ -90,6 +90,8 @@ fn is_zero(count: &usize) -> bool {
     *count == 0
 }
 
+/// Reads the files of a run folder, and counts the texts and failures in them. `spent` and `stopped` are about this
+/// command.
 pub(super) fn summarise_run(
     folder: &Path,
     run: &RunFolder,
@@ -198,9 +200,10 @@ struct WalkLine {
     observations: Vec<FrameObservation>,
 }
 
+/// The players of the roles in one line, from the provenance of a text.
 fn describe_roles(provenance: &TextProvenance) -> String {
     // The provenance has the detector's name, followed by the meaning of its scores in brackets.
-    let detector = provenance.detector.as_deref().and_then(|told| told.split(" (").next());
+    let detector = provenance.detector.as_deref().and_then(|detector| detector.split(" (").next());
     let finds = detector.map_or(String::new(), |name| format!(", finds by {name}"));
     format!(
         "questions by {}, answers by {}{finds}, summary by {}, text by {}; checked against {}",

@@ -12,14 +12,14 @@ use wayword_language::lexicon::{LexiconThing, ThingClass, find_thing, names_agre
 
 /// The share of wrong claims that come from labels.
 const LABELS_SHARE: f64 = 1.0 / 3.0;
-/// Most draws to find another name.
+/// Most draws to find another name. A claim for which none is found gets no wrong claim.
 const MAX_DRAWS: usize = 30;
 
 /// A claim, checked against the evidence of a path.
 pub struct ClaimSample {
-    /// The walk's place in the list.
+    /// The index of its walk in the list of walks.
     pub walk: usize,
-    /// The text's place among the walk's.
+    /// The index of its text among the texts of the walk.
     pub text: usize,
     /// The claim.
     pub claim: PlaceClaim,
@@ -40,9 +40,10 @@ impl ClaimSample {
     }
 }
 
-/// Returns every claim of every text, and for each known one a wrong claim, in which another room or object takes its place. The
-/// replacements come from texts about other paths, half of them of the same building and half of any. A third of them come from
-/// labels: of objects, half of the same building and half of any, and of rooms from any building.
+/// Returns every claim of every text. For each known claim it adds a wrong one, in which the name of another room or
+/// object takes the place of the right name. A third of the other names come from labels: those of objects half from
+/// the same building and half from any, those of rooms from any building. The rest come from texts about other paths,
+/// half of them of the same building and half of any.
 #[must_use]
 pub fn sample_claims(
     walks: &[&PeopleWalk],
@@ -61,46 +62,48 @@ pub fn sample_claims(
     for (at, claim) in &all {
         by_scene.entry(&walks[*at].path.scene).or_default().push((*at, claim));
     }
-    let mut held = Vec::new();
+    let mut samples = Vec::new();
     for (at, walk) in walks.iter().enumerate() {
         for (number, text) in walk.texts.iter().enumerate() {
             let see = |claim: &PlaceClaim| sight_of_claim(claim, &walk.evidence, walk.around.as_ref(), weights);
             let sights: Vec<ClaimSight> = text.claims.iter().map(see).collect();
             for (place, claim) in text.claims.iter().enumerate() {
-                let add = |claim: PlaceClaim, wrong: bool| {
+                let make_sample = |claim: PlaceClaim, wrong: bool| {
                     let mut sight = see(&claim);
                     if let ClaimSight::Missed(missed) = &mut sight {
                         missed.keep_company(sights[..place].iter().chain(&sights[place + 1..]));
                     }
                     ClaimSample { walk: at, text: number, claim, wrong, sight }
                 };
-                held.push(add(claim.clone(), false));
+                samples.push(make_sample(claim.clone(), false));
                 if !is_known(claim) {
                     continue;
                 }
                 if claim.is_only_room() && rng.random_bool(LABELS_SHARE) {
                     let drawn = (0..MAX_DRAWS).filter_map(|_| labels.rooms.choose(&mut rng));
                     let drawn = drawn.into_iter().find(|name| !same_room(name, &claim.name));
-                    held.extend(drawn.map(|name| add(PlaceClaim { name: name.clone(), ..claim.clone() }, true)));
+                    samples.extend(
+                        drawn.map(|name| make_sample(PlaceClaim { name: name.clone(), ..claim.clone() }, true)),
+                    );
                     continue;
                 }
                 if !claim.is_only_room() && rng.random_bool(LABELS_SHARE) {
-                    let here = labels.by_scene.get(&walk.path.scene).filter(|_| rng.random_bool(0.5));
-                    let pool = here.unwrap_or(&labels.all);
+                    let scene_names = labels.by_scene.get(&walk.path.scene).filter(|_| rng.random_bool(0.5));
+                    let pool = scene_names.unwrap_or(&labels.all);
                     let drawn = (0..MAX_DRAWS)
                         .filter_map(|_| pool.choose(&mut rng))
                         .find(|name| !names_agree(name, &claim.name));
-                    held.extend(drawn.map(|name| add(rename_claim(claim, name), true)));
+                    samples.extend(drawn.map(|name| make_sample(rename_claim(claim, name), true)));
                     continue;
                 }
                 let pool = if rng.random_bool(0.5) { &by_scene[&walk.path.scene] } else { &all };
                 let mut drawn = (0..MAX_DRAWS).filter_map(|_| pool.choose(&mut rng));
                 let drawn = drawn.find(|(from, other)| *from != at && is_other(claim, other));
-                held.extend(drawn.map(|(_, other)| add(place_claim(claim, other), true)));
+                samples.extend(drawn.map(|(_, other)| make_sample(place_claim(claim, other), true)));
             }
         }
     }
-    held
+    samples
 }
 
 /// Whether the lexicon knows the claimed object or room.
@@ -115,7 +118,7 @@ fn is_other(claim: &PlaceClaim, other: &PlaceClaim) -> bool {
     claim.is_only_room() == other.is_only_room() && !same
 }
 
-/// A claim with the place of another one.
+/// The claim `other`, put into the place of `claim` in its text.
 fn place_claim(claim: &PlaceClaim, other: &PlaceClaim) -> PlaceClaim {
     PlaceClaim { event: claim.event, span: claim.span, relation: claim.relation, ..other.clone() }
 }
@@ -129,8 +132,11 @@ fn rename_claim(claim: &PlaceClaim, name: &str) -> PlaceClaim {
 /// The names of landmarks that labels have, each once.
 #[derive(Default)]
 pub struct LabelNames {
+    /// Objects of all scenes.
     all: Vec<String>,
+    /// Rooms of all scenes.
     rooms: Vec<String>,
+    /// Objects by scene.
     by_scene: BTreeMap<SceneId, Vec<String>>,
 }
 
@@ -155,7 +161,7 @@ impl LabelNames {
     }
 }
 
-/// Whether a claim belongs to the table of a case, if it is not listed within reach.
+/// Whether a claim is weighed by the table of this case where the labels around the path lack it.
 #[must_use]
 pub fn belongs_to_case(claim: &PlaceClaim, case: ClaimCase) -> bool {
     let at_stop = claim.relation == WalkerRelation::Stop;

@@ -40,7 +40,7 @@ pub struct CallLoad {
 /// Pixels of a picture for each of its tokens, as two large providers count.
 const PIXELS_PER_TOKEN: u64 = 750;
 
-/// Tokens of a picture of 4 by 3, as wide as pictures are sent at most.
+/// Tokens of a picture with sides of 4 to 3. `picture_px` is its longer side, pixels.
 pub fn picture_tokens(picture_px: u32) -> u64 {
     u64::from(picture_px).pow(2) * 3 / 4 / PIXELS_PER_TOKEN
 }
@@ -48,35 +48,35 @@ pub fn picture_tokens(picture_px: u32) -> u64 {
 impl ModelBill {
     /// Adds the load of a model in one role.
     pub fn add_load(&mut self, model: &str, role: &'static str, load: CallLoad) {
-        let at = self.0.iter().position(|asked| asked.model == model).unwrap_or_else(|| {
+        let at = self.0.iter().position(|entry| entry.model == model).unwrap_or_else(|| {
             self.0.push(ModelBillEntry { model: model.to_owned(), ..ModelBillEntry::default() });
             self.0.len() - 1
         });
-        if let Some(asked) = self.0.get_mut(at) {
-            asked.roles.push(role);
-            asked.calls += load.calls;
-            asked.tokens_in += load.tokens_in;
-            asked.tokens_out += load.tokens_out;
+        if let Some(entry) = self.0.get_mut(at) {
+            entry.roles.push(role);
+            entry.calls += load.calls;
+            entry.tokens_in += load.tokens_in;
+            entry.tokens_out += load.tokens_out;
         }
     }
 
     /// Fills in what each model costs, where that is known.
     pub fn fill_prices(&mut self, models: &JobModels<'_>) {
-        for asked in &mut self.0 {
-            let price = models.model_price(&asked.model);
-            asked.usd = price.map(|price| price.cost_usd(asked.tokens_in, asked.tokens_out));
-            asked.price_as_of = price.map(|price| price.as_of.clone());
+        for entry in &mut self.0 {
+            let price = models.model_price(&entry.model);
+            entry.usd = price.map(|price| price.cost_usd(entry.tokens_in, entry.tokens_out));
+            entry.price_as_of = price.map(|price| price.as_of.clone());
         }
     }
 
     /// Calls of all models.
     pub(crate) fn call_count(&self) -> u64 {
-        self.0.iter().map(|asked| asked.calls).sum()
+        self.0.iter().map(|entry| entry.calls).sum()
     }
 
     /// US dollars of all models; `None` if a price is not known.
     pub(crate) fn total_usd(&self) -> Option<f64> {
-        self.0.iter().map(|asked| asked.usd).sum()
+        self.0.iter().map(|entry| entry.usd).sum()
     }
 
     /// Whether no model would be asked.
@@ -88,7 +88,7 @@ impl ModelBill {
 impl CallLoad {
     /// Adds a call.
     pub fn add_call(&mut self, prompt: &str, tokens_out: u64) {
-        // English text has about four characters per token.
+        // English text has about four bytes per token.
         self.add(Self { calls: 1, tokens_in: prompt.len().div_ceil(4) as u64, tokens_out });
     }
 
@@ -115,17 +115,17 @@ impl CallLoad {
 /// A line for each model, and one for all.
 impl fmt::Display for ModelBill {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for asked in &self.0 {
+        for entry in &self.0 {
             write!(
                 f,
                 "  {} ({}): {}, about {} in, {} out",
-                asked.model,
-                asked.roles.join(", "),
-                count_phrase(asked.calls, "call"),
-                count_phrase(asked.tokens_in, "token"),
-                asked.tokens_out
+                entry.model,
+                entry.roles.join(", "),
+                count_phrase(entry.calls, "call"),
+                count_phrase(entry.tokens_in, "token"),
+                entry.tokens_out
             )?;
-            match (asked.usd, &asked.price_as_of) {
+            match (entry.usd, &entry.price_as_of) {
                 (Some(0.0), _) => writeln!(f, ", free: it runs in process")?,
                 (Some(usd), Some(day)) => writeln!(f, ", about ${usd:.2} (prices of {day})")?,
                 _ => writeln!(f, ", price not known (see --prices)")?,

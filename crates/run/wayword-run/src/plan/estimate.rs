@@ -76,11 +76,12 @@ const TYPICAL_QUESTION: &str = "What stands on the left side of the room, and wh
 const TYPICAL_ANSWER: &str = "There is a small wooden table with a lamp on it, and a grey chair stands next to it.";
 const TYPICAL_CAPTION: &str = "A living room with a grey sofa on the left, a wooden table in the middle, two chairs on the right and a lamp beside the window. A doorway leads to a hallway.";
 const TYPICAL_INSTRUCTION: &str = "Walk past the grey sofa and turn left at the bookcase. Go through the doorway into the hallway and stop next to the small table.";
-/// The share of its follow-up questions that a dialogue asks on average, because it ends after two answers without news.
+/// The share of its possible follow-up questions that a dialogue asks on average, because it ends after two answers
+/// without news.
 const USUAL_SHARE: f64 = 0.55;
 /// Questions that a structured answer leaves open, for each hundred views. The scripted eye leaves about as many.
 const OPEN_PER_HUNDRED_VIEWS: u64 = 60;
-/// Tokens of a typical reply of each kind.
+/// Tokens of a typical reply of each kind: a question, an answer, a structured answer, and so on.
 const QUESTION_TOKENS: u64 = 20;
 const ANSWER_TOKENS: u64 = 30;
 const STRUCTURED_TOKENS: u64 = 350;
@@ -108,36 +109,41 @@ impl RunEstimate {
         let settings = &plan.job.settings;
         let prompts = settings_prompts(settings)?;
         let mut estimate = Self { questions: max_questions(settings), ..Self::default() };
-        let (mut all, mut here, mut apart) =
+        let (mut run_views, mut chunk_views, mut chunk_sum) =
             (DistinctViews::default(), DistinctViews::default(), DistinctCounts::default());
         let mut writing = CallLoad::default();
         for (number, item) in items.enumerate() {
             if chunk.is_some_and(|chunk| number.is_multiple_of(chunk)) {
-                apart += std::mem::take(&mut here).count_distinct();
+                chunk_sum += std::mem::take(&mut chunk_views).count_distinct();
             }
             let world = RememberingPlatform::new(plan.platform);
             // An item without a path fails in the run before any model is called.
             let Ok(path) = pipeline::item_path(item, settings, &world) else { continue };
             estimate.items += 1;
             estimate.frames += path.frames.len();
-            all.add_path(&path, settings.frames);
+            run_views.add_path(&path, settings.frames);
             if chunk.is_some() {
-                here.add_path(&path, settings.frames);
+                chunk_views.add_path(&path, settings.frames);
             }
             writing.add(write_load(&prompts, settings, &plan.styles, &path)?);
         }
-        apart += here.count_distinct();
-        let different = all.count_distinct();
-        estimate.views = different.views as usize;
+        chunk_sum += chunk_views.count_distinct();
+        let distinct = run_views.count_distinct();
+        estimate.views = distinct.views as usize;
         if let Some(model) = &settings.roles.detector {
             let phrases = proposed_names(settings, &plan.styles)?.len();
             estimate.detector = Some(DetectorEstimate { model: model.clone(), phrases });
         }
         let talk = DialogueLoad::for_settings(&prompts, settings)?;
-        estimate.models = talk.make_bill(plan, different, writing);
+        estimate.models = talk.make_bill(plan, distinct, writing);
         estimate.shards = chunk.filter(|_| !estimate.models.is_empty()).map(|chunk| {
-            let more = talk.make_bill(plan, apart - different, CallLoad::default());
-            ShardSurcharge { chunk, views: apart.views as usize, calls: more.call_count(), usd: more.total_usd() }
+            let surplus = talk.make_bill(plan, chunk_sum - distinct, CallLoad::default());
+            ShardSurcharge {
+                chunk,
+                views: chunk_sum.views as usize,
+                calls: surplus.call_count(),
+                usd: surplus.total_usd(),
+            }
         });
         Ok(estimate)
     }
@@ -207,6 +213,7 @@ impl DialogueLoad {
         settling.tokens_in += picture;
         let (mut summing, mut condensing) = (CallLoad::default(), CallLoad::default());
         summing.add_call(&prompts.summary_prompt(&transcript, &[], &[])?, CAPTION_TOKENS);
+        // A panorama is condensed to fewer than about 20 words.
         let around = [("ahead", TYPICAL_CAPTION); 4];
         condensing.add_call(&prompts.condense_prompt(&around, 20, &[])?, CONDENSED_TOKENS);
         Ok(Self { asking, seeing, settling, summing, condensing })

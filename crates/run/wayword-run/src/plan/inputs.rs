@@ -12,6 +12,7 @@ use crate::{
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 
+/// The hashes of all inputs of a job, by names such as "episodes" and "style r2r".
 pub(super) fn hash_inputs(job: &RunJob, styles: &[MeasuredStyle]) -> Result<BTreeMap<String, String>, CommandError> {
     let mut inputs: BTreeMap<String, String> = styles
         .iter()
@@ -45,8 +46,8 @@ const WITHOUT_EFFECT: [&str; 3] = ["requests_per_minute", "tokens_per_minute", "
 fn hash_providers(providers: &ProviderTables) -> String {
     let mut hash = Sha256::new();
     for (name, table) in providers {
-        let telling = table.iter().filter(|(field, _)| !WITHOUT_EFFECT.contains(&field.as_str()));
-        hash.update(format!("{name}: {:?}\n", telling.collect::<Vec<_>>()));
+        let effective = table.iter().filter(|(field, _)| !WITHOUT_EFFECT.contains(&field.as_str()));
+        hash.update(format!("{name}: {:?}\n", effective.collect::<Vec<_>>()));
     }
     short_hex(hash)
 }

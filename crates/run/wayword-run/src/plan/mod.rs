@@ -23,7 +23,7 @@ pub use bill::{CallLoad, ModelBill, picture_tokens};
 pub use estimate::RunEstimate;
 pub use estimate::seeing_load;
 
-/// Number of items from which the calls of the other items are extrapolated.
+/// Number of items from which the calls of all items are extrapolated, because an estimate of each would take too long.
 const SAMPLED_ITEMS: usize = 8;
 
 /// The items, styles and models of a run.
@@ -77,10 +77,10 @@ impl<'a> RunPlan<'a> {
     /// # Errors
     /// When a prompt cannot be used.
     pub fn calls_per_item(&self, items: &[&RunItem], lookout: Option<&DetectorLookout>) -> Result<f64, CommandError> {
-        let few = &items[..items.len().min(SAMPLED_ITEMS)];
-        let calls = RunEstimate::of_items(self, few.iter().copied(), None)?
+        let sampled = &items[..items.len().min(SAMPLED_ITEMS)];
+        let calls = RunEstimate::of_items(self, sampled.iter().copied(), None)?
             .call_count(lookout.map_or(0, DetectorLookout::calls_per_view));
-        Ok(calls as f64 / few.len().max(1) as f64)
+        Ok(calls as f64 / sampled.len().max(1) as f64)
     }
 
     /// Estimates the calls and the cost of the run. With `chunk`, the number of items in a chunk, also the surplus of shards

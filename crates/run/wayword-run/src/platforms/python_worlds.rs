@@ -11,6 +11,7 @@ use wayword_platforms::process::ProcessOptions;
 /// The prefix of `--data` for a registered world, as in `python:Rooms`.
 const INSIDE_SCHEME: &str = "python:";
 
+/// The registered worlds, by their values of `--data`.
 static INSIDE_WORLDS: Mutex<BTreeMap<String, ProcessOptions>> = Mutex::new(BTreeMap::new());
 
 /// Registers a world under a name, and replaces an older one of that name. Returns the value of `--data` for it.

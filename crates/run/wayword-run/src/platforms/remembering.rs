@@ -104,7 +104,8 @@ impl Platform for RememberingPlatform<'_> {
         Ok(view)
     }
 
-    /// Nothing else is cached. Depth, for one, is larger than a picture, and asked for once.
+    /// Everything but views comes from the platform itself, uncached. Depth, for one, is larger than a picture, and
+    /// asked for once.
     fn inner(&self) -> Option<&dyn Platform> {
         Some(self.platform)
     }

@@ -20,6 +20,7 @@ use std::{
 pub struct FolderLock {
     /// `None` if a network file system has no locks.
     _lock: Option<File>,
+    /// The file `run.owner`; `None` on a disk of this machine.
     _mark: Option<OwnerMark>,
 }
 
@@ -34,6 +35,7 @@ struct FolderOwner {
     host: String,
     /// Identifies the machine, its boot and its container, because process numbers are unique only within these.
     place: String,
+    /// The number of the process.
     pid: u32,
     /// The start time of the process in its machine's units, to recognise another process with the same number.
     began: String,
@@ -42,11 +44,12 @@ struct FolderOwner {
 /// Locks a folder against other processes, until the returned value is dropped.
 ///
 /// # Errors
-/// When another process does, or may do.
+/// When another process works in the folder, or may do so.
 pub fn lock_folder(folder: &Path) -> Result<FolderLock, CommandError> {
     hold_on(folder, wayword_ledger::network_at(folder))
 }
 
+/// Locks a folder. `network` is the kind of its network file system; `None` on a disk of this machine.
 fn hold_on(folder: &Path, network: Option<&'static str>) -> Result<FolderLock, CommandError> {
     let path = folder.join(file::LOCK);
     let lock = File::options()
@@ -90,12 +93,12 @@ impl OwnerMark {
     }
 }
 
-/// Removes the file of a process that is gone, and refuses otherwise.
-fn give_way(folder: &Path, path: &Path, kind: &'static str, we: &FolderOwner) -> Result<(), CommandError> {
+/// Removes the file `run.owner` of a process that is gone. Refuses if that process is alive or on another machine.
+fn give_way(folder: &Path, path: &Path, kind: &'static str, this_process: &FolderOwner) -> Result<(), CommandError> {
     let text = crate::text_file::read_text_file(path, "read who works in the folder")?;
     let by: Option<FolderOwner> = serde_json::from_str(&text).ok();
     match by {
-        Some(by) if by.place != we.place => {
+        Some(by) if by.place != this_process.place => {
             let by = format!("process {} of {}", by.pid, by.host);
             Err(CommandError::BusyElsewhere { folder: folder.to_owned(), by, kind, mark: path.to_owned() })
         }
@@ -119,11 +122,11 @@ impl Drop for OwnerMark {
 impl FolderOwner {
     fn this_process() -> Self {
         let read = |path: &str| fs::read_to_string(path).unwrap_or_default().trim().to_owned();
-        let space = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
+        let pid_namespace = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
         let pid = std::process::id();
         Self {
             host: read("/proc/sys/kernel/hostname"),
-            place: format!("{} {}", read("/proc/sys/kernel/random/boot_id"), space.display()),
+            place: format!("{} {}", read("/proc/sys/kernel/random/boot_id"), pid_namespace.display()),
             pid,
             began: process_start(pid).unwrap_or_default(),
         }
@@ -135,6 +138,7 @@ fn process_start(pid: u32) -> Option<String> {
     let stat = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
     // The name of the program comes second, in brackets, and may hold anything.
     let (_, fields) = stat.rsplit_once(')')?;
+    // The start time is field 22 of the file (man proc_pid_stat), and the first field after the bracket is number 3.
     fields.split_whitespace().nth(19).map(str::to_owned)
 }
 

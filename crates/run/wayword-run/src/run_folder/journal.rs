@@ -17,8 +17,9 @@ use std::{
 pub struct Journal {
     path: PathBuf,
     file: File,
-    /// In the order of the lines.
+    /// The keys, in the order of the lines.
     keys: IndexSet<String>,
+    /// Finds the key in a line; `None` if the line has none.
     key_of: fn(&Value) -> Option<String>,
 }
 
@@ -136,8 +137,8 @@ fn open_appending(path: &Path) -> Result<File, CommandError> {
     File::options().create(true).append(true).read(true).open(path).map_err(CommandError::io(path, "open"))
 }
 
-/// Writes parts of a file, each given by start and length in bytes, to another file, which then survives a crash of the
-/// machine.
+/// Writes parts of a file to another file, which then survives a crash of the machine. Each span has a place, which is
+/// not used here, and start and length in bytes.
 fn copy_spans(from: &Path, to: &Path, spans: &[(usize, u64, u64)]) -> io::Result<()> {
     let mut from = File::open(from)?;
     let mut to = BufWriter::new(File::create(to)?);

@@ -9,12 +9,13 @@ use std::{
     path::Path,
 };
 
-/// Longest line that is read, bytes.
+/// Longest line that is read, bytes. A longer one is an error.
 const MOST_LINE_BYTES: usize = 16 << 20;
 
 /// A whole line of a file.
 pub struct RecordLine<'a> {
     path: &'a Path,
+    /// The number of the line, from 1.
     number: usize,
     bytes: &'a [u8],
 }
@@ -61,8 +62,8 @@ impl RecordLine<'_> {
     /// When the value is not of that kind.
     pub fn parse<T: DeserializeOwned>(&self) -> Result<T, CommandError> {
         serde_json::from_slice(self.bytes).map_err(|error| {
-            let told = error.to_string();
-            let problem = told.rsplit_once(" at line ").map_or(told.as_str(), |(problem, _)| problem);
+            let text = error.to_string();
+            let problem = text.rsplit_once(" at line ").map_or(text.as_str(), |(problem, _)| problem);
             self.broken_line(format_args!("column {}: {problem}", error.column()))
         })
     }

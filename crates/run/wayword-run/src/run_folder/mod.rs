@@ -64,7 +64,7 @@ pub mod file {
     pub const WALKS: &str = "walks.jsonl";
     /// Accepted instructions.
     pub const INSTRUCTIONS: &str = "instructions.jsonl";
-    /// Rejected ones.
+    /// Texts that failed their checks.
     pub const REJECTED: &str = "rejected.jsonl";
     /// Items that failed, to be tried again.
     pub const ERRORS: &str = "errors.jsonl";
@@ -103,6 +103,7 @@ impl RunFolder {
         Self::with_lock(folder, settings, None)
     }
 
+    /// Opens the files of a folder after a check of its settings.
     fn with_lock(folder: &Path, settings: &RunSettings, held: Option<FolderLock>) -> Result<Self, CommandError> {
         keep_settings(folder, settings)?;
         let walks = folder.join(file::WALKS);
@@ -124,48 +125,50 @@ impl RunFolder {
         self.folder.join(file::FRAMES)
     }
 
-    /// Whether an item needs no more work: its path and pictures are there, and each text ([`text_name`]) has its line.
+    /// Whether an item needs no more work: its path and pictures are there, and each of its texts has a line. `texts`
+    /// are the names of the texts of an item, as [`text_name`] makes them.
     #[must_use]
-    fn is_done(&self, item: &str, styles: &[String]) -> bool {
-        let has = |style: &str| {
-            let key = record::line_key(item, style);
+    fn is_done(&self, item: &str, texts: &[String]) -> bool {
+        let has = |text: &str| {
+            let key = record::line_key(item, text);
             self.instructions.has_key(&key) || self.rejected.has_key(&key)
         };
-        self.walks.has_key(item) && !self.without_pictures.contains(item) && styles.iter().all(|style| has(style))
+        self.walks.has_key(item) && !self.without_pictures.contains(item) && texts.iter().all(|text| has(text))
     }
 
-    /// The items that need more work. Those that failed last time come last, so that they do not hold up the others.
+    /// The items that need more work, where `texts` are the names of the texts of an item. Those that failed last time
+    /// come last, so that they do not hold up the others.
     #[must_use]
-    pub fn items_left<'a>(&self, items: &'a [RunItem], styles: &[String]) -> Vec<&'a RunItem> {
-        let left = items.iter().filter(|item| !self.is_done(&item.id(), styles));
+    pub fn items_left<'a>(&self, items: &'a [RunItem], texts: &[String]) -> Vec<&'a RunItem> {
+        let left = items.iter().filter(|item| !self.is_done(&item.id(), texts));
         let (failed, mut left): (Vec<&RunItem>, Vec<&RunItem>) =
             left.partition(|item| self.failed_before.contains(&item.id()));
         left.extend(failed);
         left
     }
 
-    /// Sorts the lines of all files by item and style. Without this, an item that failed at first and was made later would come
-    /// after its successors.
+    /// Sorts the lines of all files by item and text. Without this, an item that failed at first and was made later
+    /// would come after its successors.
     ///
     /// # Errors
     /// When a file cannot be read or written.
     pub fn arrange_lines<'a>(
         &mut self,
         items: impl Iterator<Item = &'a RunItem>,
-        styles: &[String],
+        texts: &[String],
     ) -> Result<(), CommandError> {
         let places: BTreeMap<String, usize> = items.enumerate().map(|(place, item)| (item.id(), place)).collect();
         let place = |key: &str| {
-            let (item, style) = record::key_parts(key);
+            let (item, text) = record::key_parts(key);
             // An item that is not among these stays, at the end.
             let item = places.get(item).copied().unwrap_or(places.len());
-            match style {
+            match text {
                 None => Some(item),
                 // A rejection of a whole item, as older versions wrote it. This version has tried the item again.
                 Some("") => None,
-                Some(style) => {
-                    let style = styles.iter().position(|other| other == style).unwrap_or(styles.len());
-                    Some(item * (styles.len() + 1) + style)
+                Some(text) => {
+                    let text = texts.iter().position(|other| other == text).unwrap_or(texts.len());
+                    Some(item * (texts.len() + 1) + text)
                 }
             }
         };
@@ -235,7 +238,7 @@ fn keys_of(errors: &Path) -> Result<BTreeSet<String>, CommandError> {
     Ok(keys)
 }
 
-/// The items with missing pictures.
+/// The items in `walks.jsonl` of which a picture is missing.
 fn without_pictures(walks: &Path, frames: &Path) -> Result<BTreeSet<String>, CommandError> {
     let mut without = BTreeSet::new();
     lines::each_line(walks, |line| {

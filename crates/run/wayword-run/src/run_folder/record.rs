@@ -27,13 +27,13 @@ pub struct WalkRecord {
 pub struct PathMap {
     /// Positions of nodes: x and y, metres, world frame.
     pub nodes: Vec<[f64; 2]>,
-    /// Pairs of nodes.
+    /// Pairs of nodes, as indices into `nodes`.
     pub edges: Vec<[usize; 2]>,
 }
 
 /// How far from the path the map reaches, metres.
 const MAP_MARGIN_M: f64 = 4.0;
-/// Nodes that are higher or lower than the path by more than this belong to other storeys, metres.
+/// A node belongs to another storey if it is higher or lower than the path by more than this, metres.
 const MAP_HEIGHT_M: f64 = 1.6;
 
 /// A text that failed its checks: a line of `rejected.jsonl`.
@@ -43,7 +43,7 @@ pub struct RejectedText {
     pub item: String,
     /// The style.
     pub style: String,
-    /// Why.
+    /// Why it was rejected.
     pub reason: String,
     /// The best text there was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -74,9 +74,10 @@ fn lost() -> FailureKind {
     FailureKind::Lost
 }
 
-/// The name of a line: an item and a style.
-pub(super) fn line_key(item: &str, style: &str) -> String {
-    format!("{item}\u{1f}{style}")
+/// The key of a line about a text: its item, and its name within the item ([`text_name`]), with a control character
+/// between them.
+pub(super) fn line_key(item: &str, text: &str) -> String {
+    format!("{item}\u{1f}{text}")
 }
 
 /// Identifies a text within its item: its style, and its number where the style has several.
@@ -99,18 +100,20 @@ pub fn name_of_text(record: &InstructionRecord) -> String {
     }
 }
 
+/// The name within its item ([`text_name`]) of the text in a line.
 fn name_of(value: &Value) -> Option<String> {
     let number = value.get(NUMBER_FIELD).and_then(Value::as_u64).and_then(|number| usize::try_from(number).ok());
     Some(text_name(value.get("style")?.as_str()?, number.unwrap_or(0)))
 }
 
+/// The key of a line of `instructions.jsonl`.
 pub(super) fn instruction_key(value: &Value) -> Option<String> {
     Some(line_key(value.get("path")?.get("id")?.as_str()?, &name_of(value)?))
 }
 
 /// The item of a key, and the name of its text if it has one.
 pub(super) fn key_parts(key: &str) -> (&str, Option<&str>) {
-    key.split_once('\u{1f}').map_or((key, None), |(item, style)| (item, Some(style)))
+    key.split_once('\u{1f}').map_or((key, None), |(item, text)| (item, Some(text)))
 }
 
 impl FailedItem {
@@ -121,12 +124,14 @@ impl FailedItem {
 }
 
 impl WalkRecord {
+    /// The key of a line of `walks.jsonl`: the id of its path, which is that of the item.
     pub(super) fn key_of(value: &Value) -> Option<String> {
         Some(value.get("path")?.get("id")?.as_str()?.to_owned())
     }
 }
 
 impl RejectedText {
+    /// The key of a line of `rejected.jsonl`.
     pub(super) fn key_of(value: &Value) -> Option<String> {
         Some(line_key(value.get("item")?.as_str()?, &name_of(value)?))
     }

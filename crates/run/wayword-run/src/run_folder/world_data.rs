@@ -14,12 +14,13 @@ use wayword_core::{Platform, PlatformError, SceneId};
 
 /// A file up to this size, bytes, is hashed whole; of a larger one only its beginning, middle and end are hashed.
 const MOST_WHOLE: u64 = 8 << 20;
-/// Size of each of these samples, bytes.
+/// Size of each of these three samples, bytes.
 const SAMPLE_BYTES: u64 = 64 << 10;
-/// How much of the beginning of a picture is hashed, bytes, because a scene may have thousands. Its length is hashed
-/// too.
+/// How much of the beginning of a picture is hashed, bytes, because a scene may have thousands of pictures. The length
+/// of the file is hashed too.
 const PICTURE_HEAD_BYTES: u64 = 4 << 10;
 
+/// The hint with a file that cannot be read.
 const UNREADABLE_HINT: &str = "make sure that you may read it, or move it away";
 
 /// The hashes of a run's scenes: those in its folder (`data.json`), and those of the files as they are now.
@@ -31,6 +32,7 @@ pub struct WorldData {
     state: Mutex<SceneHashes>,
 }
 
+/// The hashes of scenes, by the names of the scenes.
 #[derive(Debug, Default)]
 struct SceneHashes {
     /// The hashes in the folder.
@@ -129,13 +131,14 @@ pub(crate) fn scene_hashes<'a>(
 }
 
 impl SceneHashes {
+    /// One hash for the names and contents of all files of a scene.
     fn hash_files(&mut self, files: &[PathBuf]) -> Result<String, PlatformError> {
         let mut hash = Sha256::new();
         for file in files {
             if !self.files.contains_key(file) {
-                let one =
+                let file_hash =
                     hash_of(file).map_err(|error| PlatformError::for_unread_file(file, &error, UNREADABLE_HINT))?;
-                self.files.insert(file.clone(), one);
+                self.files.insert(file.clone(), file_hash);
             }
             hash.update(file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default());
             hash.update(&self.files[file]);
@@ -154,7 +157,7 @@ fn hash_of(path: &Path) -> io::Result<String> {
     let length = file.metadata()?.len();
     let mut hash = Sha256::new();
     hash.update(length.to_le_bytes());
-    let is_picture = path.extension().is_some_and(|ending| ["jpg", "jpeg", "png"].iter().any(|one| ending == *one));
+    let is_picture = path.extension().is_some_and(|ending| ["jpg", "jpeg", "png"].iter().any(|known| ending == *known));
     if is_picture {
         io::copy(&mut file.take(PICTURE_HEAD_BYTES), &mut hash)?;
     } else if length <= MOST_WHOLE {

@@ -7,7 +7,8 @@ use serde::Deserialize;
 use std::path::PathBuf;
 use wayword_synthesis::walk::FrameSelection;
 
-/// The groups with keys at the top of the settings file, by their fields in [`AskedSettings`].
+/// Declares the groups with keys at the top of the settings file, by their fields in [`AskedSettings`]: a struct for
+/// each group, and the struct `SettingsFile` with the keys of all of them, from which the settings file is read.
 macro_rules! top_groups {
     ($($name:ident: $(#[$of:meta])* pub struct $Group:ident { $($(#[$how:meta])* pub $key:ident: Option<$Type:ty>,)* })*) => {
         $(group! { $(#[$of])* pub struct $Group { $($(#[$how])* pub $key: Option<$Type>,)* } })*

@@ -1,6 +1,6 @@
 //! The macro that declares a group of settings once, for flags (clap) and for keys of the settings file (serde).
 
-/// A group of settings. Each is optional, so that a group from flags can be completed by one from a file.
+/// Declares a struct of settings. Each is optional, so that a group from flags can be completed by one from a file.
 macro_rules! group {
     ($(#[$of:meta])* pub struct $Group:ident { $($(#[$how:meta])* pub $key:ident: Option<$Type:ty>,)* }) => {
         $(#[$of])*

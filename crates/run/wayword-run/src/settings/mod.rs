@@ -174,11 +174,11 @@ pub enum TargetMode {
 const DEFAULT_PATHS: usize = 10;
 /// Default of how often a text that failed is written again.
 const DEFAULT_REPAIRS: u32 = 8;
-/// The same if a model writes, because each repair costs a call.
+/// Default of the repairs if a model writes: fewer, because each repair costs a call.
 const REPAIRS_OF_MODELS: u32 = 3;
 /// Default of how many texts are written, of which one is kept. If a model writes, it is 1, because each costs a call.
 const DEFAULT_CANDIDATES: u32 = 4;
-/// Largest `--candidates`.
+/// Largest `--candidates`, texts. A larger number is refused, as for the limits below.
 const MOST_CANDIDATES: u32 = 32;
 /// Largest `--repairs`.
 const MOST_REPAIRS: u32 = 100;
@@ -203,7 +203,7 @@ pub struct RunJob {
 }
 
 impl AskedSettings {
-    /// Resolves it, together with how models are reached.
+    /// Resolves these settings, together with how models are reached.
     ///
     /// # Errors
     /// When a range cannot be read, a number is out of range, or two settings exclude each other.
@@ -354,7 +354,7 @@ pub fn refuse_unnameable(flag: &str, path: Option<&Path>) -> Result<(), CommandE
     }
 }
 
-/// The lengths that random paths may have.
+/// The lengths that random paths may have, from `--hops` and `--metres`.
 fn resolve_request(hops: Option<&str>, metres: Option<&str>) -> Result<PathRequest, CommandError> {
     let default = PathRequest::default();
     let length_m: RangeInclusive<f64> = metres.map_or(Ok(default.length_m), |text| parse_range("--metres", text))?;

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 /// Default for the longer side of the pictures that models are sent, pixels.
 const PICTURE_PX: u32 = 512;
-/// Largest `--picture-px`.
+/// Largest `--picture-px`, pixels. A larger number is refused.
 const MOST_PICTURE_PX: u32 = 4096;
 
 group! {
@@ -150,7 +150,8 @@ impl AskedRoles {
     /// When a name is neither built in nor provider/model.
     pub fn resolve(self) -> Result<RunRoles, CommandError> {
         let default = RunRoles::default();
-        let text = |role: Option<String>, flag, none| match (role, &self.llm) {
+        // Roles that work with texts: `--llm` is the default of all three.
+        let text_role = |role: Option<String>, flag, none| match (role, &self.llm) {
             (Some(name), _) => parse_player(flag, &name, RolePlayer::Rules),
             (None, Some(name)) => parse_player("--llm", name, RolePlayer::Rules),
             (None, None) => Ok(none),
@@ -162,7 +163,7 @@ impl AskedRoles {
                 "most models look at 300 to 1600 pixels",
             ));
         }
-        let write = text(self.write, "--write", default.write)?;
+        let write = text_role(self.write, "--write", default.write)?;
         let write_sees = self.write_sees.unwrap_or(false);
         if write_sees && write.remote_model().is_none() {
             return Err(CommandError::usage(
@@ -171,9 +172,9 @@ impl AskedRoles {
             ));
         }
         Ok(RunRoles {
-            ask: text(self.ask, "--ask", default.ask)?,
+            ask: text_role(self.ask, "--ask", default.ask)?,
             see: self.see.map_or(Ok(default.see), |name| parse_player("--see", &name, RolePlayer::Labels))?,
-            summarise: text(self.summarise, "--summarise", default.summarise)?,
+            summarise: text_role(self.summarise, "--summarise", default.summarise)?,
             write,
             detector: self.detector.map(check_detector_name).transpose()?,
             write_sees,

@@ -122,7 +122,7 @@ impl Service {
     }
 }
 
-/// Largest `--concurrency`.
+/// Largest `--concurrency`, requests at the same time. A larger number is refused.
 const MOST_CONCURRENCY: usize = 512;
 
 #[cfg(test)]

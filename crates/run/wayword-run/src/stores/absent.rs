@@ -55,7 +55,7 @@ impl CloudRun {
         match self.0 {}
     }
 
-    /// Any board would do.
+    /// The type of the board does not matter, because this is never called.
     pub(super) fn sending_board(&self, _: &dyn ChunkBoard) -> ShardBoard<'static> {
         match self.0 {}
     }

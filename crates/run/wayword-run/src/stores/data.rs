@@ -13,7 +13,7 @@ use std::{
 use wayword_core::hex_text;
 use wayword_queue::{QueueError, cloud::CloudBucket};
 
-/// Largest data that is fetched, bytes.
+/// Largest data of one address that is fetched, bytes (4 TiB). More is an error.
 const MOST_BYTES: u64 = 1 << 42;
 /// Time between two messages about the progress.
 const PROGRESS_INTERVAL: Duration = Duration::from_secs(10);
@@ -22,11 +22,11 @@ const PROGRESS_INTERVAL: Duration = Duration::from_secs(10);
 /// process.
 pub(super) fn fetch_data(address: &str) -> Result<PathBuf, CommandError> {
     static FETCHED_FOLDERS: Mutex<BTreeMap<String, PathBuf>> = Mutex::new(BTreeMap::new());
-    let mut known = FETCHED_FOLDERS.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(folder) = known.get(address) {
+    let mut fetched_folders = FETCHED_FOLDERS.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(folder) = fetched_folders.get(address) {
         return Ok(folder.clone());
     }
-    let nothing = || {
+    let no_data_error = || {
         CommandError::usage(
             format!("{address}: there is no data there"),
             "give the prefix under which the files of the data's folder lie",
@@ -34,22 +34,22 @@ pub(super) fn fetch_data(address: &str) -> Result<PathBuf, CommandError> {
     };
     // Opening a bucket that is a folder would make the folder.
     if address.strip_prefix("file://").is_some_and(|folder| !Path::new(folder).exists()) {
-        return Err(nothing());
+        return Err(no_data_error());
     }
     let folder = folder_of(address)?;
     let bucket = CloudBucket::open(address).map_err(QueueError::from)?;
-    let told = Cell::new(None::<Instant>);
+    let last_message = Cell::new(None::<Instant>);
     let progress = |done: u64, all: u64| {
-        if done < all && told.get().is_none_or(|at| at.elapsed() > PROGRESS_INTERVAL) {
-            told.set(Some(Instant::now()));
+        if done < all && last_message.get().is_none_or(|at| at.elapsed() > PROGRESS_INTERVAL) {
+            last_message.set(Some(Instant::now()));
             output::pass_on(&format!("fetching {address}: {} of {} MB", done >> 20, all >> 20));
         }
     };
-    let got = bucket.fetch_folder("", &folder, MOST_BYTES, &progress).map_err(QueueError::from)?;
-    if got.files + got.kept == 0 {
-        return Err(nothing());
+    let fetched = bucket.fetch_folder("", &folder, MOST_BYTES, &progress).map_err(QueueError::from)?;
+    if fetched.files + fetched.kept == 0 {
+        return Err(no_data_error());
     }
-    known.insert(address.to_owned(), folder.clone());
+    fetched_folders.insert(address.to_owned(), folder.clone());
     Ok(folder)
 }
 

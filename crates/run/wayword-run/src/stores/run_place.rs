@@ -14,6 +14,7 @@ pub struct RunPlace {
     named: PathBuf,
     /// The folder in which this process works. For a run in an object store this is a folder of this process alone.
     folder: PathBuf,
+    /// The run in its object store; `None` for a run in a folder.
     stored: Option<CloudRun>,
 }
 
@@ -79,6 +80,7 @@ impl RunPlace {
         self.stored.is_some()
     }
 
+    /// Does something with the object store; nothing for a run in a folder.
     fn with_store(&self, work: impl FnOnce(&CloudRun) -> Result<(), QueueError>) -> Result<(), CommandError> {
         Ok(self.stored.as_ref().map_or(Ok(()), work)?)
     }

@@ -23,9 +23,9 @@ use tracing_subscriber::{Layer, layer::Context, registry::LookupSpan};
 /// Writes spans as lines of JSON.
 pub(super) struct SpanLines {
     file: LineFile,
-    /// The first span's id.
+    /// The id of the first span. Later spans count up from it.
     first: u64,
-    /// Spans so far.
+    /// Number of spans that have begun.
     spans: AtomicU64,
 }
 
@@ -41,7 +41,7 @@ struct SpanLine<'a> {
     fields: &'a Map<String, Value>,
 }
 
-/// A span that has not ended.
+/// A span that has not ended, as `tracing` keeps it for this layer.
 struct OpenSpan {
     id: u64,
     parent: Option<u64>,

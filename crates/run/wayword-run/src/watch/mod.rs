@@ -28,9 +28,11 @@ use wayword_ledger::SPAN_TARGET;
 
 /// Watches one command.
 pub(crate) struct CommandWatch {
+    /// The name of this worker.
     worker: String,
     /// Where spans go; `None` if no spans are wanted.
     to: Option<Dispatch>,
+    /// The connection to a collector, if the environment names one.
     telemetry: Option<SpanTelemetry>,
 }
 
@@ -49,9 +51,9 @@ impl CommandWatch {
         let telemetry = SpanTelemetry::start(&worker, output);
         let is_asked = lines.is_some() || telemetry.is_some();
         let to = is_asked.then(|| {
-            let ours = Targets::new().with_target(SPAN_TARGET, LevelFilter::INFO);
+            let own_spans = Targets::new().with_target(SPAN_TARGET, LevelFilter::INFO);
             let sent = telemetry.as_ref().map(SpanTelemetry::tracing_layer);
-            Dispatch::new(Registry::default().with(ours).with(lines).with(sent))
+            Dispatch::new(Registry::default().with(own_spans).with(lines).with(sent))
         });
         Ok(Self { worker, to, telemetry })
     }

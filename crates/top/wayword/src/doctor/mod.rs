@@ -27,8 +27,11 @@ use wayword_run::{
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 enum DoctorGrade {
+    /// It works.
     Ok,
+    /// It works, but something is missing or unusual.
     Warning,
+    /// It does not work. The exit code is then 1.
     Problem,
 }
 
@@ -36,9 +39,11 @@ enum DoctorGrade {
 #[derive(Debug, Serialize)]
 struct DoctorFinding {
     state: DoctorGrade,
+    /// The thing that was checked: a model, a scene, the platform.
     about: String,
+    /// The result in words.
     told: String,
-    /// How to fix it.
+    /// How to fix the problem.
     #[serde(skip_serializing_if = "Option::is_none")]
     hint: Option<String>,
 }
@@ -53,6 +58,7 @@ struct DoctorReport {
     scenes: Vec<SceneCondition>,
 }
 
+/// Runs `wayword doctor`. A failed check becomes a finding, and the other checks go on.
 pub(crate) fn run_doctor(args: &DoctorArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     let mut job = args.to_asked().or_file(settings_file::read_settings(args.config.as_deref())?).into_job()?;
     let mut findings = Vec::new();
@@ -116,14 +122,14 @@ fn world_finding(settings: &RunSettings) -> DoctorFinding {
     let about = format!("platform {}", settings.platform);
     let look = || -> Result<ModelExamination, CommandError> {
         let platform = platforms::open_platform(settings)?;
-        let one = RunSettings { limit: Some(1), ..settings.clone() };
-        let items = run_items(&one, platform.as_ref())?;
+        let first_only = RunSettings { limit: Some(1), ..settings.clone() };
+        let items = run_items(&first_only, platform.as_ref())?;
         let path = items[0].find_path(settings, platform.as_ref())?;
         let view =
             platform.look_from(&path.scene, &path.frames[0], ViewGaze::quarter_view(path.frames[0].pose.heading))?;
         let picture = view.image.is_some();
-        let one = Path { frames: vec![path.frames[0].clone()], ..path };
-        let labels = Evidence::from_labels(&one, &[vec![view]]).is_some();
+        let first_stop = Path { frames: vec![path.frames[0].clone()], ..path };
+        let labels = Evidence::from_labels(&first_stop, &[vec![view]]).is_some();
         Ok(ModelExamination { scenes: platform.list_scenes()?.len(), picture, labels })
     };
     match look() {
@@ -132,7 +138,7 @@ fn world_finding(settings: &RunSettings) -> DoctorFinding {
     }
 }
 
-/// The number of scenes, and whether the first view has a picture and labels.
+/// The result of trying out a platform: the number of scenes, and whether the first view has a picture and labels.
 struct ModelExamination {
     scenes: usize,
     picture: bool,

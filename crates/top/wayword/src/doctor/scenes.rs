@@ -45,20 +45,21 @@ pub(super) fn scene_findings(examined: &Result<Vec<SceneCondition>, CommandError
     findings
 }
 
+/// A finding for a scene, and one for each thing that it lacks.
 fn of_scene(found: &SceneCondition) -> Vec<DoctorFinding> {
     let about = format!("scene {}", found.scene);
-    let of = |state, lack: &SceneLack| DoctorFinding {
+    let lack_finding = |state, lack: &SceneLack| DoctorFinding {
         state,
         about: about.clone(),
         told: lack.what.clone(),
         hint: (!lack.hint.is_empty()).then(|| lack.hint.clone()),
     };
     if let Some(why) = &found.unusable {
-        return vec![of(DoctorGrade::Problem, why)];
+        return vec![lack_finding(DoctorGrade::Problem, why)];
     }
     let has =
         DoctorFinding { state: DoctorGrade::Ok, about: about.clone(), told: describe_condition(found), hint: None };
-    let lacks = found.lacks.iter().map(|lack| of(DoctorGrade::Warning, lack));
+    let lacks = found.lacks.iter().map(|lack| lack_finding(DoctorGrade::Warning, lack));
     std::iter::once(has).chain(lacks).collect()
 }
 

@@ -20,17 +20,17 @@ use wayword_run::{
     settings::{AskedSettings, Draw, Walks, Writing},
 };
 
-/// The split of all episodes.
+/// The name of the split that all episodes are in.
 const EPISODE_SPLIT: &str = "train";
-/// Folder of the episodes.
+/// The folder of the episodes, within that of the set.
 const EPISODES_FOLDER: &str = "episodes";
-/// The run that makes the instructions.
+/// The folder of the run that writes the instructions, within that of the set.
 const RUN_FOLDER: &str = "run";
 /// How far a step may end off the walk, metres.
 const TOLERANCE_M: f64 = 0.25;
-/// Size of the pictures that agents see.
+/// Width and height of the pictures that agents see, pixels.
 const PICTURE_PX: [u32; 2] = [224, 224];
-/// habitat-lab's configuration.
+/// The file with habitat-lab's configuration, within the folder of the set.
 const CONFIG_FILE: &str = "vln.yaml";
 
 /// Instructions for random paths through the houses, by labels and rules: a run in the folder `run`. A summary is printed if

@@ -24,7 +24,7 @@ use wayword_run::{
 /// The file that lists the scenes, which Habitat takes as its scene dataset.
 const SCENE_SET: &str = "houses.scene_dataset_config.json";
 
-/// Most houses of one set.
+/// Most houses of one set. A larger number is refused.
 const MOST_HOUSES: u64 = 100_000;
 
 /// The files that were written.
@@ -32,6 +32,7 @@ const MOST_HOUSES: u64 = 100_000;
 struct WrittenHouses {
     /// The files of each house.
     houses: Vec<HouseFiles>,
+    /// The file that lists the scenes.
     scene_set: PathBuf,
     /// VLN-CE's files and habitat-lab's configuration, if there are episodes.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -51,6 +52,8 @@ struct WrittenEpisodes {
     failed: Vec<String>,
 }
 
+/// Runs `wayword house`: makes the instructions (or takes those of a run), then the houses, the list of scenes, and the
+/// episodes.
 pub(crate) fn run_house(args: &HouseArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     let given = args.run.as_deref().map(|run| read_records(run, args.style.as_deref())).transpose()?;
     let seeds = match &given {
@@ -60,7 +63,7 @@ pub(crate) fn run_house(args: &HouseArgs, output: &CommandOutput) -> Result<Exit
     fs::create_dir_all(&args.out).map_err(CommandError::io(&args.out, "make the folder"))?;
     let _held = lock_folder(&args.out)?;
     // Texts are made before houses, so that a run that cannot continue ends the command early.
-    let (told, exit) = match given {
+    let (records, exit) = match given {
         Some(records) => (Some(records), Exit::Done),
         None => make_records(args, &seeds, output)?,
     };
@@ -79,7 +82,7 @@ pub(crate) fn run_house(args: &HouseArgs, output: &CommandOutput) -> Result<Exit
     let folders = format!("{}*", scene_name(0).trim_end_matches('0'));
     let set = serde_json::json!({ "stages": { "paths": { ".json": [folders] } } });
     fs::write(&scene_set, format!("{set:#}\n")).map_err(CommandError::io(&scene_set, "write"))?;
-    let episodes = told.map(|records| write_records(&args.out, &records, output)).transpose()?.flatten();
+    let episodes = records.map(|records| write_records(&args.out, &records, output)).transpose()?.flatten();
     let has_loss = episodes.as_ref().is_some_and(|episodes| !episodes.failed.is_empty());
     let written = WrittenHouses { houses, scene_set, episodes };
     output.print_result(&written, summary_text(&written, &args.out));

@@ -41,8 +41,8 @@ fn launch_slurm(args: &LaunchSlurm, output: &CommandOutput) -> Result<Exit, Comm
     if args.submit {
         // Slurm starts no job if it cannot write its log.
         fs::create_dir_all(&args.logs).map_err(CommandError::io(&args.logs, "make the folder of the logs"))?;
-        let told = submit_job(&text)?;
-        output.print_result(&json!({ "submitted": told }), &told);
+        let sbatch_output = submit_job(&text)?;
+        output.print_result(&json!({ "submitted": sbatch_output }), &sbatch_output);
     } else {
         output.print_result(&json!({ "script": text }), &text);
     }

@@ -53,12 +53,12 @@ pub(crate) fn run_ledger(args: &Args, output: &CommandOutput) -> Result<Exit, Co
             };
             let rows = if *changed { ledger.prune_changed()? } else { ledger.prune_calls(&filter)? };
             let done = LedgerOutcome { ledger: path.display().to_string(), rows };
-            let then = if rows == 0 {
+            let consequence = if rows == 0 {
                 "the ledger holds none that match"
             } else {
                 "a run that needs them again pays for them again"
             };
-            output.print_result(&done, format_args!("{} dropped: {then}", count_phrase(rows, "call")));
+            output.print_result(&done, format_args!("{} dropped: {consequence}", count_phrase(rows, "call")));
         }
     }
     Ok(Exit::Done)
@@ -71,12 +71,13 @@ struct LedgerOutcome {
     rows: usize,
 }
 
+/// Calls of the ledger, as a list.
 #[derive(Serialize)]
 struct ShownCalls {
     rows: Vec<LedgerEntry>,
 }
 
-/// Characters of an answer that a line shows.
+/// Characters of an answer that a line shows; the rest is cut off.
 const SHOWN_CHARS: usize = 70;
 
 impl fmt::Display for ShownCalls {
@@ -87,6 +88,7 @@ impl fmt::Display for ShownCalls {
         for row in &self.rows {
             let answer: String = row.answer.text.split_whitespace().collect::<Vec<_>>().join(" ");
             let answer: String = answer.chars().filter(|c| !c.is_control()).take(SHOWN_CHARS).collect();
+            // The first 12 digits of the hash are enough to find a call.
             let key: String = row.key.to_string().chars().take(12).collect();
             writeln!(
                 f,
@@ -98,6 +100,7 @@ impl fmt::Display for ShownCalls {
     }
 }
 
+/// The cost of the calls, by model, run or day.
 #[derive(Serialize)]
 struct LedgerCosts {
     lines: Vec<CostLine>,

@@ -12,7 +12,7 @@ use wayword_run::{
     output::CommandOutput,
 };
 
-/// Digits of a commit that are shown.
+/// Digits of a commit's hash that are shown.
 const SHOWN_DIGITS: usize = 12;
 
 pub(crate) fn run_models(args: &ModelsArgs, output: &CommandOutput) -> Result<Exit, CommandError> {

@@ -24,8 +24,8 @@ pub(super) fn run_database(args: &RunsDatabase, output: &CommandOutput) -> Resul
         let grants: String = tables.iter().map(|tables| tables.grants_sql(role)).collect();
         pool.with_connection("give the role its rights", |connection| connection.client().batch_execute(&grants))?;
     }
-    let told = serde_json::json!({ "database": pool.database().shown_name(), "role": args.role });
-    output.print_result(&told, format_args!("{}: the tables are there", pool.database().shown_name()));
+    let result = serde_json::json!({ "database": pool.database().shown_name(), "role": args.role });
+    output.print_result(&result, format_args!("{}: the tables are there", pool.database().shown_name()));
     Ok(Exit::Done)
 }
 

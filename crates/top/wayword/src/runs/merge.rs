@@ -21,6 +21,7 @@ use wayword_run::{
 /// The files of JSON lines, which are concatenated.
 const LINE_FILES: [&str; 4] = [file::WALKS, file::INSTRUCTIONS, file::REJECTED, file::ERRORS];
 
+/// How much was put together.
 #[derive(Serialize)]
 struct MergeSummary {
     run: String,
@@ -32,6 +33,8 @@ struct MergeSummary {
     failed: usize,
 }
 
+/// Runs `wayword runs merge`. It only reads the chunks and replaces whole files, so it can be repeated when more chunks
+/// are finished.
 pub(super) fn run_merge(args: &RunsMerge, output: &CommandOutput) -> Result<Exit, CommandError> {
     let folder = args.to.as_ref().unwrap_or(&args.run);
     match &args.to {
@@ -70,7 +73,7 @@ pub(super) fn run_merge(args: &RunsMerge, output: &CommandOutput) -> Result<Exit
     if !is_begun(folder) {
         write_whole(&folder.join(file::CONFIG), &plan.config)?;
     }
-    let sum = |of: fn(&ChunkRecord) -> usize| done.iter().map(of).sum();
+    let sum = |count: fn(&ChunkRecord) -> usize| done.iter().map(count).sum();
     let merged = MergeSummary {
         run: folder.display().to_string(),
         chunks: done.len(),
@@ -83,7 +86,7 @@ pub(super) fn run_merge(args: &RunsMerge, output: &CommandOutput) -> Result<Exit
     Ok(if missing > 0 || merged.failed > 0 { Exit::WithLoss } else { Exit::Done })
 }
 
-/// Concatenates one file of all chunks.
+/// Concatenates the files of one name of all chunks.
 fn merge_lines(folder: &Path, chunks: &[PathBuf], name: &str) -> Result<(), CommandError> {
     let (path, unfinished) = (folder.join(name), folder.join(format!("{name}.new")));
     let failed = || CommandError::io(&unfinished, "write");
@@ -100,7 +103,8 @@ fn merge_lines(folder: &Path, chunks: &[PathBuf], name: &str) -> Result<(), Comm
     fs::rename(&unfinished, &path).map_err(CommandError::io(&path, "write"))
 }
 
-/// The hashes of the scenes of all chunks. A platform without files has no hashes.
+/// Merges the hashes of scenes of all chunks (`data.json`), and refuses different hashes of one scene. A platform
+/// without files has none.
 fn merge_data(folder: &Path, chunks: &[PathBuf]) -> Result<(), CommandError> {
     let mut all: BTreeMap<String, String> = BTreeMap::new();
     for chunk in chunks {
@@ -109,10 +113,10 @@ fn merge_data(folder: &Path, chunks: &[PathBuf]) -> Result<(), CommandError> {
             continue;
         }
         let text = wayword_run::text_file::read_text_file(&path, "read the hashes of the scenes")?;
-        let some: BTreeMap<String, String> = serde_json::from_str(&text).map_err(|error| {
+        let chunk_hashes: BTreeMap<String, String> = serde_json::from_str(&text).map_err(|error| {
             CommandError::usage(format!("{}: {error}", path.display()), "it was changed by hand: retry its chunk")
         })?;
-        for (scene, hash) in some {
+        for (scene, hash) in chunk_hashes {
             if all.insert(scene.clone(), hash.clone()).is_some_and(|other| other != hash) {
                 return Err(CommandError::ChangedScene { scene, record: path });
             }
@@ -124,8 +128,9 @@ fn merge_data(folder: &Path, chunks: &[PathBuf]) -> Result<(), CommandError> {
     write_whole(&folder.join(file::DATA), &serde_json::to_string_pretty(&all).unwrap_or_default())
 }
 
-/// The pictures of all chunks, as further names of the same files where the disk allows that.
-fn merge_pictures(folder: &Path, chunks: &[PathBuf], is_done: impl Fn()) -> Result<(), CommandError> {
+/// Puts the pictures of all chunks into one folder: as hard links where the disk allows that, else as copies. Calls
+/// `chunk_is_done` after each chunk.
+fn merge_pictures(folder: &Path, chunks: &[PathBuf], chunk_is_done: impl Fn()) -> Result<(), CommandError> {
     let frames = folder.join(file::FRAMES);
     for chunk in chunks {
         let from = chunk.join(file::FRAMES);
@@ -144,7 +149,7 @@ fn merge_pictures(folder: &Path, chunks: &[PathBuf], is_done: impl Fn()) -> Resu
                 Err(_) => fs::copy(entry.path(), &to).map(drop).map_err(CommandError::io(&to, "copy a picture to"))?,
             }
         }
-        is_done();
+        chunk_is_done();
     }
     Ok(())
 }

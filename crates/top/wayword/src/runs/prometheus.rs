@@ -7,22 +7,28 @@ use std::fmt::Write;
 /// A metric: name, type, help, and its values with their labels.
 type PrometheusMetric<'a> = (&'a str, &'a str, &'a str, Vec<(Vec<(&'a str, String)>, f64)>);
 
+/// Writes the status as metrics, each with the run as a label.
 pub(super) fn prometheus_text(status: &RunStatus) -> String {
     let plain = |value: f64| vec![(Vec::new(), value)];
     let states =
         [("done", status.done), ("running", status.running), ("open", status.open), ("dead", status.dead.len())];
     let texts = [("written", status.written), ("rejected", status.rejected)];
-    let by = |label: &'static str, of: &str, value: usize| (vec![(label, of.to_owned())], value as f64);
+    let labelled = |label: &'static str, name: &str, value: usize| (vec![(label, name.to_owned())], value as f64);
     let metrics: [PrometheusMetric<'_>; 9] = [
         ("wayword_items", "gauge", "Items of the run.", plain(status.items as f64)),
         ("wayword_items_done", "gauge", "Items of finished chunks.", plain(status.items_done as f64)),
-        ("wayword_chunks", "gauge", "Chunks by state.", states.map(|(state, n)| by("state", state, n)).into()),
-        ("wayword_texts", "gauge", "Texts of finished chunks.", texts.map(|(fate, n)| by("fate", fate, n)).into()),
+        ("wayword_chunks", "gauge", "Chunks by state.", states.map(|(state, n)| labelled("state", state, n)).into()),
+        (
+            "wayword_texts",
+            "gauge",
+            "Texts of finished chunks.",
+            texts.map(|(fate, n)| labelled("fate", fate, n)).into(),
+        ),
         (
             "wayword_items_failed",
             "gauge",
             "Items that failed, by reason.",
-            status.failed.iter().map(|(reason, n)| by("reason", reason, *n)).collect(),
+            status.failed.iter().map(|(reason, n)| labelled("reason", reason, *n)).collect(),
         ),
         (
             "wayword_chunk_retries",
@@ -45,7 +51,7 @@ pub(super) fn prometheus_text(status: &RunStatus) -> String {
         for (labels, value) in values {
             let run = std::iter::once(("run", status.run.clone()));
             let labels: Vec<String> =
-                run.chain(labels).map(|(key, of)| format!("{key}=\"{}\"", escape_label(&of))).collect();
+                run.chain(labels).map(|(label, name)| format!("{label}=\"{}\"", escape_label(&name))).collect();
             let _ = writeln!(text, "{name}{{{}}} {value}", labels.join(","));
         }
     }

@@ -11,12 +11,14 @@ use wayword_run::{
     stores::RunPlace,
 };
 
+/// The chunks that were opened again.
 #[derive(Serialize)]
 struct RetrySummary {
     run: String,
     chunks: Vec<usize>,
 }
 
+/// Runs `wayword runs retry`, on the files of a shared folder or on the database of a queue.
 pub(super) fn run_retry(args: &RunsRetry, output: &CommandOutput) -> Result<Exit, CommandError> {
     let place = RunPlace::open_named(&args.run)?;
     let (folder, plan) = (place.folder(), ChunkPlan::for_folder(place.folder())?);
@@ -40,12 +42,12 @@ pub(super) fn run_retry(args: &RunsRetry, output: &CommandOutput) -> Result<Exit
         #[cfg(not(feature = "queue"))]
         Some(never) => match never {},
     };
-    let told = match chunks.len() {
+    let text = match chunks.len() {
         0 => format!("no chunk has a failure with the words {:?}", args.reason),
         opened => {
             format!("{} opened again: start workers with the same command as before", count_phrase(opened, "chunk"))
         }
     };
-    output.print_result(&RetrySummary { run: args.run.display().to_string(), chunks }, told);
+    output.print_result(&RetrySummary { run: args.run.display().to_string(), chunks }, text);
     Ok(Exit::Done)
 }

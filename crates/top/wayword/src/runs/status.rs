@@ -20,9 +20,9 @@ use wayword_run::{
 
 /// How often the status is shown again.
 const STATUS_INTERVAL: Duration = Duration::from_secs(5);
-/// The pace is measured over this many seconds before now.
+/// The pace is measured over the chunks that were finished within this many seconds before now.
 const WINDOW_S: u64 = 600;
-/// How many slow chunks and reasons are shown.
+/// Most slow chunks, and most reasons of each kind, that are shown.
 const MAX_SHOWN_ENTRIES: usize = 5;
 
 /// The queue of a build without one.
@@ -48,7 +48,7 @@ pub(super) fn queue_of(
     Ok(Some(wayword_queue::ChunkQueue::open(database, place.folder(), plan)?))
 }
 
-/// As above, in a build without databases: a run with a queue is an error.
+/// As `queue_of` with databases, in a build without them: a run with a queue is an error.
 #[cfg(not(feature = "queue"))]
 pub(super) fn queue_of(place: &RunPlace, _: &ChunkPlan, _: &RunsQueue) -> Result<Option<NoQueue>, CommandError> {
     match ChunkHandout::from_folder(place.folder())? {
@@ -130,10 +130,10 @@ impl RunStatus {
         let mut status = Self { items: plan.items.len(), chunks: plan.chunk_count(), ..Self::default() };
         let mut done = Vec::new();
         for chunk in 0..plan.chunk_count() {
-            if let Some(one) = done_of(folder, chunk)? {
+            if let Some(record) = done_of(folder, chunk)? {
                 status.items_done += plan.chunk_range(chunk).len();
-                status.count_done(&one);
-                done.push(one);
+                status.count_done(&record);
+                done.push(record);
             } else if let Some(reason) = dead_of(folder, chunk)? {
                 status.dead.insert(chunk, reason);
             }
@@ -145,7 +145,7 @@ impl RunStatus {
         status.open = status.chunks - status.done - status.running - status.dead.len();
         status.fill_pace(plan, &done);
         done.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
-        status.slowest = done.iter().take(MAX_SHOWN_ENTRIES).map(|one| (one.chunk, one.seconds)).collect();
+        status.slowest = done.iter().take(MAX_SHOWN_ENTRIES).map(|record| (record.chunk, record.seconds)).collect();
         Ok(status)
     }
 
@@ -158,27 +158,27 @@ impl RunStatus {
         }
     }
 
-    /// Items a minute over the last ten minutes, and how long the rest takes at that pace.
+    /// Fills in the items a minute over the last ten minutes, and how long the rest takes at that pace.
     fn fill_pace(&mut self, plan: &ChunkPlan, done: &[ChunkRecord]) {
         let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-        let recent: Vec<&ChunkRecord> = done.iter().filter(|one| one.at_unix_s + WINDOW_S >= now).collect();
-        let begun = |one: &&ChunkRecord| one.at_unix_s.saturating_sub(one.seconds as u64);
+        let recent: Vec<&ChunkRecord> = done.iter().filter(|record| record.at_unix_s + WINDOW_S >= now).collect();
+        let begun = |record: &&ChunkRecord| record.at_unix_s.saturating_sub(record.seconds as u64);
         let Some(first) = recent.iter().map(begun).min() else { return };
         let minutes = now.saturating_sub(first.max(now.saturating_sub(WINDOW_S))).max(1) as f64 / 60.0;
-        let items: usize = recent.iter().map(|one| plan.chunk_range(one.chunk).len()).sum();
+        let items: usize = recent.iter().map(|record| plan.chunk_range(record.chunk).len()).sum();
         self.items_per_minute = items as f64 / minutes;
         let dead: usize = self.dead.keys().map(|chunk| plan.chunk_range(*chunk).len()).sum();
         let left = self.items.saturating_sub(self.items_done + dead);
         self.minutes_left = (left > 0 && self.items_per_minute > 0.0).then(|| left as f64 / self.items_per_minute);
     }
 
-    /// Adds the more exact numbers of the queue.
+    /// Replaces the counts of chunks by those of the queue's database, which are more exact, and adds its workers.
     #[cfg(feature = "queue")]
-    fn add_worker(&mut self, seen: wayword_queue::QueueStatus) {
-        (self.open, self.running, self.done) = (seen.open, seen.running, seen.done);
-        self.dead = seen.dead.into_iter().collect();
-        self.retries = seen.retries.into_iter().collect();
-        self.workers.extend(seen.workers.into_iter().map(|worker| AtWork {
+    fn add_worker(&mut self, queue: wayword_queue::QueueStatus) {
+        (self.open, self.running, self.done) = (queue.open, queue.running, queue.done);
+        self.dead = queue.dead.into_iter().collect();
+        self.retries = queue.retries.into_iter().collect();
+        self.workers.extend(queue.workers.into_iter().map(|worker| AtWork {
             has: worker.chunk.map_or_else(
                 || "no chunk".to_owned(),
                 |chunk| format!("chunk {chunk} for {:.0} s", worker.chunk_s.unwrap_or_default()),

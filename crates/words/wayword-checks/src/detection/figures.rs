@@ -16,12 +16,12 @@ pub struct DetectorFigures {
     pub platforms: Vec<String>,
     /// The score from which a box counts as a find.
     pub found_from: f32,
-    /// Of all names.
+    /// The rates of all names together.
     pub all: DetectorRates,
-    /// Of classes of things, where enough was seen of one: beds are seen from more frames than vases.
+    /// The rates of classes of things, where enough was seen of one: beds are seen from more frames than vases.
     #[serde(default)]
     pub classes: BTreeMap<String, DetectorRates>,
-    /// Of single names in normal spelling, where enough was seen.
+    /// The rates of single names in normal spelling, where enough was seen.
     #[serde(default)]
     pub names: BTreeMap<String, DetectorRates>,
 }
@@ -47,7 +47,7 @@ pub struct DetectorRates {
     pub runs: Vec<u32>,
 }
 
-/// The longest run of frames that is counted by itself.
+/// The longest run of frames that is counted by itself; a longer one counts as this long.
 const LONGEST_RUN: usize = 8;
 
 /// A single name has rates of its own from this many frames that show it, and as many that do not.
@@ -105,6 +105,7 @@ fn class_of(name: &str) -> Option<String> {
 }
 
 impl DetectorRates {
+    /// Counts the frames of one name along one path: whether the labels show it, and whether the detector found it.
     fn count_frames(&mut self, frames: &[(bool, bool)]) {
         for (shown, found) in frames {
             let (all, hits) = match shown {
@@ -138,7 +139,7 @@ impl DetectorRates {
     }
 
     /// The share of things to which the detector is blind: it misses them from every frame. Repeated misses beyond
-    /// those that independent misses would give are attributed to it.
+    /// those that independent misses would give are attributed to blindness.
     #[must_use]
     pub fn blind_share(&self) -> f64 {
         let (miss, again) = (1.0 - self.recall(), measured_share(self.missed_again, self.missed_before));
@@ -151,8 +152,8 @@ impl DetectorRates {
         blind.clamp(0.0, miss)
     }
 
-    /// The share of names of a path that are shown by a run of that many frames, for runs of 1, 2, ... at most `most`. Longer
-    /// runs count as the longest.
+    /// The shares of names of a path that are shown by a run of 1, 2, ... frames, up to `most`. Longer runs count as the
+    /// longest.
     pub(super) fn run_shares(&self, most: usize) -> Vec<f64> {
         let mut runs = vec![0.0; most];
         let all: u64 = self.runs.iter().map(|count| u64::from(*count)).sum();

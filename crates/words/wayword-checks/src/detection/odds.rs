@@ -10,7 +10,7 @@ pub enum DetectionVerdict {
     There,
     /// It is nowhere along the path.
     Absent,
-    /// Neither is sure enough.
+    /// Neither its presence nor its absence is sure enough.
     Open,
 }
 
@@ -52,13 +52,15 @@ fn if_absent(rates: &DetectorRates, found: &[bool]) -> f64 {
 /// A share of all things is never found, and the others are found independently from each frame that shows them.
 fn if_there(rates: &DetectorRates, found: &[bool]) -> f64 {
     let (alarm, blind) = (rates.alarm(), rates.blind_share());
-    let seeing = ((rates.recall() / (1.0 - blind).max(f64::EPSILON)).min(1.0), 1.0 - blind);
+    // Of the things to which the detector is not blind: the recall, and their share of all things.
+    let (recall, seen_share) = ((rates.recall() / (1.0 - blind).max(f64::EPSILON)).min(1.0), 1.0 - blind);
     // A thing in view may also be "found" by a false alarm.
-    let hit = seeing.0 + (1.0 - seeing.0) * alarm;
-    let one = |found: bool, hit: f64| if found { hit } else { 1.0 - hit };
+    let hit = recall + (1.0 - recall) * alarm;
+    let chance = |found: bool, hit: f64| if found { hit } else { 1.0 - hit };
+    // How probable the finds are if exactly the frames of this run show the thing.
     let within = |from: usize, to: usize| -> f64 {
-        let of = |at: usize| one(found[at], if (from..to).contains(&at) { hit } else { alarm });
-        (0..found.len()).map(of).product()
+        let frame_chance = |at: usize| chance(found[at], if (from..to).contains(&at) { hit } else { alarm });
+        (0..found.len()).map(frame_chance).product()
     };
     let seen: f64 = rates
         .run_shares(found.len())
@@ -69,5 +71,5 @@ fn if_there(rates: &DetectorRates, found: &[bool]) -> f64 {
             share * (0..places).map(|from| within(from, from + length)).sum::<f64>() / places as f64
         })
         .sum();
-    blind * if_absent(rates, found) + seeing.1 * seen
+    blind * if_absent(rates, found) + seen_share * seen
 }

@@ -5,17 +5,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{DVec3, ObjectId, ObjectLabel, Path, ViewpointId, ViewpointSurvey, survey::SurveyedViewpoint};
 use wayword_language::lexicon::{ThingClass, find_thing, kinds_of, room_name};
 
-/// An object belongs to the nearest viewpoint if that is no farther off, metres.
+/// An object that no viewpoint lists belongs to the nearest viewpoint up to this far away, metres, or else to none.
 const BESIDE_M: f64 = 4.0;
 
 /// The listed objects and rooms of a building: made once from a survey, for all paths of the building.
 #[derive(Debug, Clone, Default)]
 pub struct BuildingInventory {
-    /// The names of objects.
+    /// The names of its objects, each once.
     pub(super) names: Vec<InventoryName>,
     /// The viewpoints.
     pub(super) viewpoints: Vec<InventoryViewpoint>,
-    /// Their places in the list.
+    /// The index of each viewpoint in `viewpoints`.
     pub(super) places: BTreeMap<ViewpointId, usize>,
     /// The number of viewpoints that list at least one object.
     pub(super) listing: usize,
@@ -24,9 +24,13 @@ pub struct BuildingInventory {
 /// A viewpoint of the building.
 #[derive(Debug, Clone)]
 pub(super) struct InventoryViewpoint {
+    /// The position of the eye, metres, world frame.
     pub(super) position: DVec3,
+    /// The height of the floor below it, metres, where that is known.
     pub(super) floor_m: Option<f64>,
+    /// The room in which it lies, as the platform names it.
     pub(super) room: Option<String>,
+    /// The indices of the viewpoints one hop away.
     pub(super) neighbours: Vec<usize>,
 }
 
@@ -58,9 +62,9 @@ impl BuildingInventory {
         let mut spots: BTreeMap<&str, BTreeMap<&ObjectId, InventoryObject>> = BTreeMap::new();
         for (at, viewpoint) in survey.viewpoints().iter().enumerate() {
             for label in viewpoint.known.things.iter().flatten() {
-                let of_name = spots.entry(&label.name).or_default();
+                let objects = spots.entry(&label.name).or_default();
                 let new = || InventoryObject { position: object_position(viewpoint, label), beside: BTreeSet::new() };
-                of_name.entry(&label.object).or_insert_with(new).beside.insert(at);
+                objects.entry(&label.object).or_insert_with(new).beside.insert(at);
             }
         }
         for placed in survey.objects() {
@@ -97,23 +101,24 @@ impl BuildingInventory {
     pub fn beyond_end(&self, path: &Path) -> EndSurroundings {
         let last = path.frames.last().and_then(|frame| self.places.get(frame.viewpoint.as_ref()?));
         let Some(last) = last.copied() else { return EndSurroundings::default() };
-        let (mut room, mut open, mut rooms) = (BTreeSet::from([last]), vec![last], BTreeSet::new());
+        // From neighbour to neighbour, all viewpoints in the room at the end, and the rooms next to it.
+        let (mut in_room, mut open, mut rooms) = (BTreeSet::from([last]), vec![last], BTreeSet::new());
         while let Some(at) = open.pop() {
             for other in &self.viewpoints[at].neighbours {
                 let name = &self.viewpoints[*other].room;
                 if *name != self.viewpoints[last].room {
                     rooms.extend(name.clone());
-                } else if room.insert(*other) {
+                } else if in_room.insert(*other) {
                     open.push(*other);
                 }
             }
         }
-        let is_there = |name: &&InventoryName| name.spots.iter().any(|spot| !spot.beside.is_disjoint(&room));
+        let is_there = |name: &&InventoryName| name.spots.iter().any(|spot| !spot.beside.is_disjoint(&in_room));
         let things = self.names.iter().filter(is_there).filter_map(|name| name.kinds.first().cloned());
         EndSurroundings { rooms: rooms.into_iter().collect(), things: things.collect() }
     }
 
-    /// Whether the platform lists neither objects nor rooms there.
+    /// Whether the platform lists neither objects nor rooms in the building.
     #[must_use]
     pub fn is_blank(&self) -> bool {
         self.names.is_empty() && self.viewpoints.iter().all(|viewpoint| viewpoint.room.is_none())

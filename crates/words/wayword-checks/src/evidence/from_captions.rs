@@ -39,8 +39,9 @@ impl Evidence {
 /// Moves doubtful things to the guesses: a name of which witnesses were unsure at least as often as they were sure is
 /// only perhaps there, in every frame.
 fn move_doubtful_things(frames: &mut [FrameEvidence]) {
-    let count = |of: fn(&FrameEvidence) -> &Vec<SeenThing>, frames: &[FrameEvidence], name: &str| {
-        frames.iter().filter(|frame| of(frame).iter().any(|thing| normalise_name(&thing.name) == name)).count()
+    // In how many frames a list of things, the sure or the doubtful one, has a name.
+    let count = |list: fn(&FrameEvidence) -> &Vec<SeenThing>, frames: &[FrameEvidence], name: &str| {
+        frames.iter().filter(|frame| list(frame).iter().any(|thing| normalise_name(&thing.name) == name)).count()
     };
     let names: BTreeSet<String> =
         frames.iter().flat_map(|frame| &frame.perhaps.things).map(|thing| normalise_name(&thing.name)).collect();
@@ -56,6 +57,8 @@ fn move_doubtful_things(frames: &mut [FrameEvidence]) {
     }
 }
 
+/// The evidence of a frame from the captions of its views. `off_rad` gives the direction of a view from the heading,
+/// radians, positive right.
 fn of_looks(looks: &[CaptionedView], off_rad: &dyn Fn(&CaptionedView) -> f64) -> FrameEvidence {
     // A caption with a room and no object comes from a witness that looked; a caption without both may not.
     let has_looked = |look: &CaptionedView| look.caption.room.is_some() || !look.caption.sightings.is_empty();
@@ -86,6 +89,7 @@ fn is_list(look: &CaptionedView) -> bool {
     look.caption.is_structured && look.caption.form != Some(FormOutcome::Broken)
 }
 
+/// A thing that a caption names, in a direction from the heading where the caption places it in its view.
 fn seen_thing(sighting: &ObjectSighting, look: &CaptionedView, off_rad: f64) -> SeenThing {
     let of_place = |place: ViewThird| place.turn_rad(look.gaze.horizontal_fov_rad);
     let within_rad = sighting.spot.map(|spot| spot.off_rad).or_else(|| sighting.place.map(of_place));
@@ -101,8 +105,8 @@ fn seen_thing(sighting: &ObjectSighting, look: &CaptionedView, off_rad: f64) -> 
 
 /// Whether a denial of one name denies another: "no chair" denies a dining chair, but "no dining chair" no chair.
 pub(super) fn denies_name(denied: &str, name: &str) -> bool {
-    let general = kinds_of(denied);
-    normalise_name(denied) == normalise_name(name) || kinds_of(name).contains(&general[0])
+    let denied_kinds = kinds_of(denied);
+    normalise_name(denied) == normalise_name(name) || kinds_of(name).contains(&denied_kinds[0])
 }
 
 #[cfg(test)]

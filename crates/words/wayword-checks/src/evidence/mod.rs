@@ -25,7 +25,7 @@ pub struct Evidence {
     pub moves: Vec<PathMove>,
     /// Whether the walker's motion is known. If not, `moves` is empty although the path may move.
     pub motion: PathMotion,
-    /// Its source.
+    /// The source of `frames`.
     pub source: EvidenceSource,
     /// Rooms and things around the end that no frame has to show.
     pub beyond: EndSurroundings,
@@ -37,7 +37,7 @@ pub struct Evidence {
 pub struct EndSurroundings {
     /// The names of the rooms next to the one at the end.
     pub rooms: Vec<String>,
-    /// The names of the things in it.
+    /// The names of the things in the room at the end.
     pub things: Vec<String>,
 }
 
@@ -46,7 +46,7 @@ pub struct EndSurroundings {
 pub struct FrameEvidence {
     /// The room, or the rooms where witnesses differ; empty where it is not known.
     pub rooms: Vec<String>,
-    /// Objects.
+    /// The objects that are seen from it.
     pub things: Vec<SeenThing>,
     /// Whether the objects are known. If not, an empty list of objects is no evidence of absence.
     pub knows_things: bool,
@@ -150,8 +150,8 @@ impl Evidence {
     }
 
     /// For a thing that no frame shows: whether it is certainly nowhere along the path. That is so where the objects of
-    /// every frame are known, and the witnesses could have named it. Captions leave things out, so there it must have
-    /// be denied, or be too conspicuous to be missing in lists of every frame.
+    /// every frame are known, and the witnesses could have named it. Captions leave things out, so there it must
+    /// have been denied, or be too conspicuous to be missing in lists of every frame.
     #[must_use]
     pub fn denies_thing(&self, name: &str) -> bool {
         let overlooked = || !(stands_out(name) && self.frames.iter().all(|frame| frame.lists_things));
@@ -165,7 +165,8 @@ impl Evidence {
         self.frames_without_things().is_empty() && self.could_name(name) && !self.may_show(name)
     }
 
-    /// The same for the last frame alone.
+    /// For a thing that the last frame does not show: whether it is certainly not seen from there, by the rules of
+    /// [`Self::denies_thing`].
     #[must_use]
     pub fn denies_thing_at_end(&self, name: &str) -> bool {
         let Some(last) = self.frames.last().filter(|last| last.knows_things && self.could_name(name)) else {
@@ -191,10 +192,10 @@ impl Evidence {
     /// none at all, that denies none.
     fn could_name(&self, name: &str) -> bool {
         let class = find_thing(name).map(|thing| thing.class);
-        let left_out = is_fabric(name) || class == Some(ThingClass::Door);
+        let is_left_out = is_fabric(name) || class == Some(ThingClass::Door);
         let mut things = self.frames.iter().flat_map(|frame| &frame.things);
         self.source != EvidenceSource::Nothing
-            && (!left_out || things.any(|seen| find_thing(&seen.name).map(|thing| thing.class) == class))
+            && (!is_left_out || things.any(|seen| find_thing(&seen.name).map(|thing| thing.class) == class))
     }
 
     /// For a room in which no frame lies: whether it is certainly nowhere along the path. That is so where the room of
@@ -238,6 +239,7 @@ impl Evidence {
         self.frames_where(|frame| frame.rooms.iter().any(|room| same_room(room, name)))
     }
 
+    /// The frames for which something holds, ascending.
     fn frames_where(&self, holds: impl Fn(&FrameEvidence) -> bool) -> Vec<usize> {
         (0..self.frames.len()).filter(|at| holds(&self.frames[*at])).collect()
     }

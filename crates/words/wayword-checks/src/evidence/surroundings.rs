@@ -11,9 +11,9 @@ use wayword_language::lexicon::{ThingClass, kinds_of, room_name, same_room};
 
 /// A thing this near to the path can be seen by a person who walks it, metres.
 pub const NEAR_M: f64 = 3.0;
-/// Labels of objects on this storey differ from the eye's height by no more than this, metres.
+/// Labels of objects on the eye's storey differ from its height by no more than this, metres.
 const STOREY_SLACK_M: f64 = 1.9;
-/// How much farther a metre of height is than a metre along the floor, beyond that.
+/// Beyond [`STOREY_SLACK_M`], a metre of height counts as this many metres along the floor.
 const HEIGHT_WEIGHT: f64 = 3.0;
 
 /// The listed objects and rooms around a path, with their distances.
@@ -24,9 +24,9 @@ pub struct PathSurroundings {
     eyes: Vec<DVec3>,
     /// The heights of the floor along the path, metres; empty where one of them is not known.
     floors_m: Vec<f64>,
-    /// For each name of the building, how far its objects are.
+    /// For each name of the building, in the order of its names, how far the nearest object of that name is.
     distances: Vec<ListedDistance>,
-    /// The rooms of the building, and how far they are.
+    /// The names of rooms in the building, each with the distance to the nearest viewpoint in such a room.
     rooms: Vec<(String, ListedDistance)>,
     /// The rooms within reach of the path.
     near_rooms: BTreeSet<String>,
@@ -43,11 +43,11 @@ pub struct PathSurroundings {
 pub struct ListedDistance {
     /// From the nearest point of the path, metres.
     pub path_m: f64,
-    /// From its last frame, metres.
+    /// From the last frame of the path, metres.
     pub end_m: f64,
-    /// Hops from the nearest viewpoint of the path to a viewpoint next to it.
+    /// Hops from the nearest viewpoint of the path to a viewpoint next to the thing.
     pub path_hops: usize,
-    /// Hops from the last viewpoint of the path to a viewpoint next to it.
+    /// Hops from the last viewpoint of the path to a viewpoint next to the thing.
     pub end_hops: usize,
 }
 
@@ -70,7 +70,7 @@ impl ListedDistance {
 
 impl PathSurroundings {
     /// The listed objects and rooms around a path. `None` where the path's motion is unknown or the building lists
-    /// none.
+    /// neither.
     #[must_use]
     pub fn around_path(building: &Arc<BuildingInventory>, path: &Path) -> Option<Self> {
         if !path.motion.is_known() || building.is_blank() || path.frames.is_empty() {
@@ -222,6 +222,8 @@ impl PathSurroundings {
     }
 }
 
+/// Whether a label can mean a thing of the kinds `wanted` (the most specific first): one of the two names is a more
+/// general word for the other, or the same.
 fn name_agrees(name: &InventoryName, wanted: &[String]) -> bool {
     wanted.contains(&name.kinds[0]) || wanted.first().is_some_and(|kind| name.kinds.contains(kind))
 }
@@ -233,7 +235,7 @@ fn frame_viewpoint(building: &BuildingInventory, frame: &Frame) -> Option<usize>
     own.or_else(|| (0..building.viewpoints.len()).min_by(|a, b| off_m(a).total_cmp(&off_m(b))))
 }
 
-/// The hops from the nearest of some viewpoints to each.
+/// For each viewpoint, the hops to the nearest of `starts`; `usize::MAX` where no way leads there.
 fn hops_from(building: &BuildingInventory, starts: &[usize]) -> Vec<usize> {
     let mut hops = vec![usize::MAX; building.viewpoints.len()];
     let mut queue: VecDeque<usize> = starts.iter().copied().collect();
@@ -262,6 +264,7 @@ fn path_distance(eyes: &[DVec3], spot: DVec3) -> ListedDistance {
     ListedDistance { path_m: eyes.windows(2).map(to_hop).fold(end_m, f64::min), end_m, ..ListedDistance::NOWHERE }
 }
 
+/// The length of a gap, metres, with its height weighted as above.
 fn weighted_gap_m(gap: DVec3) -> f64 {
     libm::hypot(gap.truncate().length(), (gap.z.abs() - STOREY_SLACK_M).max(0.0) * HEIGHT_WEIGHT)
 }

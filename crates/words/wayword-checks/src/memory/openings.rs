@@ -7,9 +7,9 @@ use wayword_language::lexicon::{ThingClass, find_thing, room_name};
 /// A change of rooms between two frames in a row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RoomOpening {
-    /// The last frame before it.
+    /// The last frame before the opening.
     pub before: usize,
-    /// The first frame behind it.
+    /// The first frame behind the opening.
     pub behind: usize,
     /// The room that one leaves.
     pub from: String,
@@ -84,5 +84,5 @@ fn shows_door(evidence: &Evidence, frame: usize) -> bool {
     things.into_iter().any(|seen| is_door(&seen.name) && is_near(seen.distance_m))
 }
 
-/// A door this near to one of the two frames is taken to be the one between them, metres.
+/// A door up to this far from one of the two frames is taken to be the one between them, metres.
 const DOOR_M: f64 = 2.5;

@@ -58,7 +58,7 @@ impl WalkBend {
     }
 }
 
-/// The rooms in order. A gap of frames without a room, between two of one name, belongs to that stay.
+/// The stays in order. Frames without a known room, between two frames in rooms of one name, belong to the same stay.
 pub(super) fn find_stays(evidence: &Evidence) -> Vec<RoomStay> {
     let mut stays: Vec<RoomStay> = Vec::new();
     for (frame, seen) in evidence.frames.iter().enumerate() {
@@ -72,16 +72,17 @@ pub(super) fn find_stays(evidence: &Evidence) -> Vec<RoomStay> {
     stays
 }
 
-/// Two opposite turns are taken for a winding way, and not for turns, if each is smaller than this, degrees,
+/// Two opposite turns are taken for a winding way, and not for turns, if three limits hold. Each is smaller than this,
+/// degrees.
 const WINDING_EACH_DEG: f64 = 40.0;
-/// and they add up to less than this, degrees,
+/// They add up to less than this, degrees.
 const WINDING_DEG: f64 = motion::SLIGHT_DEG;
-/// and the way between them is shorter than this, metres.
+/// The way between them is shorter than this, metres.
 const WINDING_M: f64 = 2.5;
 /// Several turns in a row are one bend up to this, degrees; beyond that they are turns of their own.
 const ONE_BEND_DEG: f64 = 135.0;
 
-/// The turns of a walk that are worth a word; the same ones on the way back.
+/// The turns of a walk that are worth a word. The way back has the same turns, in reverse.
 pub(super) fn find_bends(moves: &[PathMove]) -> Vec<WalkBend> {
     let mut bends: Vec<WalkBend> = Vec::new();
     // The opening turn is a turn of its own: the walker does not walk before it.
@@ -94,11 +95,12 @@ pub(super) fn find_bends(moves: &[PathMove]) -> Vec<WalkBend> {
     drop_winding(bends, moves)
 }
 
+/// How far a move turns, degrees, positive right.
 fn turn_deg(moves: &[PathMove], at: usize) -> f64 {
     moves[at].turn_rad.to_degrees()
 }
 
-/// How many moves from one on turn to its side.
+/// How many moves in a row, from `first` on, turn to the same side; 1 if the first one hardly turns.
 fn run_of_turns(moves: &[PathMove], first: usize) -> usize {
     let sign = turn_deg(moves, first).signum();
     let same = (first + 1..moves.len()).take_while(|at| turn_deg(moves, *at) * sign >= motion::BEND_STEP_DEG);
@@ -106,8 +108,8 @@ fn run_of_turns(moves: &[PathMove], first: usize) -> usize {
     if turns { 1 + same.count() } else { 1 }
 }
 
-/// The bends of moves that turn to one side, in order: where some of them are one bend, the longest part of that kind
-/// comes first, then the one that turns farthest.
+/// Adds the bends of a run of moves that turn to one side, in order. Parts of the run that can be one bend are joined:
+/// the longest first (of equal ones, the part that turns farthest), then those in the rest of the run.
 fn join_bends(moves: &[PathMove], run: Range<usize>, bends: &mut Vec<WalkBend>) {
     let total = |part: &Range<usize>| part.clone().map(|at| turn_deg(moves, at)).sum::<f64>().abs();
     let parts =
@@ -148,7 +150,7 @@ fn drop_winding(mut bends: Vec<WalkBend>, moves: &[PathMove]) -> Vec<WalkBend> {
     }
 }
 
-/// Two flights with no longer way between them are one that turns at a landing, metres.
+/// Two flights with at most this much way between them are one flight that turns at a landing, metres.
 const LANDING_M: f64 = 2.5;
 
 /// The flights of stairs, in order. Those that a landing joins are one.

@@ -65,27 +65,30 @@ impl RememberedThing {
     }
 }
 
-/// Sightings without ids that lie no farther apart are of one thing, metres.
+/// Sightings without ids that lie up to this far apart are of one thing, metres.
 const SAME_M: f64 = 0.8;
-/// The same for measured distances. They lead to the visible face of a thing, which is its front from one side and its
-/// back from the other.
+/// The same limit where the positions come from measured distances. Those lead to the visible face
+/// of a thing, which is its front from one side and its back from the other.
 const SAME_FRONT_M: f64 = 1.5;
 /// Two directions cross where they differ by more than this, radians.
 const CROSSING_RAD: f64 = 0.17;
-/// Things without a known place are taken to be no farther than this, metres.
+/// Things without a known position are taken to be up to this far from the eye, metres.
 const FARTHEST_M: f64 = 8.0;
 
 /// A sighting with the eye that had it.
 struct EyeSighting<'a> {
+    /// The frame from which the thing is seen.
     frame: usize,
+    /// The thing as the frame shows it.
     thing: &'a SeenThing,
     /// Its direction, where poses are known.
     towards: Option<Heading>,
+    /// The position of the eye, where poses are known.
     eye: Option<DVec3>,
 }
 
 impl EyeSighting<'_> {
-    /// How far away it is measured to be, metres, and where that is.
+    /// How far away the thing is measured to be, metres, and where it lies by that.
     fn measured_place(&self) -> Option<(f64, DVec3)> {
         let (far_m, eye, towards) = (self.thing.distance_m?, self.eye?, self.towards?);
         Some((far_m, eye + towards.unit_vector() * far_m))
@@ -164,6 +167,7 @@ fn ray_crossing(a: (DVec3, Heading), b: (DVec3, Heading)) -> Option<(DVec3, f64,
     Some((at.extend(a.0.z), far_a, far_b))
 }
 
+/// One remembered thing from all sightings of it.
 fn join_sightings(group: &[EyeSighting<'_>], eyes: &[DVec3]) -> RememberedThing {
     let first = group[0].thing;
     let position = thing_position(group);
@@ -202,14 +206,14 @@ fn nearest_sighting(group: &[EyeSighting<'_>]) -> Option<DVec3> {
     measured.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place)| place)
 }
 
-/// A thing is passed where it lies at the side of a hop, and not before its beginning or after its end, metres of
-/// slack.
+/// A thing is passed where it lies at the side of a hop, at most this far before its beginning or after its end, metres.
 const SLACK_M: f64 = 0.3;
 /// A thing farther off the way than this is not passed, metres.
 const BESIDE_M: f64 = 4.0;
 /// A thing nearer to the line of the walk than this lies on neither side, metres.
 const IN_THE_WAY_M: f64 = 0.15;
 
+/// Where and on which side one passes a position: at the hop that comes nearest to it.
 fn passed_at(position: DVec3, eyes: &[DVec3]) -> Option<ThingPassing> {
     let mut best: Option<(f64, ThingPassing)> = None;
     let mut walked_m = 0.0;

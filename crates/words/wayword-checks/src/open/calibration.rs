@@ -20,7 +20,7 @@ pub struct Calibration {
     pub names: BTreeMap<String, NameOffsets>,
 }
 
-/// The offsets of one name, by how far away the nearest listed one is.
+/// The offsets of one name, by how far away the nearest listed place of that name is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NameOffsets {
@@ -50,10 +50,11 @@ type WeighedClaim = (f64, bool, f64);
 
 /// The largest offset: a factor of 20. It also bounds the effect of an untrusted file.
 const MAX_OFFSET_LN: f64 = 3.0;
-/// As how many claims the general weights count against a name's own. It keeps rare names close to them.
+/// The general weights count as much as this many claims of a name, which keeps rare names close to them.
 const RIDGE_CLAIMS: f64 = 4.0;
+/// Steps of Newton's method for each offset.
 const NEWTON_STEPS: usize = 30;
-/// From which offset on a name decides by itself: the odds double.
+/// A name decides by itself from this offset on, where the odds double.
 const TELLING_OFFSET_LN: f64 = std::f64::consts::LN_2;
 
 impl Calibration {
@@ -62,8 +63,9 @@ impl Calibration {
     /// # Errors
     /// When it holds a number that is not finite; the text names the entry.
     pub fn check_numbers(&self) -> Result<(), String> {
-        let is_finite =
-            |offsets: &NameOffsets| [offsets.close, offsets.far, offsets.nowhere].iter().all(|it| it.is_finite());
+        let is_finite = |offsets: &NameOffsets| {
+            [offsets.close, offsets.far, offsets.nowhere].iter().all(|offset| offset.is_finite())
+        };
         match self.names.iter().find(|(_, offsets)| !is_finite(offsets)) {
             Some((name, _)) => Err(format!("{name:?} has a number that is not finite")),
             None => Ok(()),
@@ -90,10 +92,10 @@ impl Calibration {
     pub fn fit_names(platform: &str, from: &str, texts: usize, observed: &[ClaimObservation<'_>]) -> Self {
         let weights = SilenceWeights::shipped();
         let mut cells: BTreeMap<(String, usize), Vec<WeighedClaim>> = BTreeMap::new();
-        for one in observed {
-            let Some(ratio) = weights.log_ratio(one.missed) else { continue };
-            let cell = cells.entry((calibration_name(one.claim), distance_cell(one.missed))).or_default();
-            cell.push((ratio, one.wrong, one.weight));
+        for claim in observed {
+            let Some(ratio) = weights.log_ratio(claim.missed) else { continue };
+            let cell = cells.entry((calibration_name(claim.claim), distance_cell(claim.missed))).or_default();
+            cell.push((ratio, claim.wrong, claim.weight));
         }
         let mut names: BTreeMap<String, NameOffsets> = BTreeMap::new();
         for ((name, cell), observed) in cells {
@@ -118,6 +120,7 @@ impl NameOffsets {
     }
 }
 
+/// The number of the cell of [`NameOffsets`] for a claim: 0 up to 8 m, 1 farther, 2 where the building lists none.
 fn distance_cell(missed: &MissedClaim) -> usize {
     match missed.nearest_m {
         m if m <= 8.0 => 0,
@@ -138,13 +141,14 @@ fn calibration_name(claim: &PlaceClaim) -> String {
 fn fit_offset(observed: &[WeighedClaim]) -> f64 {
     let mut offset = 0.0;
     for _ in 0..NEWTON_STEPS {
-        let (mut slope, mut bend) = (-RIDGE_CLAIMS * offset, RIDGE_CLAIMS);
+        // The slope and the curvature of the log-likelihood, drawn towards 0 by the ridge.
+        let (mut slope, mut curvature) = (-RIDGE_CLAIMS * offset, RIDGE_CLAIMS);
         for (ratio, wrong, weight) in observed {
             let chance = 1.0 / (1.0 + (-(ratio + offset)).exp());
             slope += (f64::from(u8::from(*wrong)) - chance) * weight;
-            bend += chance * (1.0 - chance) * weight;
+            curvature += chance * (1.0 - chance) * weight;
         }
-        offset = (offset + slope / bend).clamp(-MAX_OFFSET_LN, MAX_OFFSET_LN);
+        offset = (offset + slope / curvature).clamp(-MAX_OFFSET_LN, MAX_OFFSET_LN);
     }
     offset
 }

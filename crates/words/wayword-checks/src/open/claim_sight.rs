@@ -20,7 +20,7 @@ pub struct MissedClaim {
     pub case: ClaimCase,
     /// Features by name.
     pub features: Vec<(String, f64)>,
-    /// How far the nearest one is that is listed.
+    /// The distance to the nearest listed place of its name, metres; infinite where the building lists none.
     pub nearest_m: f64,
 }
 
@@ -56,7 +56,8 @@ impl ClaimCase {
     }
 }
 
-/// An object that is listed no farther off than this may be seen from the path, metres.
+/// The claim of an object along the path cannot fail if one of its name is listed nearer than this, metres: it may be
+/// in sight.
 const SEEN_M: f64 = 8.0;
 
 impl MissedClaim {

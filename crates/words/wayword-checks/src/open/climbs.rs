@@ -18,7 +18,7 @@ const FLIGHT_M: f64 = 0.5;
 /// Next to stairs the other way, a gain is no climb if it is less than this share of them, in a text with climbs both
 /// ways.
 const SHARE_OF_BOTH: f64 = 0.15;
-/// The same in a text with climbs this way only.
+/// The same share for a text with climbs in one direction only.
 const SHARE_OF_ONE: f64 = 0.45;
 
 /// The mistakes in the climbs and storeys of a text.
@@ -28,7 +28,7 @@ pub(super) fn check_climbs(text: &str, reading: &TextReading, subject: CheckSubj
         PathHeights::from_subject(subject, if tells_both_ways(reading) { SHARE_OF_BOTH } else { SHARE_OF_ONE });
     let mut found = Vec::new();
     for event in &reading.events {
-        let told = climb_wording(&tokens, event.span);
+        let wording = climb_wording(&tokens, event.span);
         let (verdict, climb) = match event.what {
             EventContent::Climb(climb) => (heights.verdict_on_climb(climb), climb),
             EventContent::Steps(climb) => (heights.verdict_on_steps(climb), climb),
@@ -36,8 +36,8 @@ pub(super) fn check_climbs(text: &str, reading: &TextReading, subject: CheckSubj
             _ => continue,
         };
         // "Once you are up the stairs": the path may be level, but not go down instead.
-        let may_be = told == ClimbWording::Moment && !heights.goes_other_way(climb);
-        if told == ClimbWording::Described || may_be {
+        let may_be = wording == ClimbWording::Moment && !heights.goes_other_way(climb);
+        if wording == ClimbWording::Described || may_be {
             continue;
         }
         let way = if climb == ClimbDirection::Up { "up" } else { "down" };
@@ -71,6 +71,7 @@ enum ClimbWording {
     Described,
 }
 
+/// How a text words the climb at a byte range. The five words before the climb decide.
 fn climb_wording(tokens: &[TextToken], span: [usize; 2]) -> ClimbWording {
     let at = tokens.partition_point(|token| token.span[0] < span[0]);
     let before = || tokens[..at].iter().rev().take_while(|token| token.is_word()).take(5);
@@ -100,7 +101,7 @@ fn is_stairs(word: &str) -> bool {
     word.ends_with("stairs") || word.starts_with("stair") || word.starts_with("step") || word.starts_with("flight")
 }
 
-/// Whether stairs or storeys are named near a climb.
+/// Whether stairs or storeys are named near a climb: at most five tokens before its first token, or seven behind it.
 fn names_stairs(tokens: &[TextToken], at: usize) -> bool {
     let near = tokens.iter().take(at + 8).skip(at.saturating_sub(5));
     let is_storey =
@@ -111,9 +112,11 @@ fn names_stairs(tokens: &[TextToken], at: usize) -> bool {
 
 /// How a path goes up and down.
 struct PathHeights {
+    /// Whether the motion along the path is known.
     is_known: bool,
-    /// The heights that it gains and loses, metres: the most between any two of its frames.
+    /// The height that it gains, metres: the most between any two of its frames.
     up_m: f64,
+    /// The height that it loses, metres, measured in the same way.
     down_m: f64,
     /// Next to stairs the other way, a gain is no climb if it is less than this share of them.
     share: f64,
@@ -131,10 +134,12 @@ impl PathHeights {
         Self { is_known: subject.evidence.motion == PathMotion::Known, up_m: most(1.0), down_m: most(-1.0), share }
     }
 
+    /// The height that the path makes in the direction of a climb, metres.
     fn gains_m(&self, climb: ClimbDirection) -> f64 {
         if climb == ClimbDirection::Down { self.down_m } else { self.up_m }
     }
 
+    /// The height that the path makes against the direction of a climb, metres.
     fn loses_m(&self, climb: ClimbDirection) -> f64 {
         if climb == ClimbDirection::Down { self.up_m } else { self.down_m }
     }
@@ -173,7 +178,7 @@ impl PathHeights {
     }
 }
 
-/// The most that these rises gain between any two points, in the direction of the sign, metres.
+/// The most that these rises gain between any two points, metres. `way` is 1 for the way up and -1 for the way down.
 fn most_gain_m(rises: &[f64], way: f64) -> f64 {
     let (mut lowest, mut height, mut most) = (0.0_f64, 0.0, 0.0_f64);
     for rise_m in rises {

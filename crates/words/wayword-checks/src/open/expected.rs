@@ -3,7 +3,7 @@
 use super::weights::SilenceWeights;
 use wayword_language::lexicon::{find_thing, normalise_name, room_name};
 
-/// The salience of things that are seen from across a room.
+/// Things with at least this salience in the lexicon are seen from across a room.
 const SEEN_FROM_AFAR: u8 = 3;
 
 /// Whether a missing label leaves it open that a room has a thing: it can be seen from afar, where labels do not

@@ -9,7 +9,8 @@ use super::{
 use crate::evidence::{Evidence, ListedDistance, NEAR_M, PathSurroundings};
 use wayword_language::lexicon::{ThingClass, find_thing, room_name};
 
-/// Whether the evidence shows a claimed place, lacks it, or cannot decide.
+/// Whether the evidence shows a claimed place, lacks it, or cannot decide. `around`: the things and rooms that the
+/// building lists; without them, a place that no frame shows stays undecided.
 #[must_use]
 pub fn sight_of_claim(
     claim: &PlaceClaim,
@@ -56,6 +57,7 @@ fn crosses_rooms(evidence: &Evidence) -> bool {
     rooms.any(|room| Some(room) != first)
 }
 
+/// Whether a frame shows the place; for the place of a stop, whether the last frame does.
 fn shown_by_frames(claim: &PlaceClaim, evidence: &Evidence, at_stop: bool) -> bool {
     let mut frames = Vec::new();
     if claim.is_room {
@@ -84,7 +86,7 @@ fn room_is_unknown(claim: &PlaceClaim, evidence: &Evidence, around: &PathSurroun
     is_storey || around.has_gap() || !around.knows_rooms() || !evidence.frames_without_room().is_empty()
 }
 
-/// How many hops away something is.
+/// The word of a feature for how many hops away something is.
 fn hop_bin(hops: usize) -> &'static str {
     match hops {
         0 => "0 hops",
@@ -96,7 +98,7 @@ fn hop_bin(hops: usize) -> &'static str {
     }
 }
 
-/// Which of these bounds a distance lies under.
+/// The word of a feature for a distance: the least of these bounds that is not exceeded.
 fn distance_bin(distance_m: f64) -> &'static str {
     match distance_m {
         m if m <= NEAR_M => "near",
@@ -108,7 +110,7 @@ fn distance_bin(distance_m: f64) -> &'static str {
     }
 }
 
-/// The same, coarser.
+/// A coarser word for a distance, for features that combine it with something else.
 fn reach_bin(distance_m: f64) -> &'static str {
     match distance_m {
         m if m <= NEAR_M => "near",
@@ -118,6 +120,8 @@ fn reach_bin(distance_m: f64) -> &'static str {
     }
 }
 
+/// The features of an object that is not listed within reach. Their names are those of `weights.toml`; two properties in
+/// one name, such as "class {class} {reach}", have a weight for each pair.
 fn missed_object(
     claim: &PlaceClaim,
     distance: ListedDistance,
@@ -176,6 +180,7 @@ fn missed_object(
     MissedClaim { case, features, nearest_m }
 }
 
+/// The features of a room that is not listed within reach, with names as in [`missed_object`].
 fn missed_room(
     claim: &PlaceClaim,
     distance: ListedDistance,

@@ -64,7 +64,8 @@ fn unjudged_turns(reading: &TextReading, subject: CheckSubject<'_>) -> Vec<Check
         TurnJudge::NotJudged(why) => format!("the program cannot check how the path turns: {why}"),
         TurnJudge::JudgedElsewhere => return Vec::new(),
     };
-    let told = reading.events.iter().filter(|event| matches!(event.what, EventContent::Turn(_)));
-    told.map(|event| crate::new_finding(CheckKind::Turns, Verdict::Unverified, reason.clone(), Some(event.span)))
+    let stated = reading.events.iter().filter(|event| matches!(event.what, EventContent::Turn(_)));
+    stated
+        .map(|event| crate::new_finding(CheckKind::Turns, Verdict::Unverified, reason.clone(), Some(event.span)))
         .collect()
 }

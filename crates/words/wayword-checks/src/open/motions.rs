@@ -1,5 +1,5 @@
 //! Finds motions by places ("walk past the sofa") that a text repeats although the path has one of them, and those
-//! that contradict its stop.
+//! that contradict the stop of the text.
 
 use super::{
     claims::{PlaceClaim, read_claims},
@@ -14,7 +14,7 @@ use wayword_language::{
     text::TextToken,
 };
 
-/// How far before a place the words may be that identify it.
+/// How far before a place the words may be that identify it, words.
 const WORDS_BEFORE: usize = 3;
 
 /// A motion by a place: it goes into it, out of it, through it or past it.
@@ -22,15 +22,18 @@ struct TextMotion<'a> {
     /// The place among the claims of the text.
     at: usize,
     relation: WalkerRelation,
+    /// The name by which the place is compared ([`compared_name`]).
     name: String,
     /// The words that identify it: those right before the place, and those of its name.
     which: Vec<&'a str>,
-    /// Where it goes over stairs, which way.
+    /// Up or down, where the motion goes over stairs.
     climb: Option<ClimbDirection>,
+    /// The number of its clause.
     clause: usize,
     is_room: bool,
     /// Whether the same place may be meant again: "walk around the table".
     may_go_on: bool,
+    /// The byte range from its verb to the name of the place.
     span: [usize; 2],
 }
 
@@ -42,7 +45,7 @@ pub(super) fn repeated_motions(
 ) -> Vec<[usize; 2]> {
     let claims = read_claims(reading);
     let motions = find_motions(tokens, reading, &claims);
-    let again = |(at, motion): (usize, &TextMotion<'_>)| {
+    let repeated_span = |(at, motion): (usize, &TextMotion<'_>)| {
         let climbs_alike = |before: &TextMotion<'_>| match (before.climb, motion.climb) {
             (Some(before), Some(again)) => before == again,
             _ => true,
@@ -66,7 +69,7 @@ pub(super) fn repeated_motions(
         };
         (!is_other && is_once).then_some(motion.span)
     };
-    motions.iter().enumerate().filter_map(again).collect()
+    motions.iter().enumerate().filter_map(repeated_span).collect()
 }
 
 /// The byte range of a motion past the place at which the text stops next: "walk past the sofa and stop by the sofa".
@@ -91,7 +94,7 @@ pub(super) fn past_the_stop(tokens: &[TextToken], reading: &TextReading) -> Opti
     let is_part = || between().any(|token| matches!(token.word.as_str(), "between" | "end" | "past" | "behind"));
     let is_apart = claims[before].clause_in(reading) != claims[stop].clause_in(reading);
     let is_wrong = is_same && is_apart && !goes_on && !tells_which(passed) && !tells_which(stopped) && !is_part();
-    // The place itself is there.
+    // The finding marks the motion alone, because the place is there.
     let way = tokens.iter().rev().filter(|token| token.span[1] <= first[0]).find(|token| is_way(&token.word))?;
     is_wrong.then(|| motion_span(tokens, way.span, |_| false))
 }
@@ -106,14 +109,16 @@ fn is_turn_or_climb(what: &EventContent) -> bool {
     matches!(what, EventContent::Turn(_) | EventContent::Climb(_) | EventContent::Steps(_))
 }
 
+/// The motions of a text by its places, except by places of which the text counts several.
 fn find_motions<'a>(tokens: &'a [TextToken], reading: &TextReading, claims: &[PlaceClaim]) -> Vec<TextMotion<'a>> {
     let place = |claim: &PlaceClaim| match &reading.events[claim.event].what {
         EventContent::Place(place) => Some((place.ordinal.is_some() || place.several, place.going)),
         _ => None,
     };
-    // "Into the next hallway": there are several.
-    let told_apart = |claim: &&PlaceClaim| place(claim).is_some_and(|(is_one_of_several, _)| is_one_of_several);
-    let several: Vec<String> = claims.iter().filter(told_apart).map(compared_name).collect();
+    // "Into the next hallway": the text itself counts several, so another motion by that name is no repetition.
+    let is_one_of_several_places =
+        |claim: &&PlaceClaim| place(claim).is_some_and(|(is_one_of_several, _)| is_one_of_several);
+    let several: Vec<String> = claims.iter().filter(is_one_of_several_places).map(compared_name).collect();
     let motion = |(at, claim): (usize, &PlaceClaim)| {
         let moves = matches!(
             claim.relation,
@@ -152,7 +157,7 @@ fn stair_climb(reading: &TextReading, claim: &PlaceClaim) -> Option<ClimbDirecti
 
 /// The name by which a place is compared.
 fn compared_name(claim: &PlaceClaim) -> String {
-    // People call one room by several names, but not in one text.
+    // One text calls a room by one name, so the name itself is compared; only hallways and stairs go by several.
     match room_name(&claim.name).filter(|_| claim.is_room) {
         Some(room @ ("hallway" | "stairs")) => room.to_owned(),
         Some(_) => claim.name.clone(),
@@ -183,8 +188,8 @@ fn is_article(word: &str) -> bool {
 fn says_where(tokens: &[TextToken], claim: &PlaceClaim) -> bool {
     let at = tokens.partition_point(|token| token.span[0] < claim.span[0]);
     let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
-    let of = at.saturating_sub(1 + usize::from(at > 0 && is_article(word(at - 1))));
-    if word(of) == "of" && of > 0 && word(of - 1) != "out" {
+    let of_at = at.saturating_sub(1 + usize::from(at > 0 && is_article(word(at - 1))));
+    if word(of_at) == "of" && of_at > 0 && word(of_at - 1) != "out" {
         // "Past the foot of the bed".
         return true;
     }
@@ -198,6 +203,7 @@ fn says_where(tokens: &[TextToken], claim: &PlaceClaim) -> bool {
         || is_side()
 }
 
+/// Whether a word before "left" or "right" makes a noun of it: "the left", "second left".
 fn is_ordinal(word: &str) -> bool {
     matches!(word, "first" | "second" | "third" | "next" | "last" | "the" | "1st" | "2nd" | "3rd")
 }
@@ -241,7 +247,7 @@ fn leaves_between(motions: &[TextMotion<'_>]) -> bool {
     last.is_room && between.iter().any(|motion| motion.relation != WalkerRelation::Past && elsewhere(motion))
 }
 
-/// Whether the sentence before a place refers back: "once past the sofa", "another door".
+/// Whether one of the nine words before a place refers back: "once past the sofa", "another door".
 fn takes_up(tokens: &[TextToken], claim: &PlaceClaim) -> bool {
     let at = tokens.partition_point(|token| token.span[0] < claim.span[0]);
     let clause = tokens[..at].iter().rev().take_while(|token| token.is_word()).take(9);

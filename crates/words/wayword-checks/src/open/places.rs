@@ -36,7 +36,7 @@ pub(super) fn check_places(reading: &TextReading, subject: CheckSubject<'_>) -> 
             ClaimSight::Unknown => {
                 Some((Verdict::Unverified, format!("the program cannot check whether there is {:?}", claim.name)))
             }
-            // It is in the room at the end, or is the room next to it, and no frame has to show it.
+            // The place is in the room at the end, or is a room next to that one, so no frame has to show it.
             ClaimSight::Missed(_) if is_beyond(place, evidence) => None,
             ClaimSight::Missed(missed) => Some(verdict_on_missing(&claim, missed, weights, subject.reach.calibration)),
         };
@@ -51,7 +51,7 @@ pub(super) fn check_places(reading: &TextReading, subject: CheckSubject<'_>) -> 
     findings
 }
 
-/// The sight of each claim, in view of the others.
+/// The sight of each claim, with features for how many of the other claims the evidence shows and misses.
 fn sights_in_company(claims: &[PlaceClaim], subject: CheckSubject<'_>, weights: &SilenceWeights) -> Vec<ClaimSight> {
     let alone = |claim| sight_of_claim(claim, subject.evidence, subject.reach.surroundings, weights);
     let sights: Vec<ClaimSight> = claims.iter().map(alone).collect();
@@ -86,13 +86,13 @@ fn verdict_on_missing(
     }
 }
 
-/// The doubt about a colour: the labels of a place need not be those of the thing that the text means.
-fn unclear_colour(told: Option<&str>, claim: &PlaceClaim, subject: CheckSubject<'_>) -> Option<(Verdict, String)> {
-    let told = told?;
+/// The doubt about the colour `claimed`: the labels of a place need not be those of the thing that the text means.
+fn unclear_colour(claimed: Option<&str>, claim: &PlaceClaim, subject: CheckSubject<'_>) -> Option<(Verdict, String)> {
+    let claimed = claimed?;
     let things = subject.evidence.frames.iter().flat_map(|frame| &frame.things);
     let known = things.filter(|thing| wayword_language::lexicon::names_agree(&thing.name, &claim.name));
-    let fits = known
-        .filter_map(|thing| thing.colour.as_deref())
-        .any(|colour| colour == told || colour.ends_with(&format!(" {told}")) || told.ends_with(&format!(" {colour}")));
-    (!fits).then(|| (Verdict::Unverified, format!("the program cannot check whether {:?} is {told}", claim.name)))
+    let fits = known.filter_map(|thing| thing.colour.as_deref()).any(|colour| {
+        colour == claimed || colour.ends_with(&format!(" {claimed}")) || claimed.ends_with(&format!(" {colour}"))
+    });
+    (!fits).then(|| (Verdict::Unverified, format!("the program cannot check whether {:?} is {claimed}", claim.name)))
 }

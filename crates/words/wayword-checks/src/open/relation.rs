@@ -42,8 +42,9 @@ impl WalkerRelation {
 
 /// The relation of each event of a reading, where it is a place.
 pub(super) fn place_relations(reading: &TextReading) -> Vec<Option<WalkerRelation>> {
-    let goes_on = last_motion(reading);
-    // The clause, and whether the next place in it is where the walker stops.
+    let moving_clause = last_motion(reading);
+    // The clause so far: its number, whether the walker stops in it, whether it has named a place since then, and
+    // whether that place is stairs.
     let (mut clause, mut stops, mut named, mut at_stairs) = (usize::MAX, false, false, false);
     let relation = |event: &wayword_language::reading::TextEvent| {
         if event.clause != clause {
@@ -51,7 +52,7 @@ pub(super) fn place_relations(reading: &TextReading) -> Vec<Option<WalkerRelatio
         }
         let place = match &event.what {
             EventContent::Stop => {
-                (stops, named) = (event.clause >= goes_on, false);
+                (stops, named) = (event.clause >= moving_clause, false);
                 return None;
             }
             EventContent::Face { .. } => {

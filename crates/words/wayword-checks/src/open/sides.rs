@@ -8,13 +8,13 @@ use std::f64::consts::{PI, TAU};
 use wayword_core::{DVec3, Side, Verdict};
 use wayword_language::reading::PlaceMention;
 
-/// A thing with a side is no farther than this from the path, metres.
+/// Only things up to this far from the path can be those that a text means, metres.
 const REACH_M: f64 = 6.0;
-/// It is seen from a point of the path that is no farther off than this, metres.
+/// Only points of the path up to this far from a thing count for its side, metres.
 const SIGHT_M: f64 = 9.0;
-/// Points of a hop from which the sides are seen.
+/// Each hop is divided into this many equal parts, and the sides are compared at the ends of the parts.
 const POINTS_PER_HOP: usize = 5;
-/// A direction counts as on the other side from here on, degrees.
+/// A direction is clearly on a side if it is at least this far from straight ahead and from straight behind, degrees.
 const CLEARLY_DEG: f64 = 20.0;
 
 /// The doubt about the side of a place: every thing of its name near the path is clearly on the other side all along
@@ -56,10 +56,12 @@ fn directions_to(name: &str, is_room: bool, around: &PathSurroundings) -> Vec<f6
     turns
 }
 
+/// The heading of a vector over the floor, radians, clockwise from north.
 fn heading_rad(to: DVec3) -> f64 {
     libm::atan2(to.x, to.y)
 }
 
+/// The same angle in [-π, π).
 fn wrap_rad(rad: f64) -> f64 {
     (rad + PI).rem_euclid(TAU) - PI
 }

@@ -22,7 +22,7 @@ impl<'a> PathStretches<'a> {
         Self { subject }
     }
 
-    /// Turns to a side.
+    /// The number of turns to a side.
     pub(super) fn count_turns(&self, side: Side) -> usize {
         let turns = |deg: f64| match side {
             Side::Left => deg <= -TURN_DEG,
@@ -32,14 +32,14 @@ impl<'a> PathStretches<'a> {
         self.subject.evidence.moves.iter().filter(|step| turns(step.turn_rad.to_degrees())).count()
     }
 
-    /// Moves up or down.
+    /// The number of moves up, or down.
     pub(super) fn count_climbs(&self, climb: ClimbDirection) -> usize {
         let way = if climb == ClimbDirection::Down { -1.0 } else { 1.0 };
         self.subject.evidence.moves.iter().filter(|step| step.rise_m * way >= RISE_M).count()
     }
 
-    /// Places that a claim may mean: separate stays in a room of that name, or as many things near the path; 0 where
-    /// that is not known.
+    /// The number of places that a claim may mean: separate stays in a room of that name, or as many things near the
+    /// path; 0 where that is not known.
     pub(super) fn count_places(&self, claim: &PlaceClaim) -> usize {
         match claim.class {
             ThingClass::Stairs => {
@@ -61,9 +61,10 @@ impl<'a> PathStretches<'a> {
         spots.unwrap_or(0)
     }
 
-    /// Separate stays in a room. Rooms that people confuse count as one where the text's own kind is nowhere.
+    /// Separate stays in a room of that name. Where there are none, stays in rooms that people confuse with it count.
     fn count_stays(&self, name: &str) -> usize {
         let frames = &self.subject.evidence.frames;
+        // How often the path comes into such a room from elsewhere.
         let runs = |is_in: &dyn Fn(&str) -> bool| {
             let mut before = false;
             frames

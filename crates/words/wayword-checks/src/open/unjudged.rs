@@ -13,7 +13,7 @@ use wayword_language::{
 /// From this number on, which one of several is meant, or how many there are, is a claim by itself. People say "the first
 /// door" of the one before them, and "the two chairs" of those that they see.
 const MIN_COUNTED_NUMBER: u32 = 3;
-/// How far before a turn the words may be that give its number.
+/// How far before a turn the words may be that give its number, words.
 const WORDS_BEFORE: usize = 2;
 
 /// The statements of a text that cannot be checked; `reading` still has its denied events.
@@ -94,7 +94,7 @@ fn is_counted(place: &PlaceMention, subject: CheckSubject<'_>) -> bool {
     has_number || place.count.is_some_and(|count| count >= MIN_COUNTED_NUMBER && near() < count as usize)
 }
 
-/// "Take the third left".
+/// Whether the words before a turn number it: "take the third left".
 fn is_numbered(tokens: &[TextToken], span: [usize; 2]) -> bool {
     let at = tokens.partition_point(|token| token.span[0] < span[0]);
     let before = tokens[..at].iter().rev().take_while(|token| token.is_word()).take(WORDS_BEFORE);

@@ -6,9 +6,9 @@ use wayword_core::DoubtGrade;
 /// The gains from which words of one source are doubted, natural logs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DoubtBound {
-    /// From here on they are uncertain.
+    /// Words with a larger gain than this are uncertain.
     pub uncertain: f64,
-    /// From here on they are likely wrong.
+    /// Words with a larger gain than this are likely wrong.
     pub likely: f64,
 }
 

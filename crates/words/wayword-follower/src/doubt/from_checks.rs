@@ -16,8 +16,8 @@ pub fn doubts_from_findings(findings: &[CheckFinding]) -> Vec<TextDoubt> {
             Verdict::Unverified => (DoubtGrade::Uncertain, DoubtCause::Unverified),
             Verdict::Fail => (DoubtGrade::Likely, DoubtCause::Wrong),
         };
-        let is_of_path = !matches!(finding.check, CheckKind::Form | CheckKind::Leak | CheckKind::Coverage);
-        let span = finding.span.filter(|_| is_of_path)?;
+        let concerns_path = !matches!(finding.check, CheckKind::Form | CheckKind::Leak | CheckKind::Coverage);
+        let span = finding.span.filter(|_| concerns_path)?;
         Some(TextDoubt { span, grade, cause, reason: finding.reason.clone(), alternatives: Vec::new() })
     };
     findings.iter().filter_map(doubt).collect()
@@ -59,6 +59,6 @@ pub fn doubts_from_ambiguity(
 
 /// The words for the end of the walk: the last place of the step that stops, or else that step.
 fn end_words(spelt: &TokenisedText<'_>, guide: &Guide) -> Option<[usize; 2]> {
-    let stop = guide.steps.iter().rev().find(|told| told.step.stops).or(guide.steps.last())?;
+    let stop = guide.steps.iter().rev().find(|step| step.step.stops).or(guide.steps.last())?;
     stop.mentions.iter().rev().find_map(|mention| mention.span).or_else(|| spelt.step_words(stop.step.span))
 }

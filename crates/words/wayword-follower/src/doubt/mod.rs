@@ -26,7 +26,7 @@ use wayword_language::{
     rewording::{TokenisedText, in_capitals_of},
 };
 
-/// Most places of a text that are examined. The work grows with their number.
+/// Most places of a text that are examined, because the work grows with their number. Later places are ignored.
 const MOST_PLACES: usize = 14;
 
 /// The kind of change that led to a doubt.
@@ -44,11 +44,11 @@ pub enum DoubtSource {
     NoStep,
     /// How the walk goes by a place: past it, to it, into it.
     Way,
-    /// A place that the building has, to another one.
+    /// A place that the building has, replaced by another place.
     Place,
-    /// A place that the building does not have, to one that it has.
+    /// A place that the building does not have, replaced by one that it has.
     Unknown,
-    /// Two places, each to the other.
+    /// Two places, each replaced by the other.
     Swap,
 }
 
@@ -122,7 +122,7 @@ impl DoubtSite {
 
     /// The doubt about it, with the alternatives that gain anything.
     fn to_doubt(&self, grade: DoubtGrade) -> TextDoubt {
-        let gains = |one: &&DoubtAlternative| one.gain.is_some_and(|gain| gain > 0.0);
+        let gains = |alternative: &&DoubtAlternative| alternative.gain.is_some_and(|gain| gain > 0.0);
         let alternatives = self.alternatives.iter().filter(gains).cloned().collect();
         let reason = self.source.doubt_reason().to_owned();
         TextDoubt { span: self.span, grade, cause: DoubtCause::Change, reason, alternatives }
@@ -131,7 +131,7 @@ impl DoubtSite {
     /// The gain of the best alternative, natural logs; negative if all fit worse.
     #[must_use]
     pub fn best_gain(&self) -> f64 {
-        self.alternatives.iter().filter_map(|one| one.gain).fold(f64::NEG_INFINITY, f64::max)
+        self.alternatives.iter().filter_map(|alternative| alternative.gain).fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
@@ -183,7 +183,11 @@ fn offered_doubt(site: &DoubtSite, doubt: &TextDoubt) -> Option<TextDoubt> {
     let is_name = matches!(site.source, DoubtSource::Place | DoubtSource::Unknown);
     if is_wrong && site.source == DoubtSource::Way {
         let DoubtSite { span, alternatives, .. } = site.clone();
-        let best = alternatives.into_iter().take(1).map(|one| DoubtAlternative { gain: None, ..one }).collect();
+        let best = alternatives
+            .into_iter()
+            .take(1)
+            .map(|alternative| DoubtAlternative { gain: None, ..alternative })
+            .collect();
         return (span == doubt.span).then_some(TextDoubt { span, alternatives: best, ..doubt.clone() });
     }
     let fits = is_name || (is_wrong && (site.span == doubt.span || site.tells_motion()));
@@ -211,7 +215,7 @@ pub fn find_sites(text: &str, guide: &Guide, known: KnownWalk<'_>, weights: &Fea
     sites
 }
 
-/// Turns, sides, climbs and steps.
+/// The sites of changes of one step: its turn, the side of a place, its climb, or the whole step left out.
 fn step_sites(
     spelt: &TokenisedText<'_>,
     guide: &Guide,
@@ -262,8 +266,8 @@ fn is_stairs(name: &str) -> bool {
 
 /// The alternatives that gain most, the best first.
 fn best_first(alternatives: impl Iterator<Item = DoubtAlternative>) -> Vec<DoubtAlternative> {
-    let gain = |one: &DoubtAlternative| one.gain.filter(|gain| gain.is_finite());
-    let mut best: Vec<DoubtAlternative> = alternatives.filter(|one| gain(one).is_some()).collect();
+    let gain = |alternative: &DoubtAlternative| alternative.gain.filter(|gain| gain.is_finite());
+    let mut best: Vec<DoubtAlternative> = alternatives.filter(|alternative| gain(alternative).is_some()).collect();
     best.sort_by(|a, b| gain(b).unwrap_or(0.0).total_cmp(&gain(a).unwrap_or(0.0)));
     best.truncate(MOST_ALTERNATIVES);
     best

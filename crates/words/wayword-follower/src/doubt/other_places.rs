@@ -17,7 +17,7 @@ use wayword_language::{
 
 /// Most names of rooms, and of things, that are tried for each place.
 const MOST_NAMES: usize = 20;
-/// Least salience of a thing that is suggested to readers.
+/// Least salience in the lexicon (how easily one notices a thing) of a thing that is suggested to readers.
 const LEAST_SALIENCE: u8 = 2;
 
 /// Tries the rooms and things along the walk in place of each place that the text names.
@@ -29,28 +29,28 @@ pub(super) fn other_place_sites(
 ) -> Vec<DoubtSite> {
     let names = names_along(known.building, known.walk);
     let trial = GuideTrial::new(guide, known.building);
-    let as_told = walk.score(guide);
+    let base_score = walk.score(guide);
     let mut sites = Vec::new();
     for (step, place) in guide.named_places().take(MOST_PLACES) {
         let mention = &guide.steps[step].mentions[place];
         // A word before the name may belong to the old thing alone: "the water fountain".
         let Some(span) = mention.span.filter(|span| spelt.is_bare(*span)) else { continue };
         let is_found = trial.found[step].iter().any(|found| std::ptr::eq(found.mention, mention));
-        let told = spelt.with_its_article(span);
+        let whole = spelt.with_its_article(span);
         let alternative = |name: &PlaceQuery| {
             let mut changed = guide.clone();
             changed.steps[step].mentions[place].meanings = vec![name.clone()];
-            let gain = walk.score(&changed) - as_told;
-            DoubtAlternative { words: Some(words_instead(spelt, span, told, &name.name)), gain: Some(gain) }
+            let gain = walk.score(&changed) - base_score;
+            DoubtAlternative { words: Some(words_instead(spelt, span, whole, &name.name)), gain: Some(gain) }
         };
         let alternatives = best_first(names.iter().filter(|name| may_be(mention, name)).map(alternative));
         let source = if is_found { DoubtSource::Place } else { DoubtSource::Unknown };
-        sites.extend(DoubtSite::from_alternatives(source, told, alternatives));
+        sites.extend(DoubtSite::from_alternatives(source, whole, alternatives));
     }
     sites
 }
 
-/// The rooms of a walk, and the things that are seen from it, those that one notices first.
+/// The rooms of a walk, and the things that are seen from it: the most salient things first.
 fn names_along(building: &KnownBuilding, walk: &[usize]) -> Vec<PlaceQuery> {
     let mut rooms: Vec<&str> = walk.iter().filter_map(|at| building.viewpoints[*at].room.as_deref()).collect();
     rooms.sort_unstable();
@@ -79,16 +79,16 @@ fn may_be(mention: &GuideMention, name: &PlaceQuery) -> bool {
     is_alike && !is_climbed && !mention.meanings.iter().any(is_same)
 }
 
-/// A replacement for a name, in its number, with its article and capitals. `told` is the range of the old name with its
-/// article "a" or "an", if it has one.
-fn words_instead(spelt: &TokenisedText<'_>, old: [usize; 2], told: [usize; 2], name: &str) -> String {
-    let has_article = told != old;
+/// A replacement for the name in the range `old`, in its number, with its article and capitals. `whole` is the range of the old
+/// name with its article "a" or "an", if it has one.
+fn words_instead(spelt: &TokenisedText<'_>, old: [usize; 2], whole: [usize; 2], name: &str) -> String {
+    let has_article = whole != old;
     let name = match name {
         name if says_several(spelt.words_of(old)) => to_plural(name),
         name if has_article && !is_plural(name) => with_article(name),
         name => name.to_owned(),
     };
-    in_capitals_of(spelt.words_of(told), &name)
+    in_capitals_of(spelt.words_of(whole), &name)
 }
 
 #[cfg(test)]

@@ -21,22 +21,23 @@ const WAY_PREPOSITIONS: [(StepRelation, &str); 6] = [
     (StepRelation::Along, "along"),
 ];
 
+/// Tries other prepositions for each place that the walk passes, enters or leaves by the text.
 pub(super) fn way_sites(spelt: &TokenisedText<'_>, guide: &Guide, walk: &OneWalk<'_>) -> Vec<DoubtSite> {
     if guide.is_goal {
         return Vec::new();
     }
-    let as_told = walk.score(guide);
+    let base_score = walk.score(guide);
     let mut sites = Vec::new();
     for (step, place) in guide.named_places().take(MOST_PLACES) {
-        let told = &guide.steps[step];
-        let mention = &told.mentions[place];
+        let guide_step = &guide.steps[step];
+        let mention = &guide_step.mentions[place];
         let is_way = WAY_PREPOSITIONS.iter().any(|(relation, _)| *relation == mention.relation);
-        let way = mention.span.filter(|_| is_way).and_then(|span| spelt.way_words(told.step.span, span));
+        let way = mention.span.filter(|_| is_way).and_then(|span| spelt.way_words(guide_step.step.span, span));
         let Some(way) = way else { continue };
         let alternative = |(relation, preposition): &(StepRelation, &str)| {
             let mut changed = guide.clone();
             changed.steps[step].change_relation(place, *relation);
-            let gain = walk.score(&changed) - as_told;
+            let gain = walk.score(&changed) - base_score;
             let words = in_capitals_of(spelt.words_of(way.span), &format!("{}{preposition}", way.verb));
             DoubtAlternative { words: Some(words), gain: Some(gain) }
         };

@@ -16,7 +16,7 @@ use crate::{
 /// Turns of at least this angle are usually described by people, radians.
 const TOLD_TURN_RAD: f64 = 0.8;
 
-/// Finds the features of a walk that ends at a node.
+/// Adds to `found` the features of a walk that ends at the node `end`.
 pub(crate) fn ending_features(trial: &GuideTrial<'_>, tree: &WalkTree, end: usize, found: &mut Vec<FeatureNumber>) {
     if trial.guide.is_empty() {
         // The text has no step, so only the usual length of people's walks counts.
@@ -43,9 +43,10 @@ pub(crate) fn ending_features(trial: &GuideTrial<'_>, tree: &WalkTree, end: usiz
     }
     room_features(trial, is_goal, tree, end, found);
     let turns = tree.nodes_back(end).filter(|node| tree.nodes[*node].hops > 1);
-    let real = turns.filter(|node| tree.nodes[*node].turn_rad.abs() > TOLD_TURN_RAD).count();
-    let told = if trial.guide.is_goal { 6 } else { trial.guide.count_turns().min(5) };
-    found.push(TURNS_TOLD.feature_at([(told, 7), (real.min(6), 7)]));
+    let walk_turns = turns.filter(|node| tree.nodes[*node].turn_rad.abs() > TOLD_TURN_RAD).count();
+    // Class 6 is a text that only names a place to go to.
+    let text_turns = if trial.guide.is_goal { 6 } else { trial.guide.count_turns().min(5) };
+    found.push(TURNS_TOLD.feature_at([(text_turns, 7), (walk_turns.min(6), 7)]));
 }
 
 /// The rooms that the walk passes without a mention in the text, and the room where it ends.
@@ -57,16 +58,16 @@ fn room_features(
     found: &mut Vec<FeatureNumber>,
 ) {
     let room = |node: usize| trial.building.viewpoints[tree.nodes[node].viewpoint].room.as_deref();
-    let tells = |node: usize| trial.tells_room[tree.nodes[node].viewpoint];
+    let is_named = |node: usize| trial.tells_room[tree.nodes[node].viewpoint];
     let mut unnamed: Vec<&str> = Vec::new();
-    for node in tree.nodes_back(end).filter(|node| *node != 0 && tells(*node) == Some(false)) {
+    for node in tree.nodes_back(end).filter(|node| *node != 0 && is_named(*node) == Some(false)) {
         let room = room(node).unwrap_or_default();
         if !unnamed.contains(&room) {
             unnamed.push(room);
         }
     }
     found.push(UNNAMED_PASSED.feature_at([is_goal, (unnamed.len().min(4), 5)]));
-    if let Some(is_named) = tells(end) {
+    if let Some(is_named) = is_named(end) {
         let commonness = trial.building.commonness_of_room(tree.nodes[end].viewpoint);
         found.push(UNNAMED_END.feature_at([is_goal, (usize::from(is_named), 2), (commonness, 3)]));
     }

@@ -16,7 +16,7 @@ use crate::guide::GuideTrial;
 /// The number of a feature, by which its weight is found.
 pub(crate) type FeatureNumber = u32;
 
-/// Finds the features of a step of the text over a stretch.
+/// Adds to `found` the numbers of the features that hold for a step of the text over a stretch.
 pub(crate) fn stretch_features(
     trial: &GuideTrial<'_>,
     step: usize,

@@ -17,6 +17,7 @@ use wayword_core::Side;
 /// Distance of a place, from and to, at which a step can lead towards it, metres.
 const TOWARDS_M: std::ops::Range<f64> = 1.0..14.0;
 
+/// Adds to `found` the features of each place that the step names and the building has.
 pub(super) fn place_features(
     trial: &GuideTrial<'_>,
     step: usize,
@@ -40,6 +41,7 @@ fn near_features(place: &LocatedMention<'_>, stretch: &WalkStretch<'_>, is_last:
     let nearest = stretch.nodes().iter().map(|node| class(*node)).min().unwrap_or(FAR_CLASS);
     let relation = (place.mention.relation as usize, RELATIONS);
     let group = (relation_group(place.mention.relation), GROUPS);
+    // Each dimension of a feature is a pair: the value, and the number of values.
     for (at, near) in [first, nearest, last].into_iter().enumerate() {
         let (at, near) = ((at, 3), (near, CLASSES));
         if place.is_room {
@@ -55,6 +57,7 @@ fn near_features(place: &LocatedMention<'_>, stretch: &WalkStretch<'_>, is_last:
         found.push(table.feature_at([relation, (last, CLASSES)]));
     }
     if place.is_room {
+        // Classes 0 and 1 are viewpoints in the room.
         let moves = usize::from(first <= 1) * 2 + usize::from(last <= 1);
         found.push(ROOM_MOVE.feature_at([relation, (moves, 4)]));
     }
@@ -119,6 +122,7 @@ fn ahead_features(
     let node = &stretch.tree.nodes[stretch.last_node()];
     let Some(there) = place.near.nearest[node.viewpoint] else { return };
     let off = there - trial.building.viewpoints[node.viewpoint].position;
+    // Three classes of distance. A farther place gives no feature.
     let near = match place.near.class[node.viewpoint] {
         0 | 1 => 0,
         2 => 1,
@@ -141,9 +145,9 @@ fn nearest_features(
     found: &mut Vec<FeatureNumber>,
 ) {
     let class = |viewpoint: usize| place.near.class[viewpoint];
-    let of_node = |node: &usize| stretch.tree.nodes[*node].viewpoint;
-    let (end, here) = (of_node(&stretch.last_node()), class(of_node(&stretch.last_node())));
-    let was_nearer = stretch.nodes().iter().any(|node| class(of_node(node)) < here);
+    let viewpoint = |node: &usize| stretch.tree.nodes[*node].viewpoint;
+    let (end, here) = (viewpoint(&stretch.last_node()), class(viewpoint(&stretch.last_node())));
+    let was_nearer = stretch.nodes().iter().any(|node| class(viewpoint(node)) < here);
     let comes_nearer = trial.building.viewpoints[end].neighbours.iter().any(|to| class(*to) < here);
     let group = (relation_group(place.mention.relation), GROUPS);
     let which = usize::from(was_nearer) * 2 + usize::from(comes_nearer);

@@ -18,7 +18,7 @@ use crate::{
 use wayword_core::{ClimbDirection, Side};
 use wayword_language::reading::steps::{StepRelation, StepStairs};
 
-/// Most hops of a step.
+/// Most hops of a step. A walk on which a step would have to lead farther does not fit at all.
 pub(crate) const MOST_HOPS: usize = 8;
 /// Turns of at least this angle are more than a bend of a corridor, radians.
 const CLEAR_TURN_RAD: f64 = 0.7;
@@ -27,6 +27,7 @@ const CLEAR_TURN_RAD: f64 = 0.7;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WalkStretch<'a> {
     pub(crate) tree: &'a WalkTree,
+    /// The first `hops + 1` entries are the nodes of the stretch, in the order of the walk.
     nodes: [usize; MOST_HOPS + 1],
     pub(crate) hops: usize,
 }
@@ -74,23 +75,23 @@ impl<'a> WalkStretch<'a> {
     }
 }
 
-/// Finds the features of a step of the text over a stretch that no place in the step decides.
+/// Adds to `found` those features of a step of the text over a stretch that do not depend on places that the step names.
 pub(super) fn motion_features(
     trial: &GuideTrial<'_>,
     step: usize,
     stretch: &WalkStretch<'_>,
     found: &mut Vec<FeatureNumber>,
 ) {
-    let told = &trial.guide.steps[step];
+    let guide_step = &trial.guide.steps[step];
     let is_last = step + 1 == trial.guide.len();
-    length_features(told, is_last, stretch, found);
+    length_features(guide_step, is_last, stretch, found);
     context_features(trial, step, stretch, found);
-    turn_features(told, stretch, found);
+    turn_features(guide_step, stretch, found);
     let viewpoint = |node: usize| &trial.building.viewpoints[stretch.tree.nodes[node].viewpoint];
     let (first, last) = (viewpoint(stretch.first_node()), viewpoint(stretch.last_node()));
-    rise_features(told, last.position.z - first.position.z, found);
-    stairs_features(told, [first, last], found);
-    level_features(trial, told, [viewpoint(0), last], found);
+    rise_features(guide_step, last.position.z - first.position.z, found);
+    stairs_features(guide_step, [first, last], found);
+    level_features(trial, guide_step, [viewpoint(0), last], found);
     let crossings =
         stretch.nodes().windows(2).filter(|pair| viewpoint(pair[0]).room != viewpoint(pair[1]).room).count();
     if stretch.hops > 0 {
@@ -101,17 +102,17 @@ pub(super) fn motion_features(
         let ends = [crosses(0), crosses(stretch.hops - 1)];
         let is_long = (usize::from(stretch.hops > 1), 2);
         found.push(CROSSING_ENDS.feature_at([
-            (told.step.door as usize, 4),
+            (guide_step.step.door as usize, 4),
             (usize::from(is_last), 2),
             is_long,
             ends[0],
             ends[1],
         ]));
     }
-    crossing_features(trial, told, is_last, [first, last], crossings, found);
-    onward_features(told, stretch, found);
+    crossing_features(trial, guide_step, is_last, [first, last], crossings, found);
+    onward_features(guide_step, stretch, found);
     let bend = limit_class(stretch.bend_rad().abs().to_degrees(), &[20.0, 50.0, 100.0]);
-    for mark in &told.step.marks {
+    for mark in &guide_step.step.marks {
         found.push(MARK_HOPS.feature_at([(*mark, MARKS), (stretch.hops.min(4), 5)]));
         found.push(MARK_CROSSINGS.feature_at([(*mark, MARKS), (crossings.min(2), 3)]));
         if stretch.hops > 0 {
@@ -120,15 +121,16 @@ pub(super) fn motion_features(
     }
 }
 
-fn length_features(told: &GuideStep, is_last: bool, stretch: &WalkStretch<'_>, found: &mut Vec<FeatureNumber>) {
-    let kind = (told.kind as usize, GuideStepKind::COUNT);
+/// How many hops and metres the stretch has.
+fn length_features(guide_step: &GuideStep, is_last: bool, stretch: &WalkStretch<'_>, found: &mut Vec<FeatureNumber>) {
+    let kind = (guide_step.kind as usize, GuideStepKind::COUNT);
     let hops = (stretch.hops.min(HOPS_CLASSES - 1), HOPS_CLASSES);
     let is_last = (usize::from(is_last), 2);
     found.push(HOPS.feature_at([kind, is_last, hops]));
-    if told.step.stops {
-        found.push(STOPS.feature_at([is_last, (usize::from(told.step.turn.is_some()), 2), hops]));
+    if guide_step.step.stops {
+        found.push(STOPS.feature_at([is_last, (usize::from(guide_step.step.turn.is_some()), 2), hops]));
     }
-    if told.step.is_condition {
+    if guide_step.step.is_condition {
         found.push(CONDITION.feature_at([is_last, hops]));
     }
     let length_m: f64 = stretch.nodes()[1..].iter().map(|at| stretch.tree.nodes[*at].length_m).sum();
@@ -141,8 +143,13 @@ fn context_features(trial: &GuideTrial<'_>, step: usize, stretch: &WalkStretch<'
     let kind = (steps[step].kind as usize, GuideStepKind::COUNT);
     let next = steps.get(step + 1);
     let is_last = (usize::from(next.is_none()), 2);
-    let of_steps = (limit_class(steps.len() as f64, &[3.0, 5.0]), 3);
-    found.push(HOPS_OF_STEPS.feature_at([of_steps, kind, is_last, (stretch.hops.min(HOPS_CLASSES - 1), HOPS_CLASSES)]));
+    let step_count = (limit_class(steps.len() as f64, &[3.0, 5.0]), 3);
+    found.push(HOPS_OF_STEPS.feature_at([
+        step_count,
+        kind,
+        is_last,
+        (stretch.hops.min(HOPS_CLASSES - 1), HOPS_CLASSES),
+    ]));
     if let Some(next) = next {
         found.push(NEXT_STEP.feature_at([kind, (next.kind as usize, GuideStepKind::COUNT), (stretch.hops.min(4), 5)]));
     }
@@ -182,18 +189,19 @@ fn context_features(trial: &GuideTrial<'_>, step: usize, stretch: &WalkStretch<'
     }
 }
 
-fn told_turn(told: &GuideStep) -> bool {
-    told.step.turn.is_some()
+/// Whether a step describes a turn.
+fn told_turn(guide_step: &GuideStep) -> bool {
+    guide_step.step.turn.is_some()
 }
 
-/// The storey where it ends, if the text gives one.
+/// The storey where the stretch ends, if the text gives one.
 fn level_features(
     trial: &GuideTrial<'_>,
-    told: &GuideStep,
+    guide_step: &GuideStep,
     [start, last]: [&BuildingViewpoint; 2],
     found: &mut Vec<FeatureNumber>,
 ) {
-    let which = match (told.step.floor, told.step.storey) {
+    let which = match (guide_step.step.floor, guide_step.step.storey) {
         (Some(floor), _) => floor.number.map_or(3, |number| (number as usize).clamp(1, 4) - 1),
         (None, Some(ClimbDirection::Up)) => 4,
         (None, Some(ClimbDirection::Down)) => 5,
@@ -208,11 +216,12 @@ fn level_features(
     found.push(LEVEL_RISE.feature_at([which, (rise, 7)]));
 }
 
-fn turn_features(told: &GuideStep, stretch: &WalkStretch<'_>, found: &mut Vec<FeatureNumber>) {
+/// How far the walk turns on the stretch, by the side that the text gives.
+fn turn_features(guide_step: &GuideStep, stretch: &WalkStretch<'_>, found: &mut Vec<FeatureNumber>) {
     if stretch.hops > 0 {
-        let kind = (told.kind as usize, GuideStepKind::COUNT);
+        let kind = (guide_step.kind as usize, GuideStepKind::COUNT);
         // Mirrored so that a turn to the side in the text is positive; without a side, only the size counts.
-        let told_rad = |rad: f64| match told.step.turn {
+        let told_rad = |rad: f64| match guide_step.step.turn {
             Some(Side::Left) => -rad,
             Some(Side::Right) => rad,
             _ => rad.abs(),
@@ -236,7 +245,7 @@ fn turn_features(told: &GuideStep, stretch: &WalkStretch<'_>, found: &mut Vec<Fe
         }
     }
     // "The door on your left": the way there bends to that side.
-    if let Some((relation, side)) = told.step.side.filter(|_| stretch.hops > 0) {
+    if let Some((relation, side)) = guide_step.step.side.filter(|_| stretch.hops > 0) {
         let group = match relation {
             StepRelation::Into | StepRelation::Through => 0,
             StepRelation::To | StepRelation::Along => 1,
@@ -248,18 +257,21 @@ fn turn_features(told: &GuideStep, stretch: &WalkStretch<'_>, found: &mut Vec<Fe
     }
 }
 
-fn rise_features(told: &GuideStep, rise_m: f64, found: &mut Vec<FeatureNumber>) {
-    let (is_told, rise_m) = match told.step.climb {
+/// How far the stretch leads up, or down if the text describes a climb down.
+fn rise_features(guide_step: &GuideStep, rise_m: f64, found: &mut Vec<FeatureNumber>) {
+    // The first value is 0 for a step that describes a climb, and 1 for any other.
+    let (climb_class, rise_m) = match guide_step.step.climb {
         Some(ClimbDirection::Up) => (0, rise_m),
         Some(ClimbDirection::Down) => (0, -rise_m),
         _ => (1, rise_m.abs()),
     };
     let class = limit_class(rise_m, &[-3.0, -2.0, -1.0, -0.5, -0.15, 0.15, 0.5, 1.0, 2.0, 3.0]);
-    found.push(RISE.feature_at([(is_told, 2), (class, 11)]));
+    found.push(RISE.feature_at([(climb_class, 2), (class, 11)]));
 }
 
-fn stairs_features(told: &GuideStep, ends: [&BuildingViewpoint; 2], found: &mut Vec<FeatureNumber>) {
-    let part = match told.step.stairs {
+/// Whether ways up or down begin where the stretch begins and ends, for a step that names stairs.
+fn stairs_features(guide_step: &GuideStep, ends: [&BuildingViewpoint; 2], found: &mut Vec<FeatureNumber>) {
+    let part = match guide_step.step.stairs {
         StepStairs::None => return,
         StepStairs::Named => 0,
         StepStairs::Top => 1,
@@ -267,23 +279,25 @@ fn stairs_features(told: &GuideStep, ends: [&BuildingViewpoint; 2], found: &mut 
     };
     for (at, viewpoint) in ends.iter().enumerate() {
         let ways = usize::from(viewpoint.climbs[0]) * 2 + usize::from(viewpoint.climbs[1]);
-        let climbs = (usize::from(told.step.climb.is_some()), 2);
+        let climbs = (usize::from(guide_step.step.climb.is_some()), 2);
         found.push(STAIRS_AT.feature_at([(part, 3), climbs, (at, 2), (ways, 4)]));
     }
 }
 
+/// How often the stretch changes rooms, and whether other rooms are next to its end.
 fn crossing_features(
     trial: &GuideTrial<'_>,
-    told: &GuideStep,
+    guide_step: &GuideStep,
     is_last: bool,
     [first, last]: [&BuildingViewpoint; 2],
     crossings: usize,
     found: &mut Vec<FeatureNumber>,
 ) {
-    let door = (told.step.door as usize, 4);
+    let door = (guide_step.step.door as usize, 4);
     found.push(CROSSINGS.feature_at([door, (crossings.min(3), 4)]));
     found.push(
-        SAME_ROOM.feature_at([(told.kind as usize, GuideStepKind::COUNT), (usize::from(first.room == last.room), 2)]),
+        SAME_ROOM
+            .feature_at([(guide_step.kind as usize, GuideStepKind::COUNT), (usize::from(first.room == last.room), 2)]),
     );
     let room = |at: &usize| &trial.building.viewpoints[*at].room;
     let border = last.neighbours.iter().filter(|at| *room(at) != last.room).count();
@@ -291,8 +305,8 @@ fn crossing_features(
 }
 
 /// Whether the walk could go straight on from the end.
-fn onward_features(told: &GuideStep, stretch: &WalkStretch<'_>, found: &mut Vec<FeatureNumber>) {
+fn onward_features(guide_step: &GuideStep, stretch: &WalkStretch<'_>, found: &mut Vec<FeatureNumber>) {
     let goes_on = usize::from(stretch.tree.nodes[stretch.last_node()].ways.onward);
-    let kind = (told.kind as usize, GuideStepKind::COUNT);
-    found.push(ONWARD.feature_at([kind, (usize::from(told.step.at_end), 2), (goes_on, 2)]));
+    let kind = (guide_step.kind as usize, GuideStepKind::COUNT);
+    found.push(ONWARD.feature_at([kind, (usize::from(guide_step.step.at_end), 2), (goes_on, 2)]));
 }

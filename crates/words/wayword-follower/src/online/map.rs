@@ -50,10 +50,10 @@ impl WalkerHop {
     }
 }
 
-/// Two viewpoints that lie closer than this are one, metres. The walker adds up its hops, so the same place comes out a
-/// little different each time.
+/// Two viewpoints closer than this are taken for one, metres. The walker adds up its hops, so its positions for the same place
+/// differ a little each time.
 const SAME_PLACE_M: f64 = 0.05;
-/// Assumed distance of an object that is seen in the direction of a hop, metres at most.
+/// Largest assumed distance of an object that is seen in the direction of a hop, metres; over a shorter hop, the hop's length.
 const THING_M: f64 = 1.5;
 
 /// A map of where a walker was.
@@ -84,9 +84,9 @@ impl WalkerMap {
     }
 
     /// Adds the observation at the walker's viewpoint to the map.
-    pub(super) fn note_sighting(&mut self, seen: &WalkerSighting) {
+    pub(super) fn note_sighting(&mut self, sighting: &WalkerSighting) {
         let here_m = self.building.viewpoints[self.here].position;
-        let offsets: Vec<DVec3> = seen.hops.iter().map(|hop| self.hop_offset(hop)).collect();
+        let offsets: Vec<DVec3> = sighting.hops.iter().map(|hop| self.hop_offset(hop)).collect();
         if self.building.viewpoints[self.here].is_known {
             let ends = self.ways[self.here].iter().map(|to| self.building.viewpoints[*to].position);
             let is_close = |(end, off): (DVec3, &DVec3)| end.distance(here_m + *off) < 2.0 * SAME_PLACE_M;
@@ -102,7 +102,7 @@ impl WalkerMap {
             join_viewpoints(&mut self.building.viewpoints, *to, self.here);
         }
         self.ways[self.here] = ways;
-        for (name, hop) in &seen.things {
+        for (name, hop) in &sighting.things {
             let Some(off) = offsets.get(*hop) else { continue };
             let position = here_m + off.normalize_or_zero() * off.length().min(THING_M);
             self.building.things.push(BuildingThing {
@@ -112,7 +112,7 @@ impl WalkerMap {
             });
         }
         let viewpoint = &mut self.building.viewpoints[self.here];
-        viewpoint.room.clone_from(&seen.room);
+        viewpoint.room.clone_from(&sighting.room);
         viewpoint.is_known = true;
         self.building.forget_nearness();
     }
@@ -130,6 +130,7 @@ impl WalkerMap {
         self.building.viewpoints.iter().position(is_here).unwrap_or_else(|| self.add_viewpoint(position))
     }
 
+    /// Adds a viewpoint where the walker was not yet, and returns its number.
     fn add_viewpoint(&mut self, position: DVec3) -> usize {
         self.building.viewpoints.push(BuildingViewpoint {
             position,
@@ -144,6 +145,7 @@ impl WalkerMap {
     }
 }
 
+/// Makes a viewpoint a neighbour of another, once.
 fn join_viewpoints(viewpoints: &mut [BuildingViewpoint], from: usize, to: usize) {
     if from != to && !viewpoints[from].neighbours.contains(&to) {
         viewpoints[from].neighbours.push(to);

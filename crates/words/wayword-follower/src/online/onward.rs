@@ -24,9 +24,9 @@ pub struct OnwardWeights {
     pub away: [[f64; HOPS_AWAY_CLASSES]; 2],
 }
 
-/// Classes of the number of steps that are left.
+/// Classes of the number of steps after the one in progress: 0 to 6, and more.
 pub(crate) const STEPS_LEFT_CLASSES: usize = 8;
-/// Classes of hops to an option.
+/// Classes of the number of hops to a viewpoint: 0 to 6, and more.
 pub(crate) const HOPS_AWAY_CLASSES: usize = 8;
 
 static FITTED_ONWARD_WEIGHTS: LazyLock<OnwardWeights> =
@@ -113,7 +113,7 @@ impl OnwardLearner {
 /// How well the text fits going on to viewpoints that were not visited.
 #[derive(Debug, Clone)]
 pub struct OnwardFit {
-    /// For each node: the log of the sum over steps and stretches.
+    /// For each node: the log of the sum over all steps that may be in progress there, and their stretches.
     scores: Vec<f64>,
     /// For each node, the terms of its sum: step, hops, value.
     parts: Vec<Vec<(usize, usize, f64)>>,
@@ -154,6 +154,7 @@ impl OnwardFit {
     }
 }
 
+/// The class of the number of steps that come after a step.
 fn steps_left_class(steps: usize, step: usize) -> usize {
     (steps - step - 1).min(STEPS_LEFT_CLASSES - 1)
 }
@@ -161,6 +162,7 @@ fn steps_left_class(steps: usize, step: usize) -> usize {
 /// The gradient of the loss over decisions.
 #[derive(Debug, Clone)]
 pub struct OnwardSlope {
+    /// The gradient by the fields of [`OnwardWeights`] with the same names.
     pub(crate) done: Vec<f64>,
     pub(crate) going: Vec<f64>,
     pub(crate) left: [f64; STEPS_LEFT_CLASSES],
@@ -203,6 +205,7 @@ impl OnwardSlope {
                 let share = by * (value - onward.scores[end]).exp();
                 by_sum[*step][froms[*hops]] += share;
                 self.left[steps_left_class(steps, *step)] += share;
+                // Smaller shares are ignored, to save time.
                 if share.abs() > 1e-6 {
                     found.clear();
                     stretch_features(trial, *step, &WalkStretch::to_node(tree, end, *hops), &mut found);

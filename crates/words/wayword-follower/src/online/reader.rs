@@ -26,15 +26,16 @@ pub struct WalkingFollower<'a> {
     guide: &'a Guide,
     weights: &'a OnwardWeights,
     map: WalkerMap,
+    /// Hops so far.
     hops: usize,
 }
 
-/// Most hops of a walker before it stops.
+/// Most hops of a walker. After these it stops wherever it is.
 const MOST_STEPS: usize = 24;
-/// Most hops of the walks that it considers.
+/// Most hops of the walks from the start that a walker considers.
 const MOST_HOPS: usize = 10;
-/// Deduction for each hop to an option, in addition to the fitted weights. These were fitted to reach the goal at all;
-/// going back and forth has a cost too.
+/// Deduction for each hop to an option, natural logs, in addition to the fitted weights. The fit only rewards reaching the goal;
+/// going back and forth on the way has a cost too.
 const HOP_COST: f64 = 0.3;
 
 /// A walker's options at its viewpoint.
@@ -59,9 +60,9 @@ impl<'a> WalkingFollower<'a> {
         Self { guide, weights, map: WalkerMap::new(), hops: 0 }
     }
 
-    /// Looks around, and decides.
-    pub fn decide_next(&mut self, seen: &WalkerSighting) -> WalkerDecision {
-        self.look_around(seen);
+    /// Adds a sighting to the map, and decides.
+    pub fn decide_next(&mut self, sighting: &WalkerSighting) -> WalkerDecision {
+        self.look_around(sighting);
         if self.hops >= MOST_STEPS || self.guide.is_empty() {
             return WalkerDecision::Stop;
         }
@@ -73,9 +74,9 @@ impl<'a> WalkingFollower<'a> {
         })
     }
 
-    /// Looks around.
-    pub fn look_around(&mut self, seen: &WalkerSighting) {
-        self.map.note_sighting(seen);
+    /// Adds a sighting at the walker's viewpoint to the map.
+    pub fn look_around(&mut self, sighting: &WalkerSighting) {
+        self.map.note_sighting(sighting);
     }
 
     /// Takes a hop of the sighting here.
@@ -92,15 +93,16 @@ impl<'a> WalkingFollower<'a> {
         let options = self.find_choices(&GuideTrial::new_partial(self.guide, &self.map.building));
         let cost = |walk: usize| HOP_COST * options.away[walk] as f64;
         let both = options.stop.iter().enumerate().chain(options.go.iter().enumerate());
-        let all: Vec<(usize, f64)> = both.map(|(walk, worth)| (walk, worth - cost(walk))).collect();
-        let highest = all.iter().map(|(_, worth)| *worth).fold(f64::NEG_INFINITY, f64::max);
+        let all: Vec<(usize, f64)> = both.map(|(walk, score)| (walk, score - cost(walk))).collect();
+        let highest = all.iter().map(|(_, score)| *score).fold(f64::NEG_INFINITY, f64::max);
         let mut shares = vec![0.0; self.map.building.len()];
-        for (walk, worth) in all.iter().filter(|(_, worth)| worth.is_finite()) {
-            shares[options.next[*walk]] += (worth - highest).exp();
+        for (walk, score) in all.iter().filter(|(_, score)| score.is_finite()) {
+            shares[options.next[*walk]] += (score - highest).exp();
         }
         (0..shares.len()).max_by(|a, b| shares[*a].total_cmp(&shares[*b])).unwrap_or(self.map.here)
     }
 
+    /// Scores stopping at each known viewpoint, and going on to each unvisited one.
     fn find_choices(&self, trial: &GuideTrial<'_>) -> WalkerChoices {
         let building = &self.map.building;
         let tree = WalkTree::from_prior(building, 0, 0.0, WalkPrior::Shortest(MOST_HOPS));
@@ -112,8 +114,8 @@ impl<'a> WalkingFollower<'a> {
         }
         let fit = WalkFit::new(trial, &tree, &self.weights.done);
         let onward = OnwardFit::new(trial, &tree, &fit, self.weights);
-        let [away, next] =
-            [away, next].map(|of| (0..tree.len()).map(|walk| of[tree.end_viewpoint(walk)]).collect::<Vec<_>>());
+        let [away, next] = [away, next]
+            .map(|by_viewpoint| (0..tree.len()).map(|walk| by_viewpoint[tree.end_viewpoint(walk)]).collect::<Vec<_>>());
         let is_known = |node: usize| building.viewpoints[tree.end_viewpoint(node)].is_known;
         let stop = |node: usize| match node > 0 && is_known(node) {
             true => fit.score(node) + self.weights.away[0][away[node]],
@@ -127,17 +129,17 @@ impl<'a> WalkingFollower<'a> {
     /// Adds the right decision at this viewpoint to a gradient: to go to the last known viewpoint of the shortest way
     /// to the goal, or to stop at the goal. The way is given by its hops, each by its number at its viewpoint.
     pub fn learn_decision(&self, way: impl IntoIterator<Item = usize>, slope: &mut OnwardSlope) {
-        let mut right = self.map.here;
+        let mut target = self.map.here;
         for hop in way {
-            match self.map.ways[right].get(hop) {
-                Some(to) => right = *to,
+            match self.map.ways[target].get(hop) {
+                Some(to) => target = *to,
                 None => return,
             }
-            if !self.map.building.viewpoints[right].is_known {
+            if !self.map.building.viewpoints[target].is_known {
                 break;
             }
         }
-        let is_stop = self.map.building.viewpoints[right].is_known;
+        let is_stop = self.map.building.viewpoints[target].is_known;
         let trial = GuideTrial::new_partial(self.guide, &self.map.building);
         let options = self.find_choices(&trial);
         let all = || options.stop.iter().chain(&options.go).copied();
@@ -146,7 +148,7 @@ impl<'a> WalkingFollower<'a> {
         let share = |score: &f64| (score - highest).exp() / whole;
         let mut by_stop: Vec<f64> = options.stop.iter().map(share).collect();
         let mut by_going: Vec<f64> = options.go.iter().map(share).collect();
-        let Some(node) = (1..options.tree.len()).find(|node| options.tree.end_viewpoint(*node) == right) else {
+        let Some(node) = (1..options.tree.len()).find(|node| options.tree.end_viewpoint(*node) == target) else {
             return;
         };
         let by = if is_stop { &mut by_stop } else { &mut by_going };

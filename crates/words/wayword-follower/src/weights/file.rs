@@ -29,6 +29,7 @@ pub enum WeightsError {
     NotFinite(&'static str),
 }
 
+/// The content of a file of weights. The last three fields are only in the file of a walker without a map ([`OnwardWeights`]).
 #[derive(Serialize, Deserialize)]
 struct WeightsFile {
     /// The data that the weights were fitted to.
@@ -101,6 +102,7 @@ impl OnwardWeights {
 }
 
 impl WeightsFile {
+    /// The file as text: JSON with a line for each table.
     fn to_text(&self) -> String {
         let mut text = serde_json::to_string(self).unwrap_or_default().replace("],\"", "],\n\"");
         text.push('\n');
@@ -108,15 +110,19 @@ impl WeightsFile {
     }
 }
 
+/// A weight rounded to thousandths.
 fn round_weight(weight: &f64) -> f64 {
     (weight * 1000.0).round() / 1000.0
 }
 
+/// The weights as lists, by the names of their tables.
 fn to_tables(weights: &FeatureWeights) -> BTreeMap<String, Vec<f64>> {
-    let of = |table: &FeatureTable| weights.0[table.from..table.from + table.size].iter().map(round_weight).collect();
-    ALL.iter().map(|table| (table.name.to_owned(), of(table))).collect()
+    let rounded =
+        |table: &FeatureTable| weights.0[table.from..table.from + table.size].iter().map(round_weight).collect();
+    ALL.iter().map(|table| (table.name.to_owned(), rounded(table))).collect()
 }
 
+/// The weights from lists by the names of their tables.
 fn of_tables(tables: &BTreeMap<String, Vec<f64>>) -> Result<FeatureWeights, WeightsError> {
     let mut weights = FeatureWeights::all_zero();
     for table in ALL {

@@ -44,6 +44,7 @@ impl FeatureWeights {
         &self.0
     }
 
+    /// The weights from a list in the order of the features' numbers.
     pub(crate) fn from_values(values: &[f64]) -> Self {
         Self(values.to_vec())
     }

@@ -57,11 +57,12 @@ pub(super) fn apply_detections(
         measure_distances(walk, seen, &mut finds)?;
     }
     let (by, looked_at) = (seeker.detector.name(), seen.iter().map(|seen| (seen.frame, seen.look)).collect());
-    let was: Vec<Vec<ObjectSighting>> = all_looks(observations).map(|look| look.caption.sightings.clone()).collect();
-    for ((name, before), finds) in wanted.iter().zip(finds) {
-        let judged = judge_finds(seeker.figures.rates_for(name), &found_by_frame(seen, &finds), *before);
-        let is_proposal = *before <= PROPOSED_PRIOR;
-        match (judged, purpose) {
+    let earlier: Vec<Vec<ObjectSighting>> =
+        all_looks(observations).map(|look| look.caption.sightings.clone()).collect();
+    for ((name, prior), finds) in wanted.iter().zip(finds) {
+        let verdict = judge_finds(seeker.figures.rates_for(name), &found_by_frame(seen, &finds), *prior);
+        let is_proposal = *prior <= PROPOSED_PRIOR;
+        match (verdict, purpose) {
             (DetectionVerdict::There, _) => mark_as_seen(observations, name, &finds, &looked_at, by),
             _ if is_proposal => {}
             (DetectionVerdict::Absent, DetectionPurpose::Captions) => struck_out(observations, name, by),
@@ -77,8 +78,8 @@ pub(super) fn apply_detections(
         }
     }
     if purpose == DetectionPurpose::Captions {
-        let mut was = was.into_iter();
-        observations.iter_mut().try_for_each(|observation| reword_changed_captions(observation, &mut was))?;
+        let mut earlier = earlier.into_iter();
+        observations.iter_mut().try_for_each(|observation| reword_changed_captions(observation, &mut earlier))?;
     }
     Ok(())
 }
@@ -118,9 +119,9 @@ fn mark_as_seen(
         }
         // The caption may already have a more exact name ("dining table"): that one stays, and the thing is not named
         // twice.
-        let is_said =
+        let is_named_already =
             |sighting: &ObjectSighting| sighting.witness == WitnessAnswer::Seen && names_agree(&sighting.name, name);
-        if !is_named && !look.caption.sightings.iter().any(is_said) {
+        if !is_named && !look.caption.sightings.iter().any(is_named_already) {
             let several = spots.len() > 1;
             let spot = Some(best);
             let is_far = is_far.unwrap_or_default();
@@ -168,11 +169,12 @@ fn mark_missed_as_unsure(
     });
 }
 
-/// Adds the detector's result for a claim to every look.
+/// Adds the detector's result for a claimed thing to every look: denied or unsure.
 fn said_of_all(observations: &mut [FrameObservation], name: &str, witness: WitnessAnswer, by: &str) {
     all_looks(observations).for_each(|look| look.caption.sightings.push(ObjectSighting::new(name, witness, by)));
 }
 
+/// Turns the seen things of that name in a look into guesses of the detector, which is called `by`.
 fn make_unsure(look: &mut CaptionedView, name: &str, by: &str) {
     for sighting in sightings_named(&mut look.caption, name).filter(|sighting| sighting.witness == WitnessAnswer::Seen)
     {
@@ -181,29 +183,29 @@ fn make_unsure(look: &mut CaptionedView, name: &str, by: &str) {
     }
 }
 
-/// Changes the looks at which the detector looked.
+/// Calls `change` for each look at which the detector looked.
 fn for_each_look(
     observations: &mut [FrameObservation],
     looked_at: &LookIndexSet,
     mut change: impl FnMut(LookIndex, &mut CaptionedView),
 ) {
     for (frame, look) in looked_at {
-        if let Some(found) = observations.get_mut(*frame).and_then(|seen| seen.looks.get_mut(*look)) {
-            change((*frame, *look), found);
+        if let Some(captioned) = observations.get_mut(*frame).and_then(|seen| seen.looks.get_mut(*look)) {
+            change((*frame, *look), captioned);
         }
     }
 }
 
 /// Writes the text of changed captions anew by rules, so that no words name a thing that the sightings no longer
-/// contain. `was` yields the sightings of each look before the change.
+/// contain. `earlier` yields the sightings of each look before the change.
 fn reword_changed_captions(
     observation: &mut FrameObservation,
-    was: &mut impl Iterator<Item = Vec<ObjectSighting>>,
+    earlier: &mut impl Iterator<Item = Vec<ObjectSighting>>,
 ) -> Result<(), ModelError> {
     let mut is_changed = false;
-    for (look, was) in observation.looks.iter_mut().zip(was) {
+    for (look, sightings_before) in observation.looks.iter_mut().zip(earlier) {
         let caption = &mut look.caption;
-        if caption.sightings == was {
+        if caption.sightings == sightings_before {
             continue;
         }
         is_changed = true;

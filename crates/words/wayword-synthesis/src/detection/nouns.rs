@@ -11,10 +11,10 @@ use wayword_language::{
 /// The built-in list of household things, one name per line.
 const HOUSEHOLD_NOUNS: &str = include_str!("nouns.txt");
 
-/// Most names that a style adds.
+/// Most names that one style adds; the rarer ones are left out.
 const MOST_OF_STYLE: usize = 30;
 
-/// Most names that are looked for: each costs time in every view.
+/// Most names of a list, because each costs time in every view. A longer list is refused.
 const MAX_NOUNS: usize = 300;
 
 /// Parses a list of names: one per line, `#` begins a comment. `None` if the list is empty or longer than the limit.
@@ -33,6 +33,7 @@ pub fn usual_nouns<'a>(styles: impl Iterator<Item = &'a InstructionStyle>) -> Ve
     names.into_iter().collect()
 }
 
+/// The things that the reference texts of a style name more than once, the most frequent first.
 fn of_style(style: &InstructionStyle) -> Vec<String> {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for text in &style.references {

@@ -1,4 +1,6 @@
 //! Runs the detector on the views along a path and collects where it found each name.
+//!
+//! A look is one view of a frame with its caption; a frame of a panorama has four looks.
 
 use super::CaptionDetector;
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,7 +25,7 @@ pub(super) struct PlatformPath<'a> {
     pub(super) path: &'a Path,
 }
 
-/// The frame and the number of a look.
+/// A look of a path: the number of its frame, and its own number within the frame.
 pub(super) type LookIndex = (usize, usize);
 
 /// The boxes that were found for one name, by look.
@@ -36,14 +38,14 @@ pub(super) fn look_views(
     path: &Path,
     observations: &[FrameObservation],
 ) -> Result<Vec<LookPicture>, PlatformError> {
-    let mut seen = Vec::new();
+    let mut pictures = Vec::new();
     for (frame, (at, observation)) in path.frames.iter().zip(observations).enumerate() {
         for (look, gaze) in observation.looks.iter().map(|look| look.gaze).enumerate() {
             let view = platform.look_from(&path.scene, at, gaze)?;
-            seen.extend(view.image.is_some().then_some(LookPicture { frame, look, view }));
+            pictures.extend(view.image.is_some().then_some(LookPicture { frame, look, view }));
         }
     }
-    Ok(seen)
+    Ok(pictures)
 }
 
 /// Runs the detector once over all views and returns, for each name, the boxes that pass its score threshold.
@@ -53,7 +55,7 @@ pub(super) fn find_spots(
     seeker: CaptionDetector<'_>,
 ) -> Result<Vec<LookSpots>, ModelError> {
     let views: Vec<&View> = seen.iter().map(|seen| &seen.view).collect();
-    let mut found: Vec<LookSpots> = vec![LookSpots::new(); names.len()];
+    let mut spots_by_name: Vec<LookSpots> = vec![LookSpots::new(); names.len()];
     let answers = seeker.detector.detect_phrases(&views, names);
     if answers.len() != views.len() {
         let model = seeker.detector.name().to_owned();
@@ -61,7 +63,7 @@ pub(super) fn find_spots(
     }
     for (seen, answer) in seen.iter().zip(answers) {
         let width_px = seen.view.image.as_ref().map_or(0, |image| image.width_px());
-        for (finds, boxes) in found.iter_mut().zip(answer?) {
+        for (finds, boxes) in spots_by_name.iter_mut().zip(answer?) {
             let sure = boxes.into_iter().filter(|found| found.score >= seeker.figures.found_from);
             let spots: Vec<DetectionSpot> = without_overlaps(sure, SAME_THING_OVERLAP_SHARE)
                 .map(|found| DetectionSpot::new(found, width_px, seen.view.horizontal_fov_rad))
@@ -71,11 +73,11 @@ pub(super) fn find_spots(
             }
         }
     }
-    Ok(found)
+    Ok(spots_by_name)
 }
 
-/// Fills in the distance of each find where the platform has depth. Depth is asked for once per view, and only for
-/// views with finds.
+/// Fills in the distance of each find, metres, where the platform has depth. Depth is asked for once per view, and only
+/// for views with finds.
 pub(super) fn measure_distances(
     walk: PlatformPath<'_>,
     seen: &[LookPicture],
@@ -104,5 +106,5 @@ pub(super) fn measure_distances(
 /// For each frame with a look that has a picture, in order: whether the name was found from it.
 pub(super) fn found_by_frame(seen: &[LookPicture], finds: &LookSpots) -> Vec<bool> {
     let looked_at: BTreeSet<usize> = seen.iter().map(|seen| seen.frame).collect();
-    looked_at.iter().map(|frame| finds.keys().any(|(of, _)| of == frame)).collect()
+    looked_at.iter().map(|frame| finds.keys().any(|(found_from, _)| found_from == frame)).collect()
 }

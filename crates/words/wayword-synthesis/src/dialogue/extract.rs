@@ -1,4 +1,4 @@
-//! Extracts the one question or the one answer that was asked for from a model's reply.
+//! Takes the one question or the one answer that was asked for out of a model's reply.
 
 use wayword_language::{answers::ASKING, text::split_words};
 
@@ -6,7 +6,7 @@ use wayword_language::{answers::ASKING, text::split_words};
 const QUESTION_CHARS: usize = 300;
 /// Longest answer, characters; a longer one ends with its last whole sentence.
 const ANSWER_CHARS: usize = 1200;
-/// Longest part of a reply that is examined, bytes.
+/// Longest part of a reply that is examined, bytes; the rest is ignored.
 const MOST_BYTES: usize = 16_384;
 /// Labels that models put before a question.
 const QUESTION_LABELS: [&str; 4] = ["question:", "q:", "next question:", "new question:"];
@@ -19,13 +19,14 @@ const TURNS_BEHIND_SENTENCES: [&str; 5] = ["q:", "a:", "answer:", "human:", "ass
 /// there is no question, or it is longer than the limit.
 pub(super) fn extract_question(reply: &str) -> Option<String> {
     let reply = first_bytes(reply, MOST_BYTES);
-    let after = QUESTION_LABELS
+    let label_end = QUESTION_LABELS
         .iter()
         .filter_map(|label| label_positions(reply, label).last().map(|at| at + label.len()))
         .max();
-    let rest = &reply[after.unwrap_or(0)..];
-    let answered = ["answer:", "a:"].iter().filter_map(|label| label_positions(rest, label).find(|at| *at > 0)).min();
-    let rest = rest[..answered.unwrap_or(rest.len())].trim();
+    let rest = &reply[label_end.unwrap_or(0)..];
+    let answer_start =
+        ["answer:", "a:"].iter().filter_map(|label| label_positions(rest, label).find(|at| *at > 0)).min();
+    let rest = rest[..answer_start.unwrap_or(rest.len())].trim();
     let asked = match rest.find(['?', '？']) {
         Some(mark) => last_sentence(&rest[..=mark + rest[mark..].chars().next().map_or(0, char::len_utf8) - 1]),
         None => rest.lines().find(|line| begins_as_question(line))?,
@@ -40,18 +41,19 @@ pub(super) fn extract_question(reply: &str) -> Option<String> {
 /// limit.
 pub(super) fn extract_answer(reply: &str, question: &str) -> String {
     let reply = without_lead(first_bytes(reply, MOST_BYTES).trim(), question);
-    let behind_sentence = |at: &usize| {
+    let is_behind_sentence = |at: &usize| {
         let before = reply[..*at].trim_end_matches([' ', '*', '"']);
         before.is_empty() || before.ends_with(['.', '!', '?', '\n'])
     };
-    let turns = TURN_MARKS.iter().filter_map(|label| label_positions(reply, label).find(|at| *at > 0));
-    let behind = TURNS_BEHIND_SENTENCES
+    let marked_turns = TURN_MARKS.iter().filter_map(|label| label_positions(reply, label).find(|at| *at > 0));
+    let turns_after_sentence = TURNS_BEHIND_SENTENCES
         .iter()
-        .filter_map(|label| label_positions(reply, label).filter(behind_sentence).find(|at| *at > 0));
-    let cut = turns.chain(behind).min();
+        .filter_map(|label| label_positions(reply, label).filter(is_behind_sentence).find(|at| *at > 0));
+    let cut = marked_turns.chain(turns_after_sentence).min();
     bounded_answer(reply[..cut.unwrap_or(reply.len())].trim()).to_owned()
 }
 
+/// The beginning of a text, at most so many bytes and cut between characters.
 fn first_bytes(text: &str, bytes: usize) -> &str {
     &text[..text.floor_char_boundary(bytes)]
 }
@@ -77,6 +79,7 @@ fn last_sentence(text: &str) -> &str {
     ends.next_back().map_or(text, |(at, c)| &text[at + c.len_utf8()..])
 }
 
+/// Whether a line begins with a word that asks, as "Which room is this" without its mark.
 fn begins_as_question(line: &str) -> bool {
     split_words(first_bytes(line, 200)).first().is_some_and(|first| ASKING.contains(&first.as_str()))
 }
@@ -95,6 +98,7 @@ fn without_lead<'a>(reply: &'a str, question: &str) -> &'a str {
     rest
 }
 
+/// The answer, if it is within the limit; otherwise its whole sentences within the limit.
 fn bounded_answer(text: &str) -> &str {
     let Some((end, _)) = text.char_indices().nth(ANSWER_CHARS) else { return text };
     let whole = &text[..end];

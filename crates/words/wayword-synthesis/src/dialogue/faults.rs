@@ -11,18 +11,18 @@ use wayword_language::{
 /// A statement of a caption that its dialogue does not support. Its text is a reason that a model understands.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum CaptionFault {
-    /// It names an object that an answer denied, or denies one itself: a caption should only list objects that are
-    /// there.
+    /// The caption names an object that an answer denied, or denies one itself: a caption should only list objects
+    /// that are there.
     Denied {
         /// As the caption names it.
         name: String,
     },
-    /// It names an object that every answer left unsure.
+    /// The caption names an object that every answer left unsure.
     Unsure {
         /// As the caption names it.
         name: String,
     },
-    /// It names an object that no answer named.
+    /// The caption names an object that no answer named.
     Invented {
         /// As the caption names it.
         name: String,
@@ -47,13 +47,13 @@ impl fmt::Display for CaptionFault {
 pub fn caption_faults(text: &str, sightings: &[ObjectSighting]) -> Vec<CaptionFault> {
     let known: BTreeSet<String> = sightings.iter().map(|sighting| normalise_name(&sighting.name)).collect();
     let mentions = find_mentions(text, &known);
-    let mut found: Vec<CaptionFault> = Vec::new();
+    let mut faults: Vec<CaptionFault> = Vec::new();
     for (at, mention) in mentions.iter().enumerate().filter(|(_, mention)| mention.is_thing) {
         let is_the_room = at == 0 && mention.is_room && begins_with_room(text, &mention.name);
-        let fault = mention_fault(mention, sightings).filter(|fault| !is_the_room && !found.contains(fault));
-        found.extend(fault);
+        let fault = mention_fault(mention, sightings).filter(|fault| !is_the_room && !faults.contains(fault));
+        faults.extend(fault);
     }
-    found
+    faults
 }
 
 /// Whether a text consists of just a name, or begins with the name and "with".
@@ -65,6 +65,7 @@ fn begins_with_room(text: &str, name: &str) -> bool {
     rest.starts_with(&name) && rest.get(name.len()).is_none_or(|next| next == "with")
 }
 
+/// The fault of one mention; `None` if the sightings support it, or if it is not checked.
 fn mention_fault(mention: &AnswerMention, sightings: &[ObjectSighting]) -> Option<CaptionFault> {
     let name = mention.name.clone();
     let is_known = sightings.iter().any(|sighting| contains_name(&sighting.name, &name));
@@ -73,12 +74,13 @@ fn mention_fault(mention: &AnswerMention, sightings: &[ObjectSighting]) -> Optio
         return None;
     }
     let denied = sightings.iter().any(|sighting| denial_covers(sighting, &name, mention.colour.as_deref()));
-    let with = |witness| sightings.iter().any(|sighting| sighting.witness == witness && speaks_of(sighting, &name));
+    let is_witnessed =
+        |witness| sightings.iter().any(|sighting| sighting.witness == witness && speaks_of(sighting, &name));
     if mention.witness == WitnessAnswer::Denied || (denied && !seen_by_name(sightings, &name)) {
         Some(CaptionFault::Denied { name })
-    } else if with(WitnessAnswer::Seen) {
+    } else if is_witnessed(WitnessAnswer::Seen) {
         None
-    } else if with(WitnessAnswer::Unsure) {
+    } else if is_witnessed(WitnessAnswer::Unsure) {
         Some(CaptionFault::Unsure { name })
     } else {
         Some(CaptionFault::Invented { name })
@@ -92,6 +94,7 @@ fn seen_by_name(sightings: &[ObjectSighting], name: &str) -> bool {
     })
 }
 
+/// Whether a sighting is of a thing with this name, or of several things of which it is one.
 fn speaks_of(sighting: &ObjectSighting, name: &str) -> bool {
     names_agree(&sighting.name, name) || contains_name(&sighting.name, name)
 }

@@ -1,7 +1,7 @@
 //! The dialogue about one view: questions, answers, a caption.
 //!
-//! A state machine without input or output of its own: [`Dialogue::next_need`] reports what has to come next, and the caller
-//! supplies it. So the same code runs with a model, a recording or a test.
+//! A state machine without input or output of its own: [`Dialogue::next_need`] reports what has to come next, and the
+//! caller supplies it. So the same code runs with a model, a recording or a test.
 
 mod answers;
 mod extract;
@@ -46,7 +46,7 @@ pub enum DialogueMode {
     Single,
     /// One request for JSON ([`crate::seeing`]), then questions about what it leaves open, up to a number.
     Structured {
-        /// Most questions after it.
+        /// Most questions after that request.
         questions: usize,
     },
 }
@@ -66,10 +66,13 @@ pub enum DialogueNeed {
 #[derive(Debug, Clone)]
 pub struct Dialogue {
     mode: DialogueMode,
+    /// The question that waits for its answer, if there is one.
     pending: Option<PendingQuestion>,
+    /// Whether no question is left to ask, so that only the caption is missing.
     exhausted: bool,
-    /// Number of consecutive rounds without news.
+    /// Number of consecutive rounds without news, that is, without anything that earlier answers lack (`news.rs`).
     stale: usize,
+    /// The questions and answers so far.
     transcript: Vec<DialogueExchange>,
 }
 
@@ -132,18 +135,18 @@ impl Dialogue {
         let Some(PendingQuestion { question, trouble }) = self.pending.take() else { return };
         let asked = if trouble.is_some() { trouble::rephrase_question(&question) } else { question.clone() };
         let answer = extract::extract_answer(answer, &asked);
-        let found = trouble::answer_trouble(&asked, &answer, &self.transcript)
+        let new_trouble = trouble::answer_trouble(&asked, &answer, &self.transcript)
             .or_else(|| trouble::answer_trouble(&question, &answer, &self.transcript));
-        if found.is_some() && trouble.is_none() {
-            self.pending = Some(PendingQuestion { question, trouble: found });
+        if new_trouble.is_some() && trouble.is_none() {
+            self.pending = Some(PendingQuestion { question, trouble: new_trouble });
             return;
         }
-        let answer = if found.is_some() { String::new() } else { answer };
+        let answer = if new_trouble.is_some() { String::new() } else { answer };
         self.transcript.push(DialogueExchange { question, answer, trouble });
         self.go_on();
     }
 
-    /// Decides whether the dialogue goes on after an exchange.
+    /// Decides after an exchange whether the dialogue goes on, and in fixed mode with which query.
     fn go_on(&mut self) {
         match self.mode {
             DialogueMode::Dialogue { questions } => {

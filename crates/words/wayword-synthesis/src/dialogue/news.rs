@@ -1,4 +1,4 @@
-//! Decides whether an exchange brings new information; a dialogue without news is ended early.
+//! Decides whether an exchange brings news, that is, new information; a dialogue without news is ended early.
 
 use super::answers::{QuestionSubject, dialogue_room, dialogue_sightings, read_question};
 use std::collections::BTreeSet;
@@ -18,30 +18,30 @@ pub(super) fn is_new(transcript: &[DialogueExchange]) -> bool {
     }
     let texts = before.iter().flat_map(|exchange| [&exchange.question, &exchange.answer]).chain([&last.question]);
     let known: BTreeSet<String> = texts.flat_map(|text| split_words(text)).map(|word| normal_word(&word)).collect();
-    let says_more = || {
+    let has_new_word = || {
         split_words(&last.answer)
             .iter()
             .any(|word| !EMPTY.contains(&word.as_str()) && !known.contains(&normal_word(word)))
     };
-    says_more()
+    has_new_word()
         || dialogue_sightings(transcript, "") != dialogue_sightings(before, "")
         || dialogue_room(transcript) != dialogue_room(before)
         || settles_a_doubt(last, before)
 }
 
-/// Whether the exchange is the first to ask directly for a thing, and is answered. A confirmed object is worth knowing
-/// even if no sighting changes.
+/// Whether the exchange is the first to ask directly for a thing ("Is there really a bed?"), and its answer is sure. A
+/// confirmed object is worth knowing even if no sighting changes.
 fn settles_a_doubt(last: &DialogueExchange, before: &[DialogueExchange]) -> bool {
-    let doubted = |exchange: &DialogueExchange| match read_question(&exchange.question) {
+    let asked_for = |exchange: &DialogueExchange| match read_question(&exchange.question) {
         QuestionSubject::Presence { wanted, .. } => wanted.into_iter().map(|wanted| wanted.name).collect(),
         _ => Vec::new(),
     };
-    let earlier: Vec<String> = before.iter().flat_map(doubted).collect();
-    let told = dialogue_sightings(std::slice::from_ref(last), "");
+    let earlier: Vec<String> = before.iter().flat_map(asked_for).collect();
+    let sightings = dialogue_sightings(std::slice::from_ref(last), "");
     let answered = |name: &String| {
-        told.iter().any(|sighting| sighting.witness != WitnessAnswer::Unsure && names_agree(&sighting.name, name))
+        sightings.iter().any(|sighting| sighting.witness != WitnessAnswer::Unsure && names_agree(&sighting.name, name))
     };
-    doubted(last).iter().any(|name| answered(name) && !earlier.iter().any(|other| names_agree(other, name)))
+    asked_for(last).iter().any(|name| answered(name) && !earlier.iter().any(|other| names_agree(other, name)))
 }
 
 #[cfg(test)]

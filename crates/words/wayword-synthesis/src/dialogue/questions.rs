@@ -13,7 +13,7 @@ use wayword_language::lexicon::{ThingClass, find_thing, is_plural, names_agree, 
 /// The default asks about no doubts, which suits an answerer that names only real things, as `labels` does.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RulesAsker {
-    /// Most objects of the first description that it asks about again, to learn whether they are really there.
+    /// Most objects of the first description that the asker asks about again, to learn whether they are really there.
     doubts: usize,
 }
 
@@ -29,9 +29,10 @@ impl RulesAsker {
     }
 }
 
-/// Most objects that it asks for on its own. A "no" is evidence too, but each costs a question.
+/// Most usual objects of a room that the asker asks for although no answer named them. A "no" is evidence too, but each
+/// costs a question.
 const MAX_PROBE_QUESTIONS: usize = 3;
-/// Most landmarks of which it asks the colour.
+/// Most landmarks of which the asker asks the colour.
 const MAX_COLOUR_QUESTIONS: usize = 2;
 
 /// Things that rooms usually have. The asker asks for those that no answer mentioned.
@@ -67,13 +68,13 @@ impl QuestionAsker for RulesAsker {
         {
             return Ok(Some(doubt));
         }
-        let told = dialogue_sightings(transcript, "");
-        let probe = probe_questions(transcript, &told).into_iter().find(|question| !asked(question));
+        let sightings = dialogue_sightings(transcript, "");
+        let probe = probe_questions(transcript, &sightings).into_iter().find(|question| !asked(question));
         let is_probe = |question: &str| question.starts_with("Is there ") && !question.starts_with("Is there really ");
         let probed = transcript.iter().filter(|exchange| is_probe(&exchange.question)).count();
         Ok(probe
             .filter(|_| probed < MAX_PROBE_QUESTIONS)
-            .or_else(|| colour_questions(&told).into_iter().find(|question| !asked(question))))
+            .or_else(|| colour_questions(&sightings).into_iter().find(|question| !asked(question))))
     }
 }
 
@@ -103,16 +104,18 @@ fn doubt_questions(transcript: &[DialogueExchange]) -> Vec<String> {
     questions
 }
 
-fn probe_questions(transcript: &[DialogueExchange], told: &[ObjectSighting]) -> Vec<String> {
+/// Questions for the things that a room of this kind usually has and no sighting names.
+fn probe_questions(transcript: &[DialogueExchange], sightings: &[ObjectSighting]) -> Vec<String> {
     let room = dialogue_room(transcript).unwrap_or_default();
     let room = room_name(&room).unwrap_or_default();
     let usual = USUAL_ROOM_THINGS.iter().find(|(name, _)| *name == room).map_or(USUAL_ANYWHERE, |(_, things)| things);
-    let unnamed = usual.iter().filter(|name| !told.iter().any(|sighting| names_agree(&sighting.name, name)));
+    let unnamed = usual.iter().filter(|name| !sightings.iter().any(|sighting| names_agree(&sighting.name, name)));
     unnamed.map(|name| format!("Is there {}?", with_article(name))).collect()
 }
 
-fn colour_questions(told: &[ObjectSighting]) -> Vec<String> {
-    let seen = told
+/// Questions for the colours of seen things that make good landmarks.
+fn colour_questions(sightings: &[ObjectSighting]) -> Vec<String> {
+    let seen = sightings
         .iter()
         .filter(|sighting| sighting.witness == WitnessAnswer::Seen && !sighting.several && sighting.colour.is_none());
     let landmarks = seen.filter(|sighting| find_thing(&sighting.name).is_some_and(|thing| thing.salience >= 2));

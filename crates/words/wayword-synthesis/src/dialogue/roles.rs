@@ -59,8 +59,8 @@ pub struct ObservationRoles<'a> {
 }
 
 impl ObservationRoles<'_> {
-    /// The error for an answerer that returns no answer to a question. Without it the dialogue would repeat the question
-    /// forever.
+    /// The error for an answerer that returns no answer to a question. Without the error the dialogue would repeat the
+    /// question forever.
     pub(crate) fn unanswered_error(&self) -> ModelError {
         ModelError::Failed { model: self.answerer.name().to_owned(), reason: "it gave no answer".to_owned() }
     }

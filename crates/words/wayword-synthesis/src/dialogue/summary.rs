@@ -22,10 +22,10 @@ impl CaptionSummariser for RulesSummariser {
     }
 
     fn sum_up(&self, transcript: &[DialogueExchange], answerer: &str) -> Result<Caption, ModelError> {
-        let told = dialogue_sightings(transcript, answerer);
+        let sightings = dialogue_sightings(transcript, answerer);
         let room = dialogue_room(transcript);
-        let text = caption_of(room.as_deref(), &told);
-        Ok(Caption { text, room, sightings: told, transcript: transcript.to_vec(), ..Caption::default() })
+        let text = caption_of(room.as_deref(), &sightings);
+        Ok(Caption { text, room, sightings, transcript: transcript.to_vec(), ..Caption::default() })
     }
 
     fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<CondensedCaption, ModelError> {
@@ -34,23 +34,24 @@ impl CaptionSummariser for RulesSummariser {
     }
 }
 
-/// The caption of the seen things. Names may be any words, and two adjacent names may read as a third. So names that
-/// would cause a fault are left out, and as a last resort the room too.
-pub(crate) fn caption_of(room: Option<&str>, told: &[ObjectSighting]) -> String {
+/// The caption of the seen things in `sightings`. Names may be any words, and two adjacent names may read as a third.
+/// So names that would cause a fault are left out, and as a last resort the room too.
+pub(crate) fn caption_of(room: Option<&str>, sightings: &[ObjectSighting]) -> String {
     let is_denied =
-        |seen: &ObjectSighting| told.iter().any(|other| denial_covers(other, &seen.name, seen.colour.as_deref()));
+        |seen: &ObjectSighting| sightings.iter().any(|other| denial_covers(other, &seen.name, seen.colour.as_deref()));
     let mut seen: Vec<&ObjectSighting> =
-        told.iter().filter(|sighting| sighting.witness == WitnessAnswer::Seen && !is_denied(sighting)).collect();
+        sightings.iter().filter(|sighting| sighting.witness == WitnessAnswer::Seen && !is_denied(sighting)).collect();
     let text = compose_caption(room, &seen);
-    if caption_faults(&text, told).is_empty() {
+    if caption_faults(&text, sightings).is_empty() {
         return text;
     }
-    seen.retain(|sighting| caption_faults(&compose_caption(None, &[sighting]), told).is_empty());
+    seen.retain(|sighting| caption_faults(&compose_caption(None, &[sighting]), sightings).is_empty());
     let texts = [compose_caption(room, &seen), compose_caption(None, &seen)];
-    let good = texts.into_iter().find(|text| caption_faults(text, told).is_empty());
+    let good = texts.into_iter().find(|text| caption_faults(text, sightings).is_empty());
     good.unwrap_or_else(|| compose_caption(None, &[]))
 }
 
+/// "A bedroom with a bed in the middle and several lamps on the left."
 fn compose_caption(room: Option<&str>, seen: &[&ObjectSighting]) -> String {
     let place = |place: ViewThird| match place {
         ViewThird::Left => " on the left",
@@ -60,6 +61,7 @@ fn compose_caption(room: Option<&str>, seen: &[&ObjectSighting]) -> String {
     let item = |sighting: &&ObjectSighting| {
         let name = [sighting.colour.as_deref(), sighting.material.as_deref(), Some(sighting.name.as_str())];
         let name = name.into_iter().flatten().collect::<Vec<_>>().join(" ");
+        // Any count above six gives "several".
         let name = if sighting.several { counted_name(7, &name) } else { with_article(&name) };
         format!("{name}{}", sighting.place.map_or("", place))
     };
@@ -72,6 +74,7 @@ fn compose_caption(room: Option<&str>, seen: &[&ObjectSighting]) -> String {
     })
 }
 
+/// "A", "a and b", "a, b and c".
 fn join_with_and(items: &[String]) -> String {
     match items {
         [] => String::new(),

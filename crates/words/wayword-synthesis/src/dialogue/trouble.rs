@@ -6,11 +6,12 @@ use wayword_language::{
     text::split_words,
 };
 
-/// Longest phrase, in words, of an answer that repeats itself.
+/// Longest phrase of an answer that repeats itself, words. A repetition of a longer phrase is not looked for.
 const LOOP_WORDS: usize = 8;
-/// How often the answer has to repeat the phrase.
+/// Least number of times in a row that such an answer has the phrase.
 const LOOP_TIMES: usize = 3;
-/// Fewer words than this may well be the answer to two questions ("They are made of wood").
+/// Least number of words of an answer for which a repetition counts as a fault: a shorter one may well fit two
+/// questions ("It is made of wood").
 const REPEAT_WORDS: usize = 6;
 
 /// How many words at the beginning of an answer are examined for a refusal.
@@ -18,17 +19,17 @@ const REFUSAL_WORDS: usize = 40;
 
 /// The reason why an answer is unusable; `None` if it is usable.
 pub(super) fn answer_trouble(question: &str, answer: &str, before: &[DialogueExchange]) -> Option<AnswerTrouble> {
-    let said = split_words(&answer.replace('’', "'"));
-    if said.is_empty() {
+    let words = split_words(&answer.replace('’', "'"));
+    if words.is_empty() {
         Some(AnswerTrouble::Empty)
-    } else if is_refusal(&said) {
+    } else if is_refusal(&words) {
         Some(AnswerTrouble::Refusal)
-    } else if is_echo(&split_words(question), &said) {
+    } else if is_echo(&split_words(question), &words) {
         Some(AnswerTrouble::Echo)
-    } else if is_loop(&said) {
+    } else if is_loop(&words) {
         Some(AnswerTrouble::Loop)
     } else {
-        is_repeat(question, &said, before).then_some(AnswerTrouble::Repeat)
+        is_repeat(question, &words, before).then_some(AnswerTrouble::Repeat)
     }
 }
 
@@ -37,17 +38,18 @@ pub(crate) fn refuses_to_look(answer: &str) -> bool {
     is_refusal(&split_words(&answer.replace('’', "'")))
 }
 
-fn is_refusal(said: &[String]) -> bool {
-    let begins = REFUSING.iter().any(|phrase| is_at(said, 0, phrase));
-    let looked_at = &said[..said.len().min(REFUSAL_WORDS)];
-    let declines = |at| UNHELPING.iter().any(|phrase| is_at(looked_at, at, phrase));
-    let is_bare = || said.iter().all(|word| BARE_REFUSAL.contains(&word.as_str()));
-    begins && ((0..looked_at.len()).any(declines) || is_bare())
+/// Whether an answer begins like a refusal and declines, or consists of words of refusal only.
+fn is_refusal(words: &[String]) -> bool {
+    let begins = REFUSING.iter().any(|phrase| is_at(words, 0, phrase));
+    let beginning = &words[..words.len().min(REFUSAL_WORDS)];
+    let declines = |at| UNHELPING.iter().any(|phrase| is_at(beginning, at, phrase));
+    let is_bare = || words.iter().all(|word| BARE_REFUSAL.contains(&word.as_str()));
+    begins && ((0..beginning.len()).any(declines) || is_bare())
 }
 
 /// Whether a phrase begins at this word.
-fn is_at(said: &[String], at: usize, phrase: &[&str]) -> bool {
-    said.len() >= at + phrase.len() && said[at..].iter().zip(phrase).all(|(said, word)| said == word)
+fn is_at(words: &[String], at: usize, phrase: &[&str]) -> bool {
+    words.len() >= at + phrase.len() && words[at..].iter().zip(phrase).all(|(word, wanted)| word == wanted)
 }
 
 /// The question in other words, for a second try.
@@ -58,37 +60,41 @@ pub(crate) fn rephrase_question(question: &str) -> String {
     format!("Look again and answer in one short sentence: {question}")
 }
 
-/// Whether the answer only repeats the question, once or more, or most of its words in a row.
-fn is_echo(asked: &[String], said: &[String]) -> bool {
+/// Whether the answer only repeats the question, once or more, or at least two thirds of its words in a row.
+fn is_echo(asked: &[String], answer: &[String]) -> bool {
     if asked.is_empty() {
         return false;
     }
-    let again = said.len() >= asked.len() && said.iter().zip(asked.iter().cycle()).all(|(said, asked)| said == asked);
-    let part = said.len() >= 3 && 3 * said.len() >= 2 * asked.len() && asked.windows(said.len()).any(|run| run == said);
-    again || part
+    let is_again =
+        answer.len() >= asked.len() && answer.iter().zip(asked.iter().cycle()).all(|(answer, asked)| answer == asked);
+    let is_part = answer.len() >= 3
+        && 3 * answer.len() >= 2 * asked.len()
+        && asked.windows(answer.len()).any(|run| run == answer);
+    is_again || is_part
 }
 
 /// Whether a run of up to eight words, repeated at least three times in a row, makes up most of the answer.
-fn is_loop(said: &[String]) -> bool {
-    (1..=LOOP_WORDS.min(said.len() / LOOP_TIMES)).any(|length| {
+fn is_loop(answer: &[String]) -> bool {
+    (1..=LOOP_WORDS.min(answer.len() / LOOP_TIMES)).any(|length| {
         let mut longest = 0;
         let mut run = 0;
-        for at in length..said.len() {
-            run = if said[at] == said[at - length] { run + 1 } else { 0 };
+        for at in length..answer.len() {
+            run = if answer[at] == answer[at - length] { run + 1 } else { 0 };
             longest = longest.max(run);
         }
         let words = longest + length;
-        words >= length * LOOP_TIMES && longest > 0 && 2 * words > said.len()
+        words >= length * LOOP_TIMES && longest > 0 && 2 * words > answer.len()
     })
 }
 
 /// Whether the answer is long enough, and word for word the answer to an earlier and different question.
-fn is_repeat(question: &str, said: &[String], before: &[DialogueExchange]) -> bool {
-    let is_unsure = said.len() <= 8 && said.windows(2).any(|pair| pair[0] == "not" && pair[1] == "sure");
-    said.len() >= REPEAT_WORDS
+fn is_repeat(question: &str, answer: &[String], before: &[DialogueExchange]) -> bool {
+    // A short "I am not sure" may come again.
+    let is_unsure = answer.len() <= 8 && answer.windows(2).any(|pair| pair[0] == "not" && pair[1] == "sure");
+    answer.len() >= REPEAT_WORDS
         && !is_unsure
         && before.iter().any(|exchange| {
-            split_words(&exchange.question) != split_words(question) && split_words(&exchange.answer) == said
+            split_words(&exchange.question) != split_words(question) && split_words(&exchange.answer) == answer
         })
 }
 

@@ -59,6 +59,7 @@ impl ModelAnswerer {
         let good: Vec<ModelRequest> = requests.iter().filter_map(|request| request.as_ref().ok().cloned()).collect();
         let mut replies = if good.is_empty() { Vec::new() } else { self.model.complete_requests(&good) }.into_iter();
         let lost = || ModelError::Failed { model: self.name().to_owned(), reason: "it gave no answer".to_owned() };
+        // Only requests that could be built were sent, so only they take the next reply.
         let reply = |request: Result<ModelRequest, ModelError>| {
             request?;
             replies.next().unwrap_or_else(|| Err(lost()))

@@ -6,7 +6,7 @@ use wayword_language::{
     text::split_words,
 };
 
-/// Most words of a sentence that announces a text.
+/// Most words of a sentence that announces a text; a longer one belongs to the text.
 const ANNOUNCING_WORDS: usize = 24;
 /// How much of a sentence is examined, bytes. Its beginning is enough to classify it.
 const LOOKED_AT: usize = 300;
@@ -26,8 +26,8 @@ pub(super) fn without_chatter(text: &str) -> &str {
 
 /// Whether a reply is a refusal.
 pub(super) fn is_refusal(text: &str) -> bool {
-    let said = sentence_words(text.trim_start_matches(['"', '“', '*']));
-    begins_with_phrase(&said, &REFUSING)
+    let words = sentence_words(text.trim_start_matches(['"', '“', '*']));
+    begins_with_phrase(&words, &REFUSING)
 }
 
 /// The content of the first code fence, without the name of its language.
@@ -69,38 +69,40 @@ fn offset_of_part(text: &str, part: &str) -> usize {
 
 /// Whether a sentence only announces a text.
 fn announces_text(sentence: &str) -> bool {
-    let said = sentence_words(sentence);
-    let said: &[String] = match count_agreeing_words(&said) {
-        0 => &said,
-        all if all == said.len() => return true,
-        some => &said[some..],
+    let words = sentence_words(sentence);
+    let words: &[String] = match count_agreeing_words(&words) {
+        0 => &words,
+        all if all == words.len() => return true,
+        some => &words[some..],
     };
-    let names_text = said.iter().any(|word| ANNOUNCED.contains(&word.as_str()));
+    let names_text = words.iter().any(|word| ANNOUNCED.contains(&word.as_str()));
     let leads = sentence.trim_end_matches('*').ends_with(':');
-    names_text && said.len() <= ANNOUNCING_WORDS && (leads || begins_with_phrase(said, &ANNOUNCING))
+    names_text && words.len() <= ANNOUNCING_WORDS && (leads || begins_with_phrase(words, &ANNOUNCING))
 }
 
 /// Whether a sentence after a text does not belong to it: a remark, or a count of its words.
 fn is_parting_remark(sentence: &str) -> bool {
-    let said = sentence_words(sentence);
-    let counts = sentence.starts_with('(') && said.iter().any(|word| word == "words" || word == "note");
-    counts || begins_with_phrase(&said, &PARTING)
+    let words = sentence_words(sentence);
+    let counts = sentence.starts_with('(') && words.iter().any(|word| word == "words" || word == "note");
+    counts || begins_with_phrase(&words, &PARTING)
 }
 
 /// Number of words at the beginning that only express agreement ("Sure", "Of course").
-fn count_agreeing_words(said: &[String]) -> usize {
+fn count_agreeing_words(words: &[String]) -> usize {
     let longest = |from: usize| {
-        let fits = AGREEING.iter().filter(|phrase| said[from..].iter().take(phrase.len()).eq(phrase.iter()));
+        let fits = AGREEING.iter().filter(|phrase| words[from..].iter().take(phrase.len()).eq(phrase.iter()));
         fits.map(Vec::len).max().unwrap_or(0)
     };
     let first = longest(0);
-    first + if first < said.len() && first > 0 { longest(first) } else { 0 }
+    first + if first < words.len() && first > 0 { longest(first) } else { 0 }
 }
 
-fn begins_with_phrase(said: &[String], phrases: &PhraseList) -> bool {
-    phrases.iter().any(|phrase| said.len() >= phrase.len() && said.iter().zip(phrase.iter()).all(|(a, b)| a == b))
+/// Whether words begin with one of the phrases.
+fn begins_with_phrase(words: &[String], phrases: &PhraseList) -> bool {
+    phrases.iter().any(|phrase| words.len() >= phrase.len() && words.iter().zip(phrase.iter()).all(|(a, b)| a == b))
 }
 
+/// The words at the beginning of a sentence, with straight apostrophes.
 fn sentence_words(sentence: &str) -> Vec<String> {
     split_words(&sentence[..sentence.floor_char_boundary(LOOKED_AT)].replace('’', "'"))
 }

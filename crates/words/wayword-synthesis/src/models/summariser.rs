@@ -28,7 +28,7 @@ pub struct ModelSummariser {
 
 /// As in ChatCaptioner, with room for two or three whole sentences.
 const SUMMARY_SAMPLING: SamplingOptions = SamplingOptions { temperature: 0.0, max_tokens: 160, seed: PERCEPTION_SEED };
-/// How often a caption is asked for.
+/// How often a caption is asked for before rules write it.
 const MAX_CAPTION_ATTEMPTS: usize = 2;
 
 impl ModelSummariser {
@@ -49,7 +49,7 @@ impl ModelSummariser {
             let reply =
                 send_message(self.model.as_ref(), ChatMessage::from_user(prompt(&complaints)?), SUMMARY_SAMPLING)?;
             let text = plain_text(whole_sentences(&reply), &["caption", "summary"]);
-            let found = match text.len() {
+            let new_complaints = match text.len() {
                 0 => vec!["it was empty".to_owned()],
                 bytes if bytes > LONGEST_TEXT_BYTES => {
                     vec![format!("it has {bytes} bytes, more than {LONGEST_TEXT_BYTES}")]
@@ -61,10 +61,10 @@ impl ModelSummariser {
                 }
                 _ => faults(&text),
             };
-            if found.is_empty() {
+            if new_complaints.is_empty() {
                 return Ok(Ok(text));
             }
-            complaints = found;
+            complaints = new_complaints;
         }
         Ok(Err(complaints))
     }
@@ -90,9 +90,9 @@ impl CaptionSummariser for ModelSummariser {
         let texts: Vec<(&str, &str)> =
             captions.iter().map(|(direction, caption)| (*direction, caption.text.as_str())).collect();
         let prompt = |complaints: &[String]| Ok(self.prompts.condense_prompt(&texts, fewer_words_than, complaints)?);
-        let told = joint_sightings(captions);
+        let sightings = joint_sightings(captions);
         let faults = |text: &str| {
-            let mut faults = fault_reasons(text, &told);
+            let mut faults = fault_reasons(text, &sightings);
             let words = word_count(text);
             if words >= fewer_words_than {
                 faults.push(format!("it has {words} words where fewer than {fewer_words_than} were asked for"));
@@ -114,8 +114,9 @@ fn rules_instead(reasons: &[String]) -> String {
     format!("rules, because {}", reasons.join("; "))
 }
 
-fn fault_reasons(text: &str, told: &[ObjectSighting]) -> Vec<String> {
-    caption_faults(text, told).iter().map(ToString::to_string).collect()
+/// The faults of a caption in words for the model.
+fn fault_reasons(text: &str, sightings: &[ObjectSighting]) -> Vec<String> {
+    caption_faults(text, sightings).iter().map(ToString::to_string).collect()
 }
 
 /// The sightings of all directions. A thing that one view lacks may be in the next, so a denial counts only if no view

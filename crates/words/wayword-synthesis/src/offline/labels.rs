@@ -23,7 +23,7 @@ pub struct LabelAnswerer {
     pub calibration: Option<Arc<Calibration>>,
 }
 
-/// Most kinds of objects that a description names, the nearest first.
+/// Most groups of like objects that a description names, the nearest first; farther ones are left out.
 const MOST_NAMED: usize = 12;
 
 impl ViewAnswerer for LabelAnswerer {
@@ -37,6 +37,7 @@ impl ViewAnswerer for LabelAnswerer {
 }
 
 impl LabelAnswerer {
+    /// The answer to one question, or the JSON of a structured answer. An error where the view has no labels.
     fn answer_from_labels(&self, ask: &ViewQuestion<'_>) -> Result<AnswerText, ModelError> {
         let ViewQuestion { view, question, .. } = *ask;
         let truth = view.ground_truth().ok_or_else(|| ModelError::NothingToSee {
@@ -105,6 +106,7 @@ impl LabelAnswerer {
         calibrated.unwrap_or_else(is_expected)
     }
 
+    /// "There are two lamps."
     fn answer_number(&self, truth: &GroundTruth, wanted: &QuestionThing) -> AnswerText {
         match truth.labels.iter().filter(|label| names_agree(&label.name, &wanted.name)).count() {
             0 if self.is_open(truth, wanted) => not_sure(),
@@ -136,6 +138,7 @@ fn place_phrase(third: ViewThird) -> &'static str {
 
 /// "There is a bed in the middle, two lamps on the left and a chair on the right."
 fn describe_view(view: &View, truth: &GroundTruth, only: Option<ViewThird>) -> AnswerText {
+    // Objects of one name and place: name, place, distance of the nearest in metres, how many.
     let mut groups: Vec<(&str, ViewThird, f64, usize)> = Vec::new();
     for label in &truth.labels {
         let (third, distance_m) = (third_of_view(view, label), label.distance_m.unwrap_or(f64::INFINITY));
@@ -161,6 +164,7 @@ fn describe_view(view: &View, truth: &GroundTruth, only: Option<ViewThird>) -> A
     }
 }
 
+/// "No, there is no lamp."
 fn denial_answer(said: &str, several: bool) -> AnswerText {
     format!("No, there {} no {said}.", if several { "are" } else { "is" })
 }
@@ -172,10 +176,12 @@ fn find_label<'a>(view: &View, truth: &'a GroundTruth, wanted: &QuestionThing) -
     truth.labels.iter().find(|label| names_agree(&label.name, &wanted.name) && has_colour(label) && is_there(label))
 }
 
+/// The answer to "Is this a kitchen?" where `room` is the room of the label.
 fn is_room(room: &str, name: &str) -> AnswerText {
     if same_room(room, name) { "Yes.".to_owned() } else { format!("No, it is {}.", with_article(room)) }
 }
 
+/// "The sofa is red.", or "I am not sure." where no label of that name has a colour.
 fn answer_colour(truth: &GroundTruth, name: &str) -> AnswerText {
     let label = truth.labels.iter().find(|label| normalise_name(&label.name) == normalise_name(name));
     label.and_then(|label| label.colour.as_ref()).map_or_else(not_sure, |colour| format!("The {name} is {colour}."))

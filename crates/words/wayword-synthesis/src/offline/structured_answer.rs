@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use wayword_core::{GroundTruth, ObjectLabel, View, ViewThird};
 use wayword_language::lexicon::{ThingClass, find_thing, to_plural};
 
-/// Most things in the answer, the nearest first.
+/// Most entries for things in the answer, the nearest first; farther ones are left out.
 const MOST_LISTED: usize = 14;
 
 /// The labels of a view as JSON in the form of [`crate::seeing::VIEW_SCHEMA`].

@@ -17,15 +17,17 @@ use std::{
     sync::atomic::{AtomicUsize, Ordering},
 };
 
-/// Longest template, bytes.
+/// Longest template, bytes; a longer one is refused.
 const SOURCE_BYTES: usize = 1 << 16;
-/// Most bytes that a prompt writes, and most bytes that its filters make on the way. Twice the longest style.
+/// Most bytes that a prompt writes, and most bytes that its filters make on the way; beyond them, filling the prompt
+/// fails. Twice the longest style.
 const MOST_BYTES: usize = 8 << 20;
-/// Most steps of a prompt. A prompt with a thousand references and a thousand frames takes a tenth of them.
+/// Most steps of minijinja for a prompt; beyond them, filling it fails. A prompt with a thousand references and a
+/// thousand frames takes a tenth of them.
 const MOST_STEPS: u64 = 200_000;
-/// Most numbers of a `range`.
+/// Most numbers of a `range`; a longer range is an error.
 const MOST_NUMBERS: usize = 1000;
-/// Most `~` and `+` of a template: each of them may double a text.
+/// Most `~` and `+` of a template, because each of them may double a text. A template with more is refused.
 const MOST_JOINS: usize = 64;
 /// Assumed size of a list item besides its text, bytes.
 const ITEM_BYTES: usize = 32;
@@ -33,10 +35,12 @@ const ITEM_BYTES: usize = 32;
 /// The statements that prompts offer.
 const OFFERED_STATEMENTS: [&str; 6] = ["for", "endfor", "if", "elif", "else", "endif"];
 
+/// The message for a prompt that writes more than its limit.
 pub(super) fn too_many_bytes() -> String {
     format!("it writes more than {MOST_BYTES} bytes")
 }
 
+/// The message for a prompt that takes more steps than its limit.
 pub(super) fn too_many_steps() -> String {
     format!("it takes more than {MOST_STEPS} steps")
 }

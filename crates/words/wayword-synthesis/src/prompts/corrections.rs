@@ -8,7 +8,7 @@ use wayword_language::{
     reading::{EventContent, read_instruction},
 };
 
-/// Most things in one sentence about where they are.
+/// Most frames that one correction names as showing a thing.
 const MOST_NAMED: usize = 3;
 
 /// The reasons why a text failed, each with the words concerned and with a correction.
@@ -17,15 +17,16 @@ pub(super) fn refusal_reasons(brief: &WritingBrief<'_>, complaint: &TextComplain
     failed.map(|finding| number_finding(brief, &complaint.text, finding)).collect()
 }
 
+/// The reason of one finding, with the words concerned before it and the correction behind it.
 fn number_finding(brief: &WritingBrief<'_>, text: &str, finding: &CheckFinding) -> String {
     let words = finding.span.and_then(|[from, to]| text.get(from..to));
-    let told = match words {
+    let reason = match words {
         Some(words) if !finding.reason.contains(words) => format!("you wrote {words:?}: {}", finding.reason),
         _ => finding.reason.clone(),
     };
     match describe_right(brief, text, finding, words) {
-        Some(right) => format!("{told} ({right})"),
-        None => told,
+        Some(right) => format!("{reason} ({right})"),
+        None => reason,
     }
 }
 
@@ -50,11 +51,11 @@ fn describe_right(brief: &WritingBrief<'_>, text: &str, finding: &CheckFinding, 
 fn describe_turns(brief: &WritingBrief<'_>, text: &str, span: Option<[usize; 2]>) -> String {
     let moves = brief.walk.moves.iter().enumerate().filter(|(_, step)| step.turn() != TurnKind::Straight);
     let walked: Vec<(usize, &PathMove)> = moves.collect();
-    let read = read_instruction(text, &std::collections::BTreeSet::new());
-    let told = read.events.iter().filter(|event| matches!(event.what, EventContent::Turn(_)) && !event.denied);
-    let told: Vec<[usize; 2]> = told.map(|event| event.span).collect();
+    let reading = read_instruction(text, &std::collections::BTreeSet::new());
+    let turns = reading.events.iter().filter(|event| matches!(event.what, EventContent::Turn(_)) && !event.denied);
+    let turns: Vec<[usize; 2]> = turns.map(|event| event.span).collect();
     let overlaps = |other: &[usize; 2]| span.is_some_and(|span| span[0] < other[1] && other[0] < span[1]);
-    let at = told.iter().position(overlaps).filter(|_| told.len() == walked.len());
+    let at = turns.iter().position(overlaps).filter(|_| turns.len() == walked.len());
     if let Some((frame, step)) = at.and_then(|at| walked.get(at)) {
         return format!("the walk {} there, at {}", turn_words(step.turn()), frame_of_move(*frame));
     }

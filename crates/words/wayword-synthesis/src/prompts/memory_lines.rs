@@ -4,24 +4,25 @@
 use wayword_checks::memory::{RememberedThing, RoomOpening, RoomStay, WalkBend, WalkMemory};
 use wayword_core::Side;
 
-/// Most lines for things.
+/// Most lines for things; the later things of the walk get none.
 const MOST_THINGS: usize = 16;
 /// A thing nearer to the end than this gets a line with its distance from there, metres.
 const NEAR_END_M: f64 = 3.0;
 
 /// The lines for all rooms, doors, bends and things that are worth mentioning.
 pub(super) fn remembered_lines(memory: &WalkMemory) -> Vec<String> {
-    let mut told: Vec<String> = rooms_line(&memory.stays).into_iter().collect();
-    told.extend(memory.openings.iter().filter(|opening| opening.has_door).map(door_line));
-    told.extend(memory.bends.iter().filter_map(bend_line));
+    let mut lines: Vec<String> = rooms_line(&memory.stays).into_iter().collect();
+    lines.extend(memory.openings.iter().filter(|opening| opening.has_door).map(door_line));
+    lines.extend(memory.bends.iter().filter_map(bend_line));
     let things = memory.things.iter().filter_map(|thing| told_thing(memory, thing));
-    told.extend(things.take(MOST_THINGS));
-    told
+    lines.extend(things.take(MOST_THINGS));
+    lines
 }
 
+/// "rooms, in order: hallway (Frames 0 to 2), kitchen (Frame 3)". `None` for a walk within one room.
 fn rooms_line(stays: &[RoomStay]) -> Option<String> {
-    let told = stays.iter().map(|stay| format!("{} ({})", stay.room, frame_range(stay.entered, stay.left)));
-    (stays.len() > 1).then(|| format!("rooms, in order: {}", told.collect::<Vec<_>>().join(", ")))
+    let rooms = stays.iter().map(|stay| format!("{} ({})", stay.room, frame_range(stay.entered, stay.left)));
+    (stays.len() > 1).then(|| format!("rooms, in order: {}", rooms.collect::<Vec<_>>().join(", ")))
 }
 
 fn door_line(opening: &RoomOpening) -> String {
@@ -50,20 +51,21 @@ fn told_thing(memory: &WalkMemory, thing: &RememberedThing) -> Option<String> {
     }
     let colour = thing.colour.as_ref().filter(|colour| !thing.name.contains(colour.as_str()));
     let colour = colour.map_or(String::new(), |colour| format!("{colour} "));
-    let mut told = format!("{colour}{}: seen from {}", thing.name, frame_range(thing.first_seen(), thing.last_seen()));
+    let mut line = format!("{colour}{}: seen from {}", thing.name, frame_range(thing.first_seen(), thing.last_seen()));
     if let Some(passed) = thing.passed {
         let side = if passed.side == Side::Left { "left" } else { "right" };
-        told += &format!(", passed on the {side} at Frame {}", passed.frame);
+        line += &format!(", passed on the {side} at Frame {}", passed.frame);
         if let Some((place, all)) = memory.ordinal_among_alike(thing).filter(|(_, all)| *all > 1) {
-            told += &format!(" (number {place} of {all} on that side)");
+            line += &format!(" (number {place} of {all} on that side)");
         }
     }
     if let Some(distance_m) = at_end {
-        told += &format!(", {distance_m:.1} metres from the end");
+        line += &format!(", {distance_m:.1} metres from the end");
     }
-    Some(told)
+    Some(line)
 }
 
+/// "Frame 2", "Frames 2 to 4".
 fn frame_range(first: usize, last: usize) -> String {
     if first == last { format!("Frame {first}") } else { format!("Frames {first} to {last}") }
 }

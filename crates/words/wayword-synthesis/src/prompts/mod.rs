@@ -17,7 +17,7 @@ use wayword_core::{DialogueExchange, ModelError, ObjectSighting, WitnessAnswer, 
 
 use crate::{dialogue::is_opening, writer::WritingBrief};
 
-/// The templates: name and source.
+/// The built-in templates: name and source. A user can override each by its name.
 const BUILT_IN: [(&str, &str); 8] = [
     ("see", include_str!("templates/see.j2")),
     ("question", include_str!("templates/question.j2")),
@@ -187,10 +187,10 @@ impl Prompts {
     pub fn summary_prompt(
         &self,
         transcript: &[DialogueExchange],
-        told: &[ObjectSighting],
+        sightings: &[ObjectSighting],
         complaints: &[String],
     ) -> Result<String, PromptError> {
-        let denied: Vec<&str> = told
+        let denied: Vec<&str> = sightings
             .iter()
             .filter(|sighting| sighting.witness == WitnessAnswer::Denied)
             .map(|sighting| sighting.name.as_str())

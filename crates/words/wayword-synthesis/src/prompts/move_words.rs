@@ -2,7 +2,7 @@
 
 use wayword_core::{ClimbDirection, PathMove, TurnKind};
 
-/// Most steps of the overview; a longer way has no overview.
+/// Most sentences of the overview; a longer way has no overview.
 const MOST_STEPS: usize = 40;
 
 /// The name of a frame in reasons and in the overview.
@@ -42,6 +42,7 @@ fn climb_words(climb: ClimbDirection, rise_m: f64) -> String {
 
 /// The way in short: a move that goes straight on is joined to the one before.
 pub(super) fn way_overview(moves: &[PathMove]) -> Vec<String> {
+    // First frame, last frame, the turn at the first frame, climb, length in metres.
     let mut steps: Vec<(usize, usize, TurnKind, ClimbDirection, f64)> = Vec::new();
     for (at, step) in moves.iter().enumerate() {
         match steps.last_mut() {
@@ -54,7 +55,7 @@ pub(super) fn way_overview(moves: &[PathMove]) -> Vec<String> {
     if steps.len() > MOST_STEPS || steps.len() < 2 {
         return Vec::new();
     }
-    let told = steps.into_iter().map(|(from, to, turn, climb, length_m)| {
+    let sentences = steps.into_iter().map(|(from, to, turn, climb, length_m)| {
         let turn = if turn == TurnKind::Straight { String::new() } else { format!("{}, then ", turn_words(turn)) };
         let stairs = match climb {
             ClimbDirection::Level => "",
@@ -63,5 +64,5 @@ pub(super) fn way_overview(moves: &[PathMove]) -> Vec<String> {
         };
         format!("At {} the walk {turn}goes {length_m:.0} metres{stairs}, to {}", frame_of_move(from), frame_of_move(to))
     });
-    told.collect()
+    sentences.collect()
 }

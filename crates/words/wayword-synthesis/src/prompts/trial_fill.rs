@@ -12,6 +12,7 @@ use wayword_core::{
     PathTarget, SceneId, Verdict, WitnessAnswer, path::PathStop,
 };
 
+/// Fills every prompt with made-up values, and returns the error of the first that cannot be filled.
 pub(super) fn fill_all(prompts: &Prompts) -> Result<(), PromptError> {
     let transcript = [DialogueExchange::new("Is there a bed?", "No.")];
     let denied = ObjectSighting::new("bed", WitnessAnswer::Denied, "");

@@ -13,9 +13,10 @@ use wayword_language::{lexicon::names_agree, text::word_count};
 
 /// Most reference texts of a prompt. A style may have thousands, and more examples do not make a text more alike.
 const MOST_REFERENCES: usize = 24;
-/// Most landmarks of a frame.
+/// Most landmarks that the prompt lists for a frame; further ones are left out.
 const MOST_LANDMARKS: usize = 8;
 
+/// The variables of the template `write.j2`.
 pub(super) fn writing_context(brief: &WritingBrief<'_>) -> Value {
     let walk = brief.walk;
     let frames: Vec<Value> = walk
@@ -68,10 +69,10 @@ fn ends_in_task(brief: &WritingBrief<'_>) -> bool {
 /// The things of a frame that a text may name, each once, with its colour and side where they are known.
 fn frame_landmarks(walk: &ObservedWalk, frame: usize) -> Vec<String> {
     let mut names: Vec<&str> = Vec::new();
-    let mut told = Vec::new();
+    let mut landmarks = Vec::new();
     for seen in walk.seen_from(frame) {
         let name = seen.sighting.name.as_str();
-        if told.len() == MOST_LANDMARKS || names.iter().any(|other| names_agree(other, name)) {
+        if landmarks.len() == MOST_LANDMARKS || names.iter().any(|other| names_agree(other, name)) {
             continue;
         }
         names.push(name);
@@ -84,11 +85,12 @@ fn frame_landmarks(walk: &ObservedWalk, frame: usize) -> Vec<String> {
             Some(Side::Behind) => " (behind)",
             Some(Side::Ahead) | None => "",
         };
-        told.push(format!("{several}{colour}{name}{side}"));
+        landmarks.push(format!("{several}{colour}{name}{side}"));
     }
-    told
+    landmarks
 }
 
+/// The target in words for the prompt, with a distinction where other objects of its name are in view.
 fn told_target(walk: &ObservedWalk, target: &PathTarget) -> String {
     let told_by = target.told_by.first().map(|told_by| format!("it is {}", told_by.to_predicate()));
     match told_by.filter(|_| target.has_namesake) {
@@ -103,26 +105,26 @@ fn told_target(walk: &ObservedWalk, target: &PathTarget) -> String {
 /// The style's rules in words. The sentence on fine-grained texts and the shape of coarse ones follow the paper (arXiv
 /// 2403.11487).
 fn style_constraints(brief: &WritingBrief<'_>) -> Vec<String> {
-    let (rules, mut told) = (&brief.style.constraints, Vec::new());
+    let (rules, mut sentences) = (&brief.style.constraints, Vec::new());
     if brief.profile.tells_turns() {
-        told.push("Reaching the goal counts: not every frame has to be used.".to_owned());
+        sentences.push("Reaching the goal counts: not every frame has to be used.".to_owned());
     }
     if let Some(least) = rules.min_sentences {
-        told.push(format!("Write {least} sentences or more."));
+        sentences.push(format!("Write {least} sentences or more."));
     }
     match rules.max_sentences {
-        Some(1) => told.push("Write a single sentence.".to_owned()),
-        Some(most) => told.push(format!("Write at most {most} sentences.")),
+        Some(1) => sentences.push("Write a single sentence.".to_owned()),
+        Some(most) => sentences.push(format!("Write at most {most} sentences.")),
         None => {}
     }
     match rules.fewer_words_than {
-        Some(limit) => told.push(format!("Use fewer than {limit} words.")),
-        None => told.extend(usual_length(brief)),
+        Some(limit) => sentences.push(format!("Use fewer than {limit} words.")),
+        None => sentences.extend(usual_length(brief)),
     }
     if rules.ends_in_task {
-        told.push("The text is a navigation part, the word \"and\", and an activity part: a task on an object of the last frame.".to_owned());
+        sentences.push("The text is a navigation part, the word \"and\", and an activity part: a task on an object of the last frame.".to_owned());
     }
-    told
+    sentences
 }
 
 /// How long the style's texts are, without the shortest and the longest tenth.

@@ -44,7 +44,7 @@ pub(super) fn write_best(
 
 /// One of several texts for a walk.
 struct TextCandidate {
-    /// Its number, from 0.
+    /// Its number, from 0. Rejected candidates have numbers too.
     number: u32,
     instruction: Instruction,
 }
@@ -64,7 +64,7 @@ fn best_candidate(accepted: Vec<TextCandidate>, order: InstructionOrder<'_>) -> 
     let by = if scored.iter().any(|(score, _)| score.is_some()) { ChosenBy::Follower } else { ChosenBy::Checks };
     let mut best: Option<(Option<f64>, TextCandidate)> = None;
     for (score, candidate) in scored {
-        // Of equal ones the first is chosen.
+        // Of candidates with equal scores the first is chosen.
         if best.as_ref().is_none_or(|(before, _)| score > *before) {
             best = Some((score, candidate));
         }

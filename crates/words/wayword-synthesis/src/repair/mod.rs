@@ -49,7 +49,8 @@ pub struct InstructionOrder<'a> {
 
 /// Follows texts on the map around their path.
 pub trait TextFollower {
-    /// Adds a finding to the checked text if it leads elsewhere, and returns what it may mean.
+    /// Follows a checked text. Adds a finding if the text leads elsewhere, and returns how many ends and objects the
+    /// text may mean.
     fn follow(&self, text: &str, checked: &mut TextFindings) -> TextAmbiguity;
 
     /// How likely a text leads to the end of its walk, from 0 to 1, for the choice between texts. This uses another
@@ -82,7 +83,7 @@ pub enum WritingOutcome {
     },
 }
 
-/// Writes an instruction and repairs it.
+/// Writes an instruction and repairs it. If the first writer's texts all fail, the finisher writes.
 ///
 /// # Errors
 /// When the writing model fails.
@@ -93,8 +94,8 @@ pub fn write_and_repair(
 ) -> Result<WritingOutcome, ModelError> {
     let first = choose::write_best(writers.writer, observers, order)?;
     let (WritingOutcome::Rejected { .. }, Some(finisher)) = (&first, writers.finisher) else { return Ok(first) };
-    let free = InstructionOrder { repairs: order.repairs.max(FREE_REPAIRS), ..order };
-    let finished = choose::write_best(finisher, observers, free)?;
+    let more_repairs = InstructionOrder { repairs: order.repairs.max(FREE_REPAIRS), ..order };
+    let finished = choose::write_best(finisher, observers, more_repairs)?;
     Ok(match finished {
         WritingOutcome::Accepted(mut instruction) => {
             instruction.provenance.finished_for = Some(writers.writer.name().to_owned());
@@ -104,7 +105,8 @@ pub fn write_and_repair(
     })
 }
 
-/// Least number of attempts of a finisher by rules. They cost nothing, so the limit for a model does not apply.
+/// Least number of repairs that a finisher by rules may make. They cost nothing, so the limit for a model does not
+/// apply.
 const FREE_REPAIRS: u32 = 8;
 
 /// Lets one writer write until a text passes; `candidate` is the number of the candidate.
@@ -151,6 +153,7 @@ fn write_until_good(
     })
 }
 
+/// The input of the writer for its next attempt, with the complaints about the texts before.
 fn brief_for_attempt<'a>(
     order: InstructionOrder<'a>,
     candidate: u32,
@@ -167,15 +170,17 @@ fn brief_for_attempt<'a>(
 
 /// Whether one of the earlier texts has the same words.
 fn is_there(text: &str, earlier: &[String]) -> bool {
-    let said = split_words(text);
-    earlier.iter().any(|other| split_words(other) == said)
+    let words = split_words(text);
+    earlier.iter().any(|other| split_words(other) == words)
 }
 
+/// The complaint about a text that cannot be used, as a failed check of its form.
 fn unusable_complaint(text: String, reason: String) -> TextComplaint {
     let finding = CheckFinding { check: CheckKind::Form, verdict: Verdict::Fail, reason, span: None };
     TextComplaint { text, findings: vec![finding] }
 }
 
+/// Checks a text, follows it if it passed, and makes an instruction of it with all findings.
 fn check_text(text: String, provenance: TextProvenance, order: InstructionOrder<'_>) -> Instruction {
     let target = order.walk.path.target.as_ref();
     let subject = CheckSubject::closed_world(order.evidence, order.style, target).with_copies(&order.profile.copies);
@@ -203,6 +208,7 @@ fn failure_reasons(best: Option<&Instruction>, complaints: &[TextComplaint]) -> 
     failed.map(|finding| format!("{}: {}", finding.check.name(), finding.reason)).collect::<Vec<_>>().join("; ")
 }
 
+/// Who asked, answered, summarised and wrote, with the seed and the hashes of the inputs.
 fn text_provenance(
     writer: &dyn InstructionWriter,
     observers: ObservationRoles<'_>,

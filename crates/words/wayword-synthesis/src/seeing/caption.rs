@@ -1,4 +1,4 @@
-//! Makes a caption with sightings of a structured answer, by rules.
+//! Turns a structured answer about a view into a caption with sightings, by rules.
 
 use super::read_answer::{ViewReading, ViewThing};
 use crate::dialogue::caption_of;
@@ -8,7 +8,7 @@ use wayword_language::{
     text::capitalise_first,
 };
 
-/// Most things that the text of a caption names.
+/// Most things that the text of a caption names; further ones are only among its sightings.
 const MOST_IN_TEXT: usize = 12;
 
 /// The caption of an answer; its sightings are attributed to `by`.
@@ -77,6 +77,7 @@ pub(crate) fn caption_text(
     sentences.join(" ")
 }
 
+/// "A door on the left leads to a kitchen." `None` if it is not known where the way out leads.
 fn way_out_sentence(way: &WayOut) -> Option<String> {
     let room = with_article(way.leads_to.as_ref()?);
     let place = match way.place {

@@ -3,7 +3,7 @@
 
 use serde_json::{Deserializer, Value};
 
-/// Longest answer that is read, bytes. A full one has about 2,000.
+/// Longest answer that is read, bytes; a longer one is an error. A full answer has about 2,000.
 pub(super) const MOST_BYTES: usize = 32 * 1024;
 
 /// The JSON of an answer.
@@ -38,13 +38,15 @@ pub(super) fn find_json(answer: &str) -> Result<AnswerJson, String> {
 /// The state of a repair: the output so far, and the brackets that are open.
 #[derive(Default)]
 struct JsonMender {
+    /// The repaired JSON so far.
     out: String,
+    /// For each bracket that is open, the one that closes it; the innermost is last.
     open: Vec<char>,
-    /// The length of the last complete part, and the brackets that were open there.
+    /// The length of `out` up to the last complete object or array, and `open` at that place.
     whole: Option<(usize, Vec<char>)>,
 }
 
-/// Deepest nesting of brackets; JSON of the schema has four levels.
+/// Deepest nesting of brackets, levels; the rest of a deeper text is cut off. JSON of the schema has four levels.
 const MAX_BRACKET_DEPTH: usize = 32;
 
 /// Repairs JSON: removes commas before closing brackets, replaces the words and quotes of other languages, and closes
@@ -55,8 +57,8 @@ fn mend_json(text: &str) -> (String, bool) {
     while let Some(next) = rest.chars().next() {
         let taken = match next {
             '"' | '\'' | '“' => match read_string(rest, next) {
-                Some((said, taken)) => {
-                    mending.out.push_str(&Value::String(said).to_string());
+                Some((content, taken)) => {
+                    mending.out.push_str(&Value::String(content).to_string());
                     taken
                 }
                 None => break,
@@ -91,6 +93,7 @@ fn mend_json(text: &str) -> (String, bool) {
 }
 
 impl JsonMender {
+    /// Closes the innermost bracket, if this is the one that closes it; any other is dropped.
     fn close_bracket(&mut self, bracket: char) {
         self.without_comma();
         if self.open.last() == Some(&bracket) {
@@ -100,6 +103,7 @@ impl JsonMender {
         }
     }
 
+    /// Removes commas from the end of the output.
     fn without_comma(&mut self) {
         let kept = self.out.trim_end().trim_end_matches(',').len();
         self.out.truncate(kept);
@@ -117,16 +121,16 @@ impl JsonMender {
 /// The string at the beginning of a text, without its quotes, and its length with them. `None` if it is not closed.
 fn read_string(text: &str, quote: char) -> Option<(String, usize)> {
     let end = if quote == '“' { '”' } else { quote };
-    let mut said = String::new();
+    let mut content = String::new();
     let mut characters = text.char_indices().skip(1);
     while let Some((at, next)) = characters.next() {
         match next {
             '\\' => match characters.next()?.1 {
-                'n' | 't' | 'r' => said.push(' '),
-                other => said.push(other),
+                'n' | 't' | 'r' => content.push(' '),
+                other => content.push(other),
             },
-            next if next == end => return Some((said, at + next.len_utf8())),
-            next => said.push(next),
+            next if next == end => return Some((content, at + next.len_utf8())),
+            next => content.push(next),
         }
     }
     None

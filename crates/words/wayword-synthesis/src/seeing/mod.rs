@@ -35,7 +35,7 @@ pub(crate) const FAR_M: f64 = 4.0;
 const REPEAT_REQUEST_PREFIX: &str =
     "What does it show, in the form that was asked for? The last answer could not be read: ";
 
-/// Longest answer in a transcript, bytes; longer ones are cut.
+/// Longest answer that a transcript keeps, bytes; the end of a longer one is cut off.
 const MOST_KEPT: usize = 8 * 1024;
 
 /// The reason in a repeated request; `None` for any other question.
@@ -109,6 +109,7 @@ fn ask_open_questions(
     Ok(questions.into_iter().zip(answers).zip(is_refused).map(exchange).collect())
 }
 
+/// Asks questions about a view for answers in words, one answer each.
 fn in_words(view: &View, questions: &[String], observers: ObservationRoles<'_>) -> Result<Vec<String>, ModelError> {
     if questions.is_empty() {
         return Ok(Vec::new());
@@ -121,16 +122,17 @@ fn in_words(view: &View, questions: &[String], observers: ObservationRoles<'_>) 
     asks.iter().map(|_| answers.next().unwrap_or_else(|| Err(observers.unanswered_error()))).collect()
 }
 
+/// An answer as a transcript keeps it, cut to the limit.
 fn cut_answer(answer: &str) -> String {
     answer[..answer.floor_char_boundary(MOST_KEPT)].to_owned()
 }
 
-/// The caption of an answer that is not in the requested form: its words are read as a description. A refusal yields an
-/// empty caption.
+/// The caption where no answer is in the requested form: the words of the last one are read as a description. A refusal
+/// yields an empty caption.
 fn as_words(transcript: Vec<DialogueExchange>, by: &str) -> Result<Caption, ModelError> {
-    let said = transcript.last().map_or("", |last| last.answer.as_str());
-    let said = if refuses_to_look(said) { "" } else { said };
-    let caption = RulesSummariser.sum_up(&[DialogueExchange::new(OPENING_REQUEST, said)], by)?;
+    let answer = transcript.last().map_or("", |last| last.answer.as_str());
+    let answer = if refuses_to_look(answer) { "" } else { answer };
+    let caption = RulesSummariser.sum_up(&[DialogueExchange::new(OPENING_REQUEST, answer)], by)?;
     Ok(Caption { transcript, ..caption })
 }
 

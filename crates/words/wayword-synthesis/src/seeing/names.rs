@@ -8,33 +8,35 @@ use wayword_language::{
     reading::vocabulary::{ABSTRACT, ADJECTIVES, BREAKERS},
 };
 
-/// Longest name, bytes.
+/// Longest name, bytes; a longer text is no name.
 const MOST_BYTES: usize = 40;
-/// Most words of a name.
+/// Most words of a name; a text with more is no name.
 const MOST_WORDS: usize = 4;
-/// Most names that one thing may have: "sofa or bench".
+/// Most names that one thing may have ("sofa or bench" has two); further ones are ignored.
 const MOST_NAMES: usize = 3;
 
-/// A name taken apart.
+/// A name taken apart: "two small red chairs" is the name "chair", several of them, red.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct NameReading {
-    /// The names that it may mean, each in the singular; a single one if the witness knows which.
+    /// The names that the text may mean, each in the singular; a single one if the model is sure which.
     pub(crate) names: Vec<String>,
+    /// Whether the text expresses doubt, by a question mark or a word such as "maybe".
     pub(crate) is_guess: bool,
+    /// Whether the text means more than one.
     pub(crate) several: bool,
     pub(crate) colours: Vec<String>,
     pub(crate) material: Option<String>,
 }
 
-/// Reads a name; the result has no names if the text is none.
+/// Reads a name; the result has no names if the text is no name.
 pub(crate) fn read_name(said: &str) -> NameReading {
     let said = &said[..said.floor_char_boundary(4 * MOST_BYTES)].to_lowercase().replace('’', "'");
     let mut named = NameReading { is_guess: said.contains('?'), ..NameReading::default() };
     let plain = said.split('(').next().unwrap_or_default().replace('/', " or ");
     let words: Vec<&str> = plain.split(|c: char| !(c.is_alphanumeric() || "-'".contains(c))).collect();
     let words: Vec<&str> = words.into_iter().filter(|word| !word.is_empty()).collect();
-    for one in words.split(|word| *word == "or") {
-        if let Some(name) = one_name(one, &mut named).filter(|name| !named.names.contains(name))
+    for alternative in words.split(|word| *word == "or") {
+        if let Some(name) = one_name(alternative, &mut named).filter(|name| !named.names.contains(name))
             && named.names.len() < MOST_NAMES
         {
             named.names.push(name);
@@ -43,6 +45,8 @@ pub(crate) fn read_name(said: &str) -> NameReading {
     named
 }
 
+/// Reads one of the names between "or": takes colours, materials, numbers and qualities off its beginning and notes
+/// them in `named`. `None` if no name of a thing is left.
 fn one_name(words: &[&str], named: &mut NameReading) -> Option<String> {
     let mut words = before_the_place(words);
     loop {
@@ -77,6 +81,7 @@ fn one_name(words: &[&str], named: &mut NameReading) -> Option<String> {
 }
 
 impl NameReading {
+    /// Adds a colour; more than four are ignored.
     pub(crate) fn add_colour(&mut self, colour: String) {
         if !self.colours.contains(&colour) && self.colours.len() < 4 {
             self.colours.push(colour);
@@ -95,11 +100,12 @@ fn before_the_place<'a, 'b>(words: &'a [&'b str]) -> &'a [&'b str] {
     &words[..longer.unwrap_or(end)]
 }
 
+/// Whether a word only describes a thing ("large", "wooden") or means nothing.
 fn is_quality(word: &str) -> bool {
     QUALITIES.contains(&word) || ADJECTIVES.contains(&word) || TELLS_NOTHING.contains(&word)
 }
 
-/// Whether words can name a thing.
+/// Whether words can name a thing: within the limits, and no words for qualities, materials or nothing at all.
 fn is_name(name: &str) -> bool {
     let head = name.rsplit(' ').next().unwrap_or_default();
     let is_nothing = |word: &str| {
@@ -122,10 +128,10 @@ pub(crate) fn read_rooms(said: &str) -> (Vec<String>, bool) {
         said.split(|c: char| !(c.is_alphanumeric() || c == '\'')).filter(|word| !word.is_empty()).collect();
     let is_guess = said.contains('?') || words.iter().any(|word| GUESSING.contains(word));
     let mut names: Vec<String> = Vec::new();
-    for one in words.split(|word| *word == "or") {
+    for alternative in words.split(|word| *word == "or") {
         let tells = |word: &&str| !GUESSING.contains(word) && !matches!(*word, "a" | "an" | "the");
-        let one: Vec<&str> = one.iter().copied().filter(tells).collect();
-        if let Some(name) = read_room(&one).filter(|name| !names.contains(name))
+        let room_words: Vec<&str> = alternative.iter().copied().filter(tells).collect();
+        if let Some(name) = read_room(&room_words).filter(|name| !names.contains(name))
             && names.len() < MOST_NAMES
         {
             names.push(name);

@@ -1,4 +1,5 @@
-//! Parses a structured answer leniently: models use other field names, other types and another case than the schema.
+//! Parses a structured answer (the JSON about a view) leniently: models use other field names, other types and another
+//! case than the schema.
 
 use super::{
     json,
@@ -12,11 +13,11 @@ use wayword_language::{
     lexicon::{ThingClass, find_thing, names_agree},
 };
 
-/// Most things that are taken from one answer.
+/// Most things that are taken from one answer; further ones are ignored.
 const MOST_THINGS: usize = 24;
-/// Most ways out that are taken.
+/// Most ways out that are taken; further ones are ignored.
 const MOST_WAYS: usize = 8;
-/// Most words that are searched for colours.
+/// Most words of a text that are searched for colours; later words are ignored.
 const MOST_COLOUR_WORDS: usize = 12;
 
 /// The content of a structured answer about a view.
@@ -39,7 +40,7 @@ pub(super) struct ViewThing {
     pub(super) stands_out: bool,
 }
 
-/// Parses an answer. One that was cut off is accepted only if `takes_part`, and then yields its complete part.
+/// Parses an answer. An answer that was cut off is an error, unless `takes_part`: then its complete part is read.
 ///
 /// # Errors
 /// With the fault in words for the model.
@@ -104,6 +105,7 @@ fn value_text(value: &Value) -> String {
     }
 }
 
+/// A value as texts: the items of a list, or the parts of a text between commas.
 fn value_texts(value: &Value) -> Vec<String> {
     match value {
         Value::Array(values) => values.iter().take(MOST_THINGS).map(value_text).collect(),
@@ -122,6 +124,7 @@ fn list_entries(value: &Value) -> Vec<&Value> {
     }
 }
 
+/// Whether a value means "nothing": an empty list or object, or such a word.
 fn is_empty(value: &Value) -> bool {
     match value {
         Value::Array(values) => values.is_empty(),
@@ -131,6 +134,8 @@ fn is_empty(value: &Value) -> bool {
     }
 }
 
+/// Reads one entry of the list of things. `cues` are the names that the model gave as standing out. `None` if the entry
+/// names no thing.
 fn thing_of(entry: &Value, cues: &[NameReading]) -> Option<ViewThing> {
     let mut told = match entry {
         Value::Number(_) | Value::Bool(_) => return None,
@@ -188,10 +193,12 @@ fn is_cue(cue: &NameReading, told: &NameReading) -> bool {
     names && (material || told.material.is_none())
 }
 
+/// Whether every room has such a thing.
 fn is_everywhere(name: &str) -> bool {
     find_thing(name).is_some_and(|thing| matches!(thing.name, "wall" | "floor" | "ceiling" | "corner"))
 }
 
+/// The colours that a text names, with their shades.
 fn read_colours(said: &str) -> Vec<String> {
     let said = said.to_lowercase();
     let words: Vec<&str> =
@@ -206,7 +213,7 @@ fn read_colours(said: &str) -> Vec<String> {
     found
 }
 
-/// Whether a field expresses certainty, as a flag, a number or words.
+/// Whether a field expresses certainty: a flag, a number from 0.75, or words without doubt.
 fn is_sure(value: &Value) -> bool {
     match value {
         Value::Bool(flag) => *flag,
@@ -246,17 +253,19 @@ fn read_place(said: &str) -> Option<ViewThird> {
     }
 }
 
+/// Reads one entry of the list of ways out. `None` if it is neither a door, stairs or opening, nor leads to a known
+/// room.
 fn read_way_out(entry: &Value) -> Option<WayOut> {
-    let told = read_name(&value_text(entry));
+    let reading = read_name(&value_text(entry));
     let empty = Map::new();
     let fields = entry.as_object().unwrap_or(&empty);
     let leads_to = find_field(fields, &["leadsto", "to", "room", "behind"]).map(value_text).unwrap_or_default();
     let (mut rooms, is_guess) = read_rooms(&leads_to);
     let room = if rooms.len() == 1 && !is_guess { rooms.pop() } else { None };
-    let name = told.names.into_iter().next().filter(|name| {
+    let name = reading.names.into_iter().next().filter(|name| {
         let class = find_thing(name).map(|thing| thing.class);
         let fits = matches!(class, Some(ThingClass::Door | ThingClass::Stairs)) || is_opening(name);
-        fits && !told.is_guess
+        fits && !reading.is_guess
     });
     // A hallway that one looks along is a way out, but no thing.
     let name = name.or_else(|| room.is_some().then(|| "opening".to_owned()))?;
@@ -265,6 +274,7 @@ fn read_way_out(entry: &Value) -> Option<WayOut> {
     Some(WayOut { name, place, leads_to: room })
 }
 
+/// Whether a name means an opening that one can walk through.
 fn is_opening(name: &str) -> bool {
     find_thing(name).is_some_and(|thing| matches!(thing.name, "doorway" | "arch" | "archway"))
         || ["doorway", "archway", "opening", "entrance", "exit", "gate", "elevator"]
@@ -274,10 +284,10 @@ fn is_opening(name: &str) -> bool {
 
 /// Joins things of the same name and side into one that counts as several.
 fn each_once(things: Vec<ViewThing>) -> Vec<ViewThing> {
-    let mut kept: Vec<ViewThing> = Vec::new();
+    let mut merged: Vec<ViewThing> = Vec::new();
     for thing in things {
         let same = |other: &&mut ViewThing| other.told.names == thing.told.names && other.place == thing.place;
-        match kept.iter_mut().find(same) {
+        match merged.iter_mut().find(same) {
             Some(other)
                 if other.told.colours == thing.told.colours
                     || other.told.colours.is_empty()
@@ -288,12 +298,13 @@ fn each_once(things: Vec<ViewThing>) -> Vec<ViewThing> {
                 other.stands_out |= thing.stands_out;
                 other.is_far &= thing.is_far;
             }
-            _ => kept.push(thing),
+            _ => merged.push(thing),
         }
     }
-    kept
+    merged
 }
 
+/// The beginning of a value for a message, 80 characters.
 fn shorten_value(value: &Value) -> String {
     value.to_string().chars().take(80).collect()
 }

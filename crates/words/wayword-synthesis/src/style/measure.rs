@@ -1,4 +1,7 @@
 //! Counts how the reference texts of a style word a place and a task.
+//!
+//! The counts are by table and construction of `builtin/place.toml`: of "Go to the bathroom on level 2 and clean the
+//! mirror" they are table "opener", "go to", and table "level", "the {r} on level {n}".
 
 use super::{
     names, verbs,
@@ -26,11 +29,16 @@ pub(super) fn measure_wording<'a>(texts: impl Iterator<Item = (&'a str, &'a Text
 
 /// A text split into the part with the way or the room and the part with the task.
 struct PlaceTextParts {
+    /// Which part is first, as table "order" calls it: "move" (go to the room and do the task), "task" (do the task in
+    /// the room), or "in" (in the room, do the task).
     order: &'static str,
+    /// The words of the way or the room, with a space before and after.
     room: String,
+    /// The words of the task, with a space before and after.
     task: String,
 }
 
+/// Counts the constructions of one text.
 fn count_text(text: &str, reading: &TextReading, counts: &mut WordingCounts) {
     let words = split_words(text);
     let all = format!(" {} ", words.join(" "));
@@ -64,7 +72,7 @@ fn count_text(text: &str, reading: &TextReading, counts: &mut WordingCounts) {
     names::count_names(reading, counts);
 }
 
-/// The tables of properties that a text can mention of an object.
+/// The tables with constructions for the properties that a text can mention of an object.
 const OF_OBJECT: [&str; 15] = [
     "closest",
     "near",
@@ -91,7 +99,7 @@ fn count_object(task: &str, counts: &mut WordingCounts) {
     let parts_of = ["left", "right", "left side", "right side", "top", "bottom", "middle"];
     let whole = parts_of.iter().fold(task.clone(), |text, part| text.replace(&format!(" {part} of "), " "));
     let to_the_left = task.replace(" right ", " left ");
-    let mut told = false;
+    let mut has_property = false;
     for table in OF_OBJECT {
         let text = match table {
             "side" | "middle" | "highest" | "lowest" => &whole,
@@ -101,10 +109,10 @@ fn count_object(task: &str, counts: &mut WordingCounts) {
         if let Some(key) = first_of(known.table(table), text) {
             counts.add(table, key);
             counts.add("told", table);
-            told = true;
+            has_property = true;
         }
     }
-    if told {
+    if has_property {
         counts.add("share", "object");
         let links = known.table("link").keys().filter(|link| !link.is_empty());
         let said = links.filter(|link| task.contains(&format!(" {link} "))).max_by_key(|link| link.len());
@@ -200,9 +208,9 @@ fn count_opener(words: &[String], counts: &mut WordingCounts) {
             || *word == "level"
     };
     let Some(end) = words.iter().take(6).position(|word| ends(&word)) else { return };
-    let said = words[..end].join(" ");
-    if known.contains_key(&said) {
-        counts.add("opener", &said);
+    let opener = words[..end].join(" ");
+    if known.contains_key(&opener) {
+        counts.add("opener", &opener);
     }
 }
 

@@ -14,14 +14,16 @@ use wayword_core::{InstructionStyle, hex_text};
 pub use profile::StyleProfile;
 pub use wording::{PlaceWording, WordingShares};
 
+/// The built-in styles: name, and text of the TOML file.
 const BUILT_IN: [(&str, &str); 2] =
     [("r2r", include_str!("builtin/r2r.toml")), ("reverie", include_str!("builtin/reverie.toml"))];
 
 /// The built-in wording of places: constructions with their shares.
 const PLACE_WORDING_TOML: &str = include_str!("builtin/place.toml");
 
-/// Most reference texts of a style, and most bytes of each.
+/// Most reference texts of a style; a style with more is an error.
 const MOST_REFERENCES: usize = 100_000;
+/// Most bytes of each reference text; a style with a longer one is an error.
 const MOST_BYTES: usize = 4000;
 
 /// Why a style cannot be used.
@@ -38,13 +40,13 @@ pub enum StyleError {
         /// The fault, with line and field.
         reason: String,
     },
-    /// It has no name.
+    /// The style has no name.
     #[error("a style has no name: give it one")]
     Unnamed,
-    /// It has no reference texts.
+    /// The style has no reference texts.
     #[error("style {0} has no reference texts: give at least one in `references`")]
     NoReferences(String),
-    /// It has too many or too long reference texts.
+    /// The style has too many or too long reference texts.
     #[error(
         "style {0} has more than {MOST_REFERENCES} reference texts, or one of more than {MOST_BYTES} bytes: give fewer or shorter ones"
     )]
@@ -80,7 +82,7 @@ pub fn parse_style(name: &str, text: &str) -> Result<InstructionStyle, StyleErro
     parse_with(name, text, Vec::new())
 }
 
-/// Like [`parse_style`], with more references than the file has.
+/// Like [`parse_style`], with the references in `more` after those of the file.
 ///
 /// # Errors
 /// When it is no style, or there are no or too many references.

@@ -42,11 +42,12 @@ fn equivalent_names(name: &str) -> Option<&'static [&'static str]> {
     EQUIVALENT_NAMES.iter().find(|names| names.iter().any(|other| normalise_name(other) == name)).copied()
 }
 
+/// Counts the name that a text uses for each of its rooms and things, in the table of every name of its group.
 pub(super) fn count_names(reading: &TextReading, counts: &mut WordingCounts) {
     for event in &reading.events {
         let EventContent::Place(place) = &event.what else { continue };
         let Some(names) = equivalent_names(&place.name) else { continue };
-        let said = names.iter().find(|name| normalise_name(name) == place.name).copied().unwrap_or_default();
-        names.iter().for_each(|name| counts.add(&format!("{NAME_TABLE_PREFIX}{name}"), said));
+        let used = names.iter().find(|name| normalise_name(name) == place.name).copied().unwrap_or_default();
+        names.iter().for_each(|name| counts.add(&format!("{NAME_TABLE_PREFIX}{name}"), used));
     }
 }

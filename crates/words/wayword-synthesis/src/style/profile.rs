@@ -10,7 +10,7 @@ use wayword_language::{
     text::{sentence_count, word_count},
 };
 
-/// Measured on reference texts; shares are of texts, from 0 to 1.
+/// Properties that were measured on the reference texts of a style; shares are of texts, from 0 to 1.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StyleProfile {
     /// Words of the texts, sorted: the writer draws its length from these.
@@ -21,11 +21,11 @@ pub struct StyleProfile {
     pub turns: f64,
     /// Landmarks and rooms per text.
     pub places: f64,
-    /// Share that ends in a task.
+    /// Share of texts that end in a task.
     pub tasks: f64,
-    /// Share that names a floor, or contains "upstairs" or "downstairs".
+    /// Share of texts that name a floor, or contain "upstairs" or "downstairs".
     pub floors: f64,
-    /// Share that ends in a full stop.
+    /// Share of texts that end in a full stop.
     pub full_stops: f64,
     /// How they describe a way.
     #[serde(skip)]
@@ -78,7 +78,7 @@ impl StyleProfile {
         }
     }
 
-    /// Whether the texts describe the way turn by turn.
+    /// Whether the texts describe the way turn by turn: they have at least two turn words in five texts.
     #[must_use]
     pub fn tells_turns(&self) -> bool {
         self.turns >= 0.4

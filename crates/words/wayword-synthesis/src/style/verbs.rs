@@ -15,7 +15,7 @@ const LEAST_USES: f64 = 3.0;
 /// Words that may stand between a verb and its object.
 const TASK_PARTICLES: [&str; 14] =
     ["me", "on", "off", "up", "down", "out", "in", "away", "over", "at", "into", "inside", "under", "back"];
-/// For a whole class of things, it also needs this share of their tasks.
+/// A verb for a whole class of things also needs this share of the tasks on the class.
 const LEAST_SHARE: f64 = 0.01;
 
 /// Counts the verb of a text's task, with `{o}` in place of the object.
@@ -29,11 +29,11 @@ pub(super) fn count_verb(words: &[String], reading: &TextReading, counts: &mut W
     else {
         return;
     };
-    let said = &words[at..end];
-    let is_plain = said.len() <= 3
-        && said[0].len() > 1
-        && said[0].chars().all(char::is_alphabetic)
-        && said[1..].iter().all(|word| TASK_PARTICLES.contains(&word.as_str()));
+    let verb_words = &words[at..end];
+    let is_plain = verb_words.len() <= 3
+        && verb_words[0].len() > 1
+        && verb_words[0].chars().all(char::is_alphabetic)
+        && verb_words[1..].iter().all(|word| TASK_PARTICLES.contains(&word.as_str()));
     if !is_plain
         || WALKING.contains(&task.verb.as_str())
             && !matches!(
@@ -47,12 +47,12 @@ pub(super) fn count_verb(words: &[String], reading: &TextReading, counts: &mut W
     let noun = place.name.rsplit(' ').next().unwrap_or_default();
     let behind = words[end..].iter().position(|word| word == noun).map(|noun| end + noun + 1);
     let particle = behind.and_then(|at| Some((words.get(at)?, words.get(at + 1))));
-    let mut key = format!("{} {{o}}", said.join(" "));
+    let mut key = format!("{} {{o}}", verb_words.join(" "));
     if let Some((particle @ ("on" | "off" | "out" | "up" | "down"), next)) =
         particle.map(|(word, next)| (word.as_str(), next))
     {
         let is_last = next.is_none_or(|next| matches!(next.as_str(), "in" | "and" | "from"));
-        if is_last && said.len() == 1 {
+        if is_last && verb_words.len() == 1 {
             key = format!("{key} {particle}");
         }
     }
@@ -63,10 +63,10 @@ pub(super) fn count_verb(words: &[String], reading: &TextReading, counts: &mut W
 /// Keeps the verbs that several references use and that our own reader recognises as a task.
 pub(super) fn retain_common_verbs(counts: &mut WordingCounts) {
     for (table, verbs) in &mut counts.0 {
-        let Some(of) = table.strip_prefix(VERB_TABLE_PREFIX) else { continue };
+        let Some(owner) = table.strip_prefix(VERB_TABLE_PREFIX) else { continue };
         let all: f64 = verbs.values().sum();
-        let least = if of.starts_with("class ") { (all * LEAST_SHARE).max(LEAST_USES) } else { LEAST_USES };
-        let object = if of.starts_with("class ") { "lamp" } else { of };
+        let least = if owner.starts_with("class ") { (all * LEAST_SHARE).max(LEAST_USES) } else { LEAST_USES };
+        let object = if owner.starts_with("class ") { "lamp" } else { owner };
         verbs.retain(|verb, count| *count >= least && is_read(verb, object));
     }
 }

@@ -10,7 +10,7 @@ use std::{collections::BTreeMap, sync::LazyLock};
 use wayword_core::WordingPolicy;
 use wayword_language::lexicon::{ThingClass, find_thing, kinds_of};
 
-/// A table of constructions with their shares.
+/// A table of constructions with their shares, or with counts: "go to" has 70, "go into" 2.4.
 pub type WordingShares = BTreeMap<String, f64>;
 
 /// Counts of constructions, by table.
@@ -18,6 +18,7 @@ pub type WordingShares = BTreeMap<String, f64>;
 pub(super) struct WordingCounts(pub(super) BTreeMap<String, WordingShares>);
 
 impl WordingCounts {
+    /// Counts a construction of a table once.
     pub(super) fn add(&mut self, table: &str, key: &str) {
         *self.0.entry(table.to_owned()).or_default().entry(key.to_owned()).or_default() += 1.0;
     }
@@ -29,10 +30,11 @@ static BUILT_IN: LazyLock<PlaceWording> = LazyLock::new(|| PlaceWording { tables
 /// How a style words a place and a task.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
 pub struct PlaceWording {
+    /// The tables of `builtin/place.toml` by name, with the style's shares.
     pub(super) tables: BTreeMap<String, WordingShares>,
 }
 
-/// The built-in shares count as much as this many references.
+/// The built-in shares count as much as this many reference texts.
 const PRIOR_TEXTS: f64 = 12.0;
 
 impl PlaceWording {
@@ -110,18 +112,22 @@ impl PlaceWording {
         self.tables.get(name).unwrap_or(&NO_SHARES)
     }
 
-    /// Draws a construction of a table with a power of its share, among those that `may` be used.
-    pub fn draw_sharply<'a>(&'a self, name: &str, rng: &mut ChaCha8Rng, may: impl Fn(&str) -> bool) -> Option<&'a str> {
-        let options = self.table(name).iter().filter(|(key, _)| may(key));
+    /// Draws a construction of a table with [`Self::sharp_power`] of its share as weight, among those that `is_allowed`
+    /// accepts.
+    pub fn draw_sharply<'a>(
+        &'a self,
+        name: &str,
+        rng: &mut ChaCha8Rng,
+        is_allowed: impl Fn(&str) -> bool,
+    ) -> Option<&'a str> {
+        let options = self.table(name).iter().filter(|(key, _)| is_allowed(key));
         draw_by_share(options.map(|(key, share)| (key.as_str(), share.powf(self.sharp_power()))), rng)
     }
 
-    /// Draws a construction of a table with its share, among those that `may` be used.
-    pub fn draw<'a>(&'a self, name: &str, rng: &mut ChaCha8Rng, may: impl Fn(&str) -> bool) -> Option<&'a str> {
-        draw_by_share(
-            self.table(name).iter().filter(|(key, _)| may(key)).map(|(key, share)| (key.as_str(), *share)),
-            rng,
-        )
+    /// Draws a construction of a table with its share as weight, among those that `is_allowed` accepts.
+    pub fn draw<'a>(&'a self, name: &str, rng: &mut ChaCha8Rng, is_allowed: impl Fn(&str) -> bool) -> Option<&'a str> {
+        let options = self.table(name).iter().filter(|(key, _)| is_allowed(key));
+        draw_by_share(options.map(|(key, share)| (key.as_str(), *share)), rng)
     }
 
     /// Draws a verb for a thing, with `{o}` in place of the thing. `sharp` over 1 prefers frequent verbs.
@@ -130,20 +136,21 @@ impl PlaceWording {
         draw_by_share(own.into_iter().map(|(key, count)| (key, count.powf(sharp))), rng).unwrap_or("look at {o}")
     }
 
-    /// The verbs for a thing: those for its own kind, and, if these are few, also those for its class.
+    /// The verbs for a thing with their counts: those for its own kind, and, if these are few, also those for its more
+    /// general kinds and its class.
     fn verbs_of(&self, name: &str) -> Vec<(&str, f64)> {
         let mut found: BTreeMap<&str, f64> = BTreeMap::new();
-        let mut enough = 0.0;
+        let mut tasks = 0.0;
         let class = find_thing(name).map_or(ThingClass::Unknown, |thing| thing.class);
         let tables = kinds_of(name).into_iter().map(|kind| verbs_of_kind(&kind)).chain([verbs_of_class(class)]);
         for table in tables {
             let shares = self.table(&table);
             let all: f64 = shares.values().sum();
             // More general tables only fill up to a sufficient number.
-            let weight = if enough >= ENOUGH_TASKS { break } else { (ENOUGH_TASKS - enough) / all.max(ENOUGH_TASKS) };
-            let weight = if enough == 0.0 { 1.0 } else { weight };
+            let weight = if tasks >= ENOUGH_TASKS { break } else { (ENOUGH_TASKS - tasks) / all.max(ENOUGH_TASKS) };
+            let weight = if tasks == 0.0 { 1.0 } else { weight };
             shares.iter().for_each(|(key, count)| *found.entry(key).or_default() += count * weight);
-            enough += all * weight;
+            tasks += all * weight;
         }
         // "Wipe down the stairs" reads as a climb.
         let climbs = |verb: &str| verb.split(' ').any(|word| matches!(word, "up" | "down"));
@@ -178,6 +185,7 @@ pub(super) fn verbs_of_class(class: ThingClass) -> String {
     format!("{VERB_TABLE_PREFIX}class {class:?}").to_lowercase()
 }
 
+/// Draws one of the options with its share as weight; `None` if no option has a share over 0.
 fn draw_by_share<'a>(options: impl Iterator<Item = (&'a str, f64)>, rng: &mut ChaCha8Rng) -> Option<&'a str> {
     let options: Vec<(&str, f64)> = options.filter(|(_, share)| *share > 0.0).collect();
     let shares: Vec<f64> = options.iter().map(|(_, share)| *share).collect();

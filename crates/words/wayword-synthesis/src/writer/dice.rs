@@ -1,5 +1,5 @@
-//! Random draws of a text by name. Each name has its own random generator, so a draw does not depend on the draws
-//! before it: if one thing of the walk changes, the words for the others stay the same.
+//! Random draws for one text, each by a name such as "stop". Each name has its own random generator, so a draw does not
+//! depend on the draws before it: if one thing of the walk changes, the words for the others stay the same.
 
 use super::{TextComplaint, WritingBrief};
 use rand::Rng;

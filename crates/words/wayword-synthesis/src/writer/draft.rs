@@ -13,7 +13,9 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_language::text::capitalise_first;
 
+/// A text in the making. Clauses, phrases and joints belong together one by one; a joint comes before its phrase.
 pub(super) struct TextDraft<'a> {
+    /// The clauses of the plan, with their things.
     told: Vec<WayClause>,
     phrases: Vec<ClausePhrase>,
     joints: Vec<ClauseJoint>,
@@ -22,10 +24,12 @@ pub(super) struct TextDraft<'a> {
     names: ChosenNames<'a>,
     /// Whether its last phrase is a task, which stays as it is.
     has_task: bool,
+    /// Whether a text of one sentence ends in a full stop; longer ones always do.
     full_stop: bool,
 }
 
 impl<'a> TextDraft<'a> {
+    /// Puts the clauses into words and draws the joints. A task replaces the words of the last clause.
     pub(super) fn from_clauses(
         told: Vec<WayClause>,
         task: Option<&str>,
@@ -104,7 +108,7 @@ impl<'a> TextDraft<'a> {
 
 /// Draws the joints between the phrases with the style's shares, and keeps to its number of sentences.
 fn choose_joints(
-    told: &[WayClause],
+    clauses: &[WayClause],
     phrases: &[ClausePhrase],
     brief: &WritingBrief<'_>,
     dice: TextDice,
@@ -121,10 +125,11 @@ fn choose_joints(
         }
         let shares = match () {
             () if at + 1 == phrases.len() => &way.stop_joints,
-            () if told[at - 1].kind.is_bare_turn() => &way.turn_joints,
+            () if clauses[at - 1].kind.is_bare_turn() => &way.turn_joints,
             () => &way.joints,
         };
         let before = joints[at - 1];
+        // The same joint twice in a row within a sentence is rarer, and only a clause with a verb can follow "and".
         let weight = |joint: &ClauseJoint, share: f64| {
             let is_again = *joint == before && !joint.begins_sentence();
             let has_verb = phrase.is_clause || matches!(joint, ClauseJoint::Stop | ClauseJoint::Comma);
@@ -132,10 +137,10 @@ fn choose_joints(
         };
         let all: Vec<(f64, ClauseJoint)> =
             shares.iter().map(|(joint, share)| (weight(joint, *share), *joint)).collect();
-        joints.push(draw_option(&all, &mut told[at].clause_rng("joint", dice)).unwrap_or(ClauseJoint::Stop));
+        joints.push(draw_option(&all, &mut clauses[at].clause_rng("joint", dice)).unwrap_or(ClauseJoint::Stop));
     }
-    let begins = |joints: &[ClauseJoint]| joints.iter().filter(|joint| joint.begins_sentence()).count();
-    while begins(&joints) < least {
+    let count_sentences = |joints: &[ClauseJoint]| joints.iter().filter(|joint| joint.begins_sentence()).count();
+    while count_sentences(&joints) < least {
         let may_stop = |at: &usize| !joints[*at].begins_sentence() && joints[*at] != ClauseJoint::Run;
         let within: Vec<usize> = (1..joints.len()).filter(may_stop).collect();
         if within.is_empty() {
@@ -144,7 +149,7 @@ fn choose_joints(
         let mut rng = dice.rng_at_frame("sentence", within.len());
         joints[within[rng.random_range(0..within.len())]] = ClauseJoint::Stop;
     }
-    while begins(&joints) > most {
+    while count_sentences(&joints) > most {
         let Some(at) = (1..joints.len()).find(|at| joints[*at].begins_sentence()) else { break };
         joints[at] = if phrases[at].is_clause { ClauseJoint::And } else { ClauseJoint::Comma };
     }

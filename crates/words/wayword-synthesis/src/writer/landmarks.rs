@@ -17,6 +17,7 @@ pub(super) struct LandmarkChooser<'a> {
     brief: &'a WritingBrief<'a>,
     /// Names that other parts of the text use: that of the target.
     reserved: Vec<String>,
+    /// Names that checks complained about in earlier texts.
     avoided: Vec<String>,
     dice: TextDice,
 }
@@ -24,9 +25,9 @@ pub(super) struct LandmarkChooser<'a> {
 /// A search for a thing: at a frame, with a least salience, for one use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct LandmarkSearch {
-    /// The frame.
+    /// The frame from which the thing has to be seen.
     pub(super) frame: usize,
-    /// The least salience.
+    /// The least salience, as the lexicon rates things, from 0.
     pub(super) salience: u8,
     /// The use of the landmark.
     pub(super) to: LandmarkUse,
@@ -79,11 +80,12 @@ const BESIDE_RAD: f64 = 1.9;
 const IN_FRONT_RAD: f64 = 1.1;
 /// Things of one name are "the two chairs" if they are at most this far apart, metres.
 const TOGETHER_M: f64 = 1.5;
-/// Bonus of a thing in front of the walker at a stop.
+/// Bonus, in units of a thing's value, of a thing in front of the walker at a stop.
 const IN_FRONT: f64 = 1.5;
 /// Greatest distance between two things that are named together, metres.
 const BESIDE_M: f64 = 1.5;
 
+// The value of a thing as a landmark is a sum without a unit; the best thing of a spot is named.
 /// Weight of how often a style's texts name a thing, per unit of the natural logarithm.
 const MENTIONED_WEIGHT: f64 = 0.7;
 /// Weight of a thing's salience.
@@ -116,7 +118,9 @@ pub(super) enum LandmarkUse {
 
 /// A kind of thing with its best spot.
 struct LandmarkHome<'a> {
+    /// The number of the spot.
     spot: usize,
+    /// The value of the thing there.
     worth: f64,
     seen: &'a RememberedThing,
     /// The search that found it; `None` if it is only named together with another thing.
@@ -131,6 +135,7 @@ impl LandmarkHome<'_> {
         (is_found, worth) > (other_is_found, other_worth)
     }
 
+    /// The bonus for being at the stop, where the search was for the stop.
     fn stop_bonus(&self) -> f64 {
         if self.found_by.is_some_and(|search| search.to == LandmarkUse::Stop) { AT_THE_END } else { 0.0 }
     }
@@ -154,7 +159,7 @@ impl<'a> LandmarkChooser<'a> {
         Self { brief, reserved: target.into_iter().collect(), avoided: blamed.collect(), dice }
     }
 
-    /// Whether a name may be used.
+    /// Whether a name may be used: neither reserved nor avoided.
     fn is_free(&self, name: &str) -> bool {
         !self.reserved.iter().any(|other| names_agree(other, name))
             && !self
@@ -207,11 +212,11 @@ impl<'a> LandmarkChooser<'a> {
 
     /// The best spot for a thing.
     fn best_spot(&self, seen: &'a RememberedThing, spots: &[LandmarkSpot]) -> Option<LandmarkHome<'a>> {
-        let at = |(spot, LandmarkSpot { searches, pair, is_spare }): (usize, &LandmarkSpot)| {
+        let home_at = |(spot, LandmarkSpot { searches, pair, is_spare }): (usize, &LandmarkSpot)| {
             let found = searches.iter().enumerate().find(|(_, search)| self.search_finds(**search, seen));
             if let Some((rank, search)) = found {
-                let less = LATER_SEARCH * rank as f64 + if *is_spare { SPARE_SPOT_COST } else { 0.0 };
-                let worth = self.landmark_worth(seen, *search) - less;
+                let deduction = LATER_SEARCH * rank as f64 + if *is_spare { SPARE_SPOT_COST } else { 0.0 };
+                let worth = self.landmark_worth(seen, *search) - deduction;
                 return Some(LandmarkHome { spot, worth, seen, found_by: Some(*search) });
             }
             let beside = searches.first().filter(|_| *pair)?;
@@ -224,7 +229,7 @@ impl<'a> LandmarkChooser<'a> {
             })
         };
         let mut best: Option<LandmarkHome<'a>> = None;
-        for found in spots.iter().enumerate().filter_map(at) {
+        for found in spots.iter().enumerate().filter_map(home_at) {
             if best.as_ref().is_none_or(|before| found.goes_before(before)) {
                 best = Some(found);
             }
@@ -277,6 +282,7 @@ impl<'a> LandmarkChooser<'a> {
         Some(if alike > 1 { to_plural(&best.name) } else { best.name.clone() })
     }
 
+    /// Whether a thing suits a use at a frame: near enough, and in a direction that the use allows.
     fn fits_use(&self, seen: &RememberedThing, frame: usize, to: LandmarkUse) -> bool {
         let memory = self.brief.memory;
         let wide_m = match find_thing(&seen.name).map(|thing| thing.class) {
@@ -317,6 +323,7 @@ impl<'a> LandmarkChooser<'a> {
             - earlier.count().min(3) as f64 * 0.5
     }
 
+    /// A thing as a landmark at a frame: its words, and how many alike are there.
     fn describe_landmark(&self, seen: &RememberedThing, frame: usize) -> ChosenLandmark {
         let name = seen.name.clone();
         let phrase = match &seen.colour {

@@ -36,7 +36,7 @@ fn goes_out(clause: &WayClause, brief: &WritingBrief<'_>) -> bool {
 /// Distance into a room up to which the walker is "just inside", metres.
 const STEP_M: f64 = 2.5;
 
-/// Length of the way in the room of a frame up to it, metres.
+/// How far the walker has gone in the room of a frame when arriving there, metres.
 fn walked_in_m(at: usize, brief: &WritingBrief<'_>) -> f64 {
     let before = brief.memory.stay_at(at).map_or(0, |stay| stay.entered.saturating_sub(1));
     brief.walk.walked_m(before, at)
@@ -59,6 +59,7 @@ struct ShapeNeeds {
 /// The names that a text gives to rooms and things: one for each.
 pub(super) struct ChosenNames<'a> {
     way: &'a WayWording,
+    /// The chosen name of each room and thing, by the name in the evidence.
     chosen: BTreeMap<String, String>,
     dice: TextDice,
 }
@@ -68,21 +69,21 @@ impl<'a> ChosenNames<'a> {
         Self { way, chosen: BTreeMap::new(), dice }
     }
 
-    /// One of the clauses of a text in words.
+    /// Clause number `at` of a text in words. The clauses around it decide what its words may leave out.
     pub(super) fn clause_phrase(
         &mut self,
-        told: &[WayClause],
+        clauses: &[WayClause],
         at: usize,
         brief: &WritingBrief<'_>,
         dice: TextDice,
     ) -> ClausePhrase {
-        let clause = &told[at];
+        let clause = &clauses[at];
         let rng = &mut clause.clause_rng("words", dice);
         if clause.kind == ClauseKind::Straight && stands_still(brief.walk) {
             return ClausePhrase { text: stay_phrase(None, rng), is_clause: true };
         }
         let motion = brief.walk.path.motion;
-        let before = at.checked_sub(1).map(|before| told[before].kind).filter(|_| !clause.follows_offer);
+        let before = at.checked_sub(1).map(|before| clauses[before].kind).filter(|_| !clause.follows_offer);
         // A thing may limit a plain "go straight", so that the text stays complete without the thing.
         let follows = match clause.thing {
             Some(_) => before == Some(ClauseKind::Straight),
@@ -90,7 +91,7 @@ impl<'a> ChosenNames<'a> {
         };
         let needs = ShapeNeeds {
             motion,
-            names_room: has_to_name(told, at, brief),
+            names_room: has_to_name(clauses, at, brief),
             is_near_door: clause.kind != ClauseKind::StopIn || walked_in_m(clause.at, brief) <= STEP_M,
             leaves: goes_out(clause, brief),
             may_run: follows,
@@ -102,6 +103,7 @@ impl<'a> ChosenNames<'a> {
             let says_colour = thing.needs_colour || rng.random_bool(COLOUR_SHARE);
             let colour = thing.colour.as_ref().filter(|_| says_colour);
             let name = colour.map_or(name.clone(), |colour| format!("{colour} {name}"));
+            // Several alike are mostly, but not always, named in the plural.
             let name = match thing.alike {
                 // "The two gold lamps".
                 2 if rng.random_bool(0.3) => counted_name(2, &name),
@@ -167,6 +169,7 @@ impl<'a> ChosenNames<'a> {
         self.chosen_name(name, names)
     }
 
+    /// The name that was chosen for a room or thing before, or else one that is drawn from `names` by its count.
     fn chosen_name(&mut self, name: &str, names: Option<&BTreeMap<String, f64>>) -> String {
         if let Some(chosen) = self.chosen.get(name) {
             return chosen.clone();
@@ -181,11 +184,11 @@ impl<'a> ChosenNames<'a> {
 
 /// Whether a clause has to name its room, because "the room" would be unclear: it is the room of the end, a later
 /// clause mentions it, or no earlier clause named it.
-fn has_to_name(told: &[WayClause], at: usize, brief: &WritingBrief<'_>) -> bool {
-    let Some(room) = &told[at].room else { return false };
+fn has_to_name(clauses: &[WayClause], at: usize, brief: &WritingBrief<'_>) -> bool {
+    let Some(room) = &clauses[at].room else { return false };
     let speaks_of_it = |clause: &WayClause| clause.room.as_ref() == Some(room) || clause.from.as_ref() == Some(room);
-    let (before, after) = (told[..at].iter().any(speaks_of_it), told[at + 1..].iter().any(speaks_of_it));
-    match told[at].kind {
+    let (before, after) = (clauses[..at].iter().any(speaks_of_it), clauses[at + 1..].iter().any(speaks_of_it));
+    match clauses[at].kind {
         ClauseKind::Leave | ClauseKind::LeaveByDoor => at > 0 && !before,
         ClauseKind::StopIn => !before,
         // The thing in the room identifies it.
@@ -208,13 +211,15 @@ fn plain_words(kind: ClauseKind) -> &'static str {
 /// Estimates the number of words of clauses from the mean length of their shapes.
 pub(super) struct ClauseLengths<'a> {
     way: &'a WayWording,
+    /// The mean length of each kind that was asked for, words.
     known: BTreeMap<ClauseKind, f64>,
 }
 
 /// Mean number of words that join a clause to the one before.
 const JOINT_WORDS: f64 = 0.6;
-/// Expected words for a second thing, which half of the places with that option have, and words for a side.
+/// Expected words for a second thing, which half of the places with that option have.
 const PAIR_WORDS: f64 = 1.0;
+/// Words for the side of a thing.
 const SIDE_WORDS: f64 = 2.0;
 /// The assumed share of places for things that get one. It is fixed, so that the plan does not depend on the things
 /// that are seen.
@@ -259,6 +264,7 @@ impl<'a> ClauseLengths<'a> {
         (with + if offer.pair { PAIR_WORDS } else { 0.0 }, without)
     }
 
+    /// The mean number of words of the shapes of a kind.
     fn kind_words(&mut self, kind: ClauseKind) -> f64 {
         *self.known.entry(kind).or_insert_with(|| {
             let shapes = self.way.shapes.get(&kind).or(WayWording::built_in().shapes.get(&kind));

@@ -1,5 +1,5 @@
-//! The object of the task: chosen where no target is given, with words for its name and for the properties that distinguish
-//! it from other objects.
+//! The object of the task: chosen where no target is given, with words for its name and for the properties that
+//! distinguish it from other objects.
 
 use crate::{
     style::PlaceWording,
@@ -17,9 +17,13 @@ pub(super) struct TaskObject<'a> {
     pub(super) name: String,
     /// Its name in this text.
     called: String,
+    /// Combinations of properties that fit the object, for a listener who knows the building.
     descriptions: &'a [ObjectDescription],
+    /// Single properties that distinguish it from its namesakes in view.
     told_by: &'a [ObjectDistinction],
+    /// Whether another object of its name is in view at the end.
     has_namesake: bool,
+    /// Whether it certainly hangs on a wall.
     hangs: bool,
 }
 
@@ -27,6 +31,7 @@ pub(super) struct TaskObject<'a> {
 const OF_HANGING: f64 = 10.0;
 
 impl<'a> TaskObject<'a> {
+    /// The target of the path, or an object that is chosen from those in view at the end.
     pub(super) fn for_brief(brief: &WritingBrief<'a>, rng: &mut ChaCha8Rng) -> Result<Self, WriteError> {
         let walk = brief.walk;
         let wording = &brief.profile.wording;
@@ -63,13 +68,13 @@ impl<'a> TaskObject<'a> {
         let mut by: Vec<&ObjectDistinction> =
             if is_sure { draw_distinctions(&all, wording, rng).iter().collect() } else { Vec::new() };
         // Additional properties of another kind do not make it less clear.
-        let said_of = |by: &[&ObjectDistinction], of: &dyn Fn(&ObjectDistinction) -> bool| by.iter().any(|by| of(by));
+        let has_any = |by: &[&ObjectDistinction], of: &dyn Fn(&ObjectDistinction) -> bool| by.iter().any(|by| of(by));
         let extra =
             if is_sure { more } else { more.max(usize::from(rng.random_bool(wording.share_of_texts("object")))) };
         for _ in 0..extra {
             let of_object = by.iter().filter(|by| !by.is_of_room()).count();
-            let has_by = said_of(&by, &|by| matches!(by, ObjectDistinction::RoomBy { .. }));
-            let has_with = said_of(&by, &|by| matches!(by, ObjectDistinction::RoomWith { .. }));
+            let has_by = has_any(&by, &|by| matches!(by, ObjectDistinction::RoomBy { .. }));
+            let has_with = has_any(&by, &|by| matches!(by, ObjectDistinction::RoomWith { .. }));
             let repeats = |other: &ObjectDistinction| {
                 by.iter().any(|by| by.named_things().any(|name| other.named_things().any(|o| names_agree(o, name))))
             };
@@ -85,7 +90,7 @@ impl<'a> TaskObject<'a> {
             let others = all.iter().flat_map(|by| by.iter()).filter(adds).map(std::slice::from_ref);
             by.extend(draw_distinctions(&others.collect::<Vec<_>>(), wording, rng));
         }
-        if self.has_namesake && !said_of(&by, &|by| !by.is_of_room()) {
+        if self.has_namesake && !has_any(&by, &|by| !by.is_of_room()) {
             by.extend(self.in_view(wording, rng));
         }
         by
@@ -94,12 +99,12 @@ impl<'a> TaskObject<'a> {
     /// Draws a property that distinguishes the object from its namesakes in view at the end. An object without
     /// namesakes gets one as often as people mention one.
     pub(super) fn in_view(&self, wording: &PlaceWording, rng: &mut ChaCha8Rng) -> Vec<&'a ObjectDistinction> {
-        let says = self.has_namesake || rng.random_bool(wording.share_of_texts("object"));
+        let mentions_one = self.has_namesake || rng.random_bool(wording.share_of_texts("object"));
         let told: Vec<&[ObjectDistinction]> = self.told_by.iter().map(std::slice::from_ref).collect();
-        draw_distinctions(if says { &told } else { &[] }, wording, rng).iter().collect()
+        draw_distinctions(if mentions_one { &told } else { &[] }, wording, rng).iter().collect()
     }
 
-    /// The object with its article.
+    /// The object with its article and those of the properties in `by` that are about the object.
     pub(super) fn object_phrase(
         &self,
         by: &[&ObjectDistinction],
@@ -192,7 +197,7 @@ fn distinctions_likelihood(by: &[ObjectDistinction], wording: &PlaceWording) -> 
     let all: f64 = told.values().sum::<f64>().max(1e-9);
     let share = |table: &str| told.get(table).copied().unwrap_or(0.5) / all;
     let odds = |name: &str| wording.share_of_texts(name) / (1.0 - wording.share_of_texts(name)).max(0.05);
-    let one = |by: &ObjectDistinction| match by {
+    let likelihood = |by: &ObjectDistinction| match by {
         ObjectDistinction::Level { .. } => odds("level").max(0.4) * 0.8,
         ObjectDistinction::RoomBy { .. } => odds("room by") * 0.6,
         ObjectDistinction::RoomWith { .. } => odds("room with") * 0.25,
@@ -205,7 +210,7 @@ fn distinctions_likelihood(by: &[ObjectDistinction], wording: &PlaceWording) -> 
         }
         _ => odds("object") * share(construction_table(by)) * 3.0,
     };
-    by.iter().map(one).product()
+    by.iter().map(likelihood).product()
 }
 
 /// The name of the table of constructions for a property.
@@ -233,6 +238,7 @@ fn construction_table(by: &ObjectDistinction) -> &'static str {
     }
 }
 
+/// "The leftmost lamp", "the lamp nearest to you": the whole phrase for an object with this superlative.
 fn superlative_phrase(
     by: &ObjectDistinction,
     name: &str,
@@ -249,6 +255,7 @@ fn superlative_phrase(
     Some(way.replace("{o}", name))
 }
 
+/// "On the left", "near the sofa": the words behind the name of an object for this property.
 fn relation_phrase(by: &ObjectDistinction, wording: &PlaceWording, rng: &mut ChaCha8Rng) -> Option<String> {
     let way = wording.draw(construction_table(by), rng, |_| true)?;
     Some(match by {

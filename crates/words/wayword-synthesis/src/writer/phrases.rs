@@ -7,17 +7,19 @@ use rand_chacha::ChaCha8Rng;
 use wayword_core::PathMotion;
 use wayword_language::lexicon::room_name;
 
+/// Phrases for a path that goes nowhere.
 const STAY_PHRASES: &[&str] = &["stay where you are", "remain where you are", "stay here", "remain here"];
+/// The same with the room.
 const STAY_IN: &[&str] = &["stay in {r}", "remain in {r}", "stay here in {r}"];
 
-/// One of several, by chance.
-pub(super) fn pick_any<'a, T: ?Sized>(rng: &mut ChaCha8Rng, of: &[&'a T]) -> &'a T {
-    of[rng.random_range(0..of.len())]
+/// Draws one of several options, all with the same probability.
+pub(super) fn pick_any<'a, T: ?Sized>(rng: &mut ChaCha8Rng, options: &[&'a T]) -> &'a T {
+    options[rng.random_range(0..options.len())]
 }
 
 /// The phrases that fit a motion: without "straight" if the motion is unknown.
-pub(super) fn phrases_for_motion(of: &[&'static str], motion: PathMotion) -> Vec<&'static str> {
-    of.iter().copied().filter(|way| motion.is_known() || !way.contains("straight")).collect()
+pub(super) fn phrases_for_motion(phrases: &[&'static str], motion: PathMotion) -> Vec<&'static str> {
+    phrases.iter().copied().filter(|way| motion.is_known() || !way.contains("straight")).collect()
 }
 
 /// A room with its article.
@@ -25,21 +27,21 @@ pub(super) fn with_the(room: &str) -> String {
     format!("the {room}")
 }
 
-/// One of several by their weights; `None` where none has any.
-pub(super) fn draw_option<T: Clone>(of: &[(f64, T)], rng: &mut ChaCha8Rng) -> Option<T> {
-    let some: Vec<&(f64, T)> = of.iter().filter(|(weight, _)| *weight > 0.0).collect();
-    let weights: Vec<f64> = some.iter().map(|(weight, _)| *weight).collect();
+/// Draws one of several options with their weights; `None` if no weight is over 0.
+pub(super) fn draw_option<T: Clone>(options: &[(f64, T)], rng: &mut ChaCha8Rng) -> Option<T> {
+    let possible: Vec<&(f64, T)> = options.iter().filter(|(weight, _)| *weight > 0.0).collect();
+    let weights: Vec<f64> = possible.iter().map(|(weight, _)| *weight).collect();
     // If there is no option, no random number is consumed.
     let at = if weights.is_empty() { None } else { draw_weighted(&weights, rng) };
-    at.map(|at| some[at].1.clone())
+    at.map(|at| possible[at].1.clone())
 }
 
-/// One of several measures, by chance.
+/// Draws one of several measured numbers; 1 if there are none.
 pub(super) fn draw_measure(values: &[usize], rng: &mut ChaCha8Rng) -> usize {
     if values.is_empty() { 1 } else { values[rng.random_range(0..values.len())] }
 }
 
-/// The ordinal of a storey.
+/// The ordinal of a storey or place, from "first" to "fifth"; `None` beyond.
 pub(super) fn storey_ordinal(level: u32) -> Option<&'static str> {
     ["first", "second", "third", "fourth", "fifth"].get(level.checked_sub(1)? as usize).copied()
 }

@@ -21,11 +21,13 @@ use wayword_checks::TextTopic;
 use wayword_core::ClimbDirection;
 use wayword_language::text::{capitalise_first, word_count};
 
-/// Number of drafts for each plan, and most plans.
+/// Number of drafts for each plan.
 const DRAFTS_PER_PLAN: usize = 30;
+/// Most plans that are drawn; of all their drafts the best is taken, even if it has a fault.
 const MAX_PLANS: usize = 4;
-/// Cost of a fault of a draft, in words of length difference.
+/// Cost of a fault that no text should have (a copied phrase, too many words), in words of length difference.
 const NEVER_FAULT_WORDS: f64 = 1000.0;
+/// Cost of a run of words that a draft shares with a reference, in words of length difference.
 const RATHER_NOT: f64 = 100.0;
 
 /// A text that names the place at the end, and what to do there.
@@ -46,7 +48,7 @@ pub(super) fn the_place(brief: &WritingBrief<'_>, dice: TextDice) -> Result<Stri
     let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
     let words = brief.shorter_length().min(limit.saturating_sub(1));
     let full_stop = rng.random_bool(brief.profile.full_stops.clamp(0.0, 1.0));
-    let matter = TextTopic { target: Some(&object.name), rooms: &rooms };
+    let topic = TextTopic { target: Some(&object.name), rooms: &rooms };
     let copies = &brief.profile.copies;
     let mut best: Option<(f64, String)> = None;
     // If every draft shares a run of words with a reference, a new plan is drawn.
@@ -55,10 +57,10 @@ pub(super) fn the_place(brief: &WritingBrief<'_>, dice: TextDice) -> Result<Stri
         for _ in 0..DRAFTS_PER_PLAN {
             let text = draft_text(brief, &goal, &object, plan, rng);
             let count = word_count(&text);
-            let is_copied = if copies.find_copy(&text, matter).is_some() { NEVER_FAULT_WORDS } else { 0.0 };
-            let is_shared = if copies.find_avoidable_copy(&text).is_some() { RATHER_NOT } else { 0.0 };
-            let too_long = if count < limit { 0.0 } else { NEVER_FAULT_WORDS };
-            let fault = count.abs_diff(words) as f64 + is_copied + is_shared + too_long;
+            let copied_cost = if copies.find_copy(&text, topic).is_some() { NEVER_FAULT_WORDS } else { 0.0 };
+            let shared_cost = if copies.find_avoidable_copy(&text).is_some() { RATHER_NOT } else { 0.0 };
+            let over_limit_cost = if count < limit { 0.0 } else { NEVER_FAULT_WORDS };
+            let fault = count.abs_diff(words) as f64 + copied_cost + shared_cost + over_limit_cost;
             if best.as_ref().is_none_or(|(least, _)| fault < *least) {
                 best = Some((fault, text));
             }
@@ -74,12 +76,17 @@ pub(super) fn the_place(brief: &WritingBrief<'_>, dice: TextDice) -> Result<Stri
 /// Decisions that are drawn before the drafts, so that the choice among drafts does not change the style's shares.
 #[derive(Clone, Copy)]
 struct PlaceTextPlan<'a> {
+    /// "move" (go to the room and do the task), "task" (do the task in the room) or "in" (in the room, do the task).
     order: &'a str,
+    /// The words before the room: "go to".
     opener: &'a str,
+    /// Whether the storey of the room is named.
     names_level: bool,
+    /// Whether the description has to fit no other object.
     is_sure: bool,
     /// Number of properties beyond the necessary ones, for a longer text.
     more: usize,
+    /// Whether the text begins with "please".
     please: bool,
 }
 
@@ -89,6 +96,7 @@ const SHORT_TEXT_WORDS: usize = 8;
 const LONG_TEXT_WORDS: [usize; 3] = [16, 20, 25];
 
 impl<'a> PlaceTextPlan<'a> {
+    /// Draws the plan of a text of so many words.
     fn draw_plan(brief: &'a WritingBrief<'_>, goal: &GoalRoom<'a>, words: usize, rng: &mut ChaCha8Rng) -> Self {
         let wording = &brief.profile.wording;
         Self {
@@ -184,6 +192,7 @@ fn without_room(brief: &WritingBrief<'_>, landmarks: &LandmarkChooser<'_>, rng: 
     }
 }
 
+/// How many sentences the text should have: drawn from the references, within the rules of the style.
 fn sentence_target(brief: &WritingBrief<'_>, rng: &mut ChaCha8Rng) -> usize {
     let constraints = &brief.style.constraints;
     let least = constraints.min_sentences.unwrap_or(1);

@@ -11,7 +11,8 @@ pub(super) fn draw_task(brief: &WritingBrief<'_>, rng: &mut ChaCha8Rng) -> Resul
     Ok((task_phrase(wording.draw_verb(&object.name, 1.0, rng), &phrase), object.name))
 }
 
-/// The words of a task. A particle follows a short object only: "turn the lamp on", but "turn on the lamp by the door".
+/// The words of a task. `verb` has `{o}` in place of the object ("turn {o} on"). A particle follows a short object
+/// only, of up to three words: "turn the lamp on", but "turn on the lamp by the door".
 pub(super) fn task_phrase(verb: &str, object: &str) -> String {
     match verb.split_once(" {o} ") {
         Some((verb, particle)) if object.split(' ').count() > 3 => format!("{verb} {particle} {object}"),

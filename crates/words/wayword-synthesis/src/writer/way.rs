@@ -32,11 +32,13 @@ const MAX_LENGTH_RATIO: f64 = 1.1;
 const MAX_PLANS: usize = 8;
 /// Most replacements of copied phrases for each plan.
 const MAX_REWORDINGS: usize = 24;
-/// Costs of a copied phrase, of a run of words shared with a reference, and of too many words.
+/// Cost of a copied phrase. Of several texts the cheapest is taken, and one without cost at once.
 const COPIED_COST: usize = 3;
+/// Cost of a run of words shared with a reference.
 const SHARED_COST: usize = 1;
+/// Cost of too many words.
 const OVER_LIMIT_COST: usize = 10;
-/// Least number of words of a text.
+/// Least number of words that a text is planned for.
 const LEAST_WORDS: usize = 8;
 /// Only clauses below this weight are dropped from a text that is too long.
 const OPTIONAL_BELOW_WEIGHT: u8 = 3;
@@ -46,7 +48,7 @@ pub(super) fn the_way(brief: &WritingBrief<'_>, task: Option<&(String, String)>,
     let words = brief.target_words().max(LEAST_WORDS);
     let end = brief.memory.frame_count().saturating_sub(1);
     let rooms: Vec<String> = brief.memory.room_at(end).map(str::to_owned).into_iter().collect();
-    let matter = TextTopic { target: task.map(|(_, name)| name.as_str()), rooms: &rooms };
+    let topic = TextTopic { target: task.map(|(_, name)| name.as_str()), rooms: &rooms };
     let copies = &brief.profile.copies;
     let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
     let mut best: Option<(usize, String)> = None;
@@ -54,7 +56,7 @@ pub(super) fn the_way(brief: &WritingBrief<'_>, task: Option<&(String, String)>,
         let mut draft = plan.word_plan(brief, task, dice);
         for _ in 0..MAX_REWORDINGS {
             let (text, starts) = draft.text_and_starts();
-            let (copied, shared) = (copies.find_copy(&text, matter), copies.find_avoidable_copy(&text));
+            let (copied, shared) = (copies.find_copy(&text, topic), copies.find_avoidable_copy(&text));
             let is_over = word_count(&text) >= limit;
             let cost = [(copied.is_some(), COPIED_COST), (shared.is_some(), SHARED_COST), (is_over, OVER_LIMIT_COST)];
             let cost = cost.iter().filter(|(is_so, _)| *is_so).map(|(_, cost)| cost).sum();
@@ -84,6 +86,7 @@ fn ranked_plans(brief: &WritingBrief<'_>, words: f64, dice: TextDice) -> Vec<(Wa
 /// The plan of a text, clause by clause. It depends on the way alone; things are filled into its places later.
 struct WayTextPlan {
     clauses: Vec<WayClause>,
+    /// Whether a text of one sentence ends in a full stop.
     full_stop: bool,
     /// Difference from the drawn length, words, as far as it is known before things are filled in.
     off: f64,
@@ -122,6 +125,7 @@ impl WayTextPlan {
         }
     }
 
+    /// Fills things into the plan and puts it into words. Clauses are dropped until the text keeps the limit of words.
     fn word_plan<'a>(
         &self,
         brief: &'a WritingBrief<'_>,
@@ -138,8 +142,8 @@ impl WayTextPlan {
         loop {
             let mut plan = clauses.clone();
             mend_clauses(&mut plan, brief);
-            let told = carry_out(&number_clauses(with_stand_ins(plan, brief.memory)), brief, &landmarks, dice);
-            let draft = TextDraft::from_clauses(told, task, self.full_stop, brief, dice);
+            let filled = carry_out(&number_clauses(with_stand_ins(plan, brief.memory)), brief, &landmarks, dice);
+            let draft = TextDraft::from_clauses(filled, task, self.full_stop, brief, dice);
             if word_count(&draft.text_and_starts().0) < limit || !drop_least(&mut clauses, KEPT_WEIGHT) {
                 return draft;
             }
@@ -195,9 +199,10 @@ fn mend_clauses(clauses: &mut Vec<WayClause>, brief: &WritingBrief<'_>) {
 /// Lets a place for a thing fall back to "go straight": between two consecutive turns, and on a long last stretch that
 /// no other clause describes.
 fn bridge_gaps(clauses: &mut [WayClause], brief: &WritingBrief<'_>) {
-    let told: Vec<usize> = (0..clauses.len()).filter(|at| !clauses[*at].is_offer()).collect();
-    let befores = std::iter::once(None).chain(told.iter().map(|at| Some(*at)));
-    let pairs: Vec<(Option<usize>, usize)> = befores.zip(told.iter().copied()).collect();
+    let fixed: Vec<usize> = (0..clauses.len()).filter(|at| !clauses[*at].is_offer()).collect();
+    let clauses_before = std::iter::once(None).chain(fixed.iter().map(|at| Some(*at)));
+    // Each clause that is no offer, with the one before it.
+    let pairs: Vec<(Option<usize>, usize)> = clauses_before.zip(fixed.iter().copied()).collect();
     for (before, at) in pairs {
         let is_end = at + 1 == clauses.len();
         let needs = match before {

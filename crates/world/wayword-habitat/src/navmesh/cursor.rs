@@ -5,13 +5,14 @@ use super::error::NavMeshError;
 /// A position in a file, which only moves forward.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NavMeshCursor<'a> {
-    bytes: &'a [u8],
+    /// The bytes that are left.
+    rest: &'a [u8],
     at: usize,
 }
 
 impl<'a> NavMeshCursor<'a> {
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, at: 0 }
+        Self { rest: bytes, at: 0 }
     }
 
     /// Offset from the file's beginning, bytes.
@@ -20,30 +21,33 @@ impl<'a> NavMeshCursor<'a> {
     }
 
     pub(crate) fn bytes_left(&self) -> usize {
-        self.bytes.len() - self.at
+        self.rest.len()
     }
 
     pub(crate) fn remaining_bytes(&self) -> &'a [u8] {
-        &self.bytes[self.at..]
+        self.rest
     }
 
     /// The next `needed` bytes. The count is 64 bits wide, so that no product of a file's counts overflows.
     pub(crate) fn take_bytes(&mut self, needed: u64, what: &'static str) -> Result<&'a [u8], NavMeshError> {
-        let short = NavMeshError::Short { offset: self.at, what, needed, left: self.bytes_left() };
-        let count = usize::try_from(needed).ok().filter(|count| *count <= self.bytes_left()).ok_or(short)?;
-        let taken = &self.bytes[self.at..self.at + count];
-        self.at += count;
+        let parts = usize::try_from(needed).ok().and_then(|count| self.rest.split_at_checked(count));
+        let (taken, rest) = parts.ok_or_else(|| self.short_error(what, needed))?;
+        (self.at, self.rest) = (self.at + taken.len(), rest);
         Ok(taken)
     }
 
+    fn short_error(&self, what: &'static str, needed: u64) -> NavMeshError {
+        NavMeshError::Short { offset: self.at, what, needed, left: self.bytes_left() }
+    }
+
     fn read_array<const N: usize>(&mut self, what: &'static str) -> Result<[u8; N], NavMeshError> {
-        let mut array = [0; N];
-        array.copy_from_slice(self.take_bytes(N as u64, what)?);
-        Ok(array)
+        let (array, rest) = self.rest.split_first_chunk().ok_or_else(|| self.short_error(what, N as u64))?;
+        (self.at, self.rest) = (self.at + N, rest);
+        Ok(*array)
     }
 
     pub(crate) fn read_u8(&mut self, what: &'static str) -> Result<u8, NavMeshError> {
-        Ok(self.read_array::<1>(what)?[0])
+        Ok(u8::from_le_bytes(self.read_array(what)?))
     }
 
     pub(crate) fn read_u16(&mut self, what: &'static str) -> Result<u16, NavMeshError> {

@@ -4,6 +4,23 @@
 //! `Sample::saveAll` (version 1, which has no settings); the tiles are Detour's, version 7, with 32 bit references. The
 //! reader keeps every byte, so that a file is written back unchanged.
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
+#[allow(
+    clippy::indexing_slicing,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_possible_wrap,
+    reason = "it makes navmeshes and reads none"
+)]
 pub(crate) mod build;
 mod cursor;
 mod error;
@@ -90,7 +107,7 @@ impl NavMesh {
         let mut out = Vec::new();
         out.extend_from_slice(&FILE_MAGIC.to_le_bytes());
         out.extend_from_slice(&i32::from(self.version()).to_le_bytes());
-        out.extend_from_slice(&(self.tiles.len() as u32).to_le_bytes());
+        out.extend_from_slice(&u32::try_from(self.tiles.len()).unwrap_or(u32::MAX).to_le_bytes());
         self.grid.write(&mut out);
         if let Some(settings) = &self.settings {
             settings.write(&mut out);

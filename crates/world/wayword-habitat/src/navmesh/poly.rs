@@ -53,7 +53,7 @@ impl TilePolygon {
     /// Checks that the polygon's vertices and neighbours exist. `start` is its offset in the file.
     fn check_corners(&self, start: usize, header: &TileHeader) -> Result<(), NavMeshError> {
         let least = if self.is_ground() { 3 } else { 2 };
-        if !(least..=MAX_CORNERS as u8).contains(&self.vert_count) {
+        if !(least..=MAX_CORNERS).contains(&usize::from(self.vert_count)) {
             let expected = format!("{least} to {MAX_CORNERS}");
             return Err(NavMeshError::bad_value(
                 start + 30,
@@ -62,7 +62,7 @@ impl TilePolygon {
                 expected,
             ));
         }
-        for (edge, vert) in self.corners().iter().enumerate() {
+        for (edge, (vert, found)) in self.corners().iter().zip(&self.neis).enumerate() {
             if u32::from(*vert) >= header.verts {
                 let expected = format!("below {}", header.verts);
                 return Err(NavMeshError::bad_value(start + 4 + 2 * edge, "a polygon's corner", vert, expected));
@@ -70,7 +70,6 @@ impl TilePolygon {
             let behind = self.neighbour_behind(edge);
             if matches!(behind, EdgeNeighbour::Polygon(other) if other as u64 >= u64::from(header.polys)) {
                 let expected = format!("at most {}", header.polys);
-                let found = self.neis[edge];
                 return Err(NavMeshError::bad_value(start + 16 + 2 * edge, "a polygon's neighbour", found, expected));
             }
         }
@@ -84,14 +83,17 @@ impl TilePolygon {
 
     /// The indices of its vertices in the tile.
     pub(crate) fn corners(&self) -> &[u16] {
-        &self.verts[..usize::from(self.vert_count).min(MAX_CORNERS)]
+        self.verts.get(..usize::from(self.vert_count)).unwrap_or(&self.verts)
     }
 
     /// The neighbour behind the edge from corner `edge` to the next.
     pub(crate) fn neighbour_behind(&self, edge: usize) -> EdgeNeighbour {
         match self.neis.get(edge).copied().unwrap_or(0) {
             0 => EdgeNeighbour::Border,
-            portal if portal & PORTAL_BIT != 0 => EdgeNeighbour::Portal((portal & 0xff) as u8),
+            portal if portal & PORTAL_BIT != 0 => {
+                let [side, _] = portal.to_le_bytes();
+                EdgeNeighbour::Portal(side)
+            }
             polygon => EdgeNeighbour::Polygon(usize::from(polygon) - 1),
         }
     }

@@ -122,8 +122,9 @@ impl NavMeshTile {
             )?;
             let corners = u32::from(poly.vert_count) + u32::from(mesh.verts);
             let first = mesh.tri_base as usize;
-            for (at, triangle) in self.detail_tris[first..first + usize::from(mesh.tris)].iter().enumerate() {
-                if let Some(corner) = triangle[..3].iter().find(|corner| u32::from(**corner) >= corners) {
+            let triangles = self.detail_tris.iter().skip(first).take(usize::from(mesh.tris));
+            for (at, [a, b, c, _]) in triangles.enumerate() {
+                if let Some(corner) = [a, b, c].into_iter().find(|corner| u32::from(**corner) >= corners) {
                     let offset = tris_at + 4 * (first + at);
                     let expected = format!("below {corners}");
                     return Err(NavMeshError::bad_value(offset, "a detail triangle's corner", corner, expected));
@@ -137,22 +138,21 @@ impl NavMeshTile {
     pub(crate) fn polygon_triangles(&self, poly: usize) -> Vec<[[f32; 3]; 3]> {
         let Some(polygon) = self.polys.get(poly) else { return Vec::new() };
         let corners = polygon.corners();
-        let own = |corner: usize| self.verts[usize::from(corners[corner])];
+        let own = |corner: usize| self.verts.get(usize::from(*corners.get(corner)?)).copied();
         let Some(mesh) = self.detail_meshes.get(poly).filter(|mesh| mesh.tris > 0) else {
-            return (2..corners.len()).map(|last| [own(0), own(last - 1), own(last)]).collect();
+            return (2..corners.len()).filter_map(|last| Some([own(0)?, own(last - 1)?, own(last)?])).collect();
         };
-        let first = mesh.tri_base as usize;
         let place = |corner: u8| match usize::from(corner) {
             corner if corner < corners.len() => own(corner),
-            corner => self.detail_verts[mesh.vert_base as usize + corner - corners.len()],
+            corner => self.detail_verts.get(mesh.vert_base as usize + corner - corners.len()).copied(),
         };
-        let triangles = &self.detail_tris[first..first + usize::from(mesh.tris)];
-        triangles.iter().map(|[a, b, c, _]| [*a, *b, *c].map(place)).collect()
+        let triangles = self.detail_tris.iter().skip(mesh.tri_base as usize).take(usize::from(mesh.tris));
+        triangles.filter_map(|[a, b, c, _]| Some([place(*a)?, place(*b)?, place(*c)?])).collect()
     }
 
     pub(super) fn write(&self, out: &mut Vec<u8>) {
         out.extend_from_slice(&self.reference.to_le_bytes());
-        out.extend_from_slice(&(self.header.tile_bytes() as u32).to_le_bytes());
+        out.extend_from_slice(&u32::try_from(self.header.tile_bytes()).unwrap_or(u32::MAX).to_le_bytes());
         self.header.write(out);
         out.extend(self.verts.iter().flatten().flat_map(|number| number.to_le_bytes()));
         self.polys.iter().for_each(|poly| poly.write(out));

@@ -1,5 +1,15 @@
 //! Finds the scenes in a folder and the files that belong to each. Habitat calls the mesh of a scene its stage.
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 use crate::{
     file_error::FileError,
     scene::{HabitatStage, files_beside, scene_stem},
@@ -36,7 +46,7 @@ pub(super) fn find_scenes(place: &Path) -> Result<BTreeMap<SceneId, StageFiles>,
         files.push(place.to_owned());
     }
     // For each folder and scene name in it, the best stage with its rank.
-    let mut by_stem: BTreeMap<(PathBuf, String), (u8, PathBuf)> = BTreeMap::new();
+    let mut by_stem: BTreeMap<(PathBuf, String), (usize, PathBuf)> = BTreeMap::new();
     for file in files {
         let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         let Some(rank) = stage_rank(name) else { continue };
@@ -62,9 +72,9 @@ pub(super) fn find_scenes(place: &Path) -> Result<BTreeMap<SceneId, StageFiles>,
 }
 
 /// How well a file serves as a stage: 0 is the best, and `None` means that it is no stage.
-fn stage_rank(name: &str) -> Option<u8> {
+fn stage_rank(name: &str) -> Option<usize> {
     let endings = [".stage_config.json", ".basis.glb", ".glb", ".gltf"];
-    let rank = endings.iter().position(|ending| name.ends_with(ending))? as u8;
+    let rank = endings.iter().position(|ending| name.ends_with(ending))?;
     (!name.contains(".semantic.")).then_some(rank)
 }
 

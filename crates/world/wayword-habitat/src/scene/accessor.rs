@@ -85,16 +85,15 @@ impl<'a> AccessorEntries<'a> {
 
     fn component_bytes<const N: usize>(&self, entry: usize, component: usize) -> [u8; N] {
         let start = entry * self.stride + component * N;
-        let mut bytes = [0; N];
-        bytes.copy_from_slice(&self.bytes[start..start + N]);
-        bytes
+        // The bytes are there, because every entry lies within them.
+        self.bytes.get(start..).and_then(|rest| rest.first_chunk()).copied().unwrap_or([0; N])
     }
 
     fn float_at(&self, entry: usize, component: usize) -> f32 {
         let (value, most) = match self.kind {
             ComponentType::F32 => return f32::from_le_bytes(self.component_bytes(entry, component)),
-            ComponentType::U8 => (f32::from(self.component_bytes::<1>(entry, component)[0]), 255.0),
-            ComponentType::I8 => (f32::from(self.component_bytes::<1>(entry, component)[0] as i8), 127.0),
+            ComponentType::U8 => (f32::from(u8::from_le_bytes(self.component_bytes(entry, component))), 255.0),
+            ComponentType::I8 => (f32::from(i8::from_le_bytes(self.component_bytes(entry, component))), 127.0),
             ComponentType::U16 => (f32::from(u16::from_le_bytes(self.component_bytes(entry, component))), 65_535.0),
             ComponentType::I16 => (f32::from(i16::from_le_bytes(self.component_bytes(entry, component))), 32_767.0),
             ComponentType::U32 => (u32::from_le_bytes(self.component_bytes(entry, component)) as f32, 1.0),
@@ -104,7 +103,7 @@ impl<'a> AccessorEntries<'a> {
 
     fn index_at(&self, entry: usize) -> u32 {
         match self.kind {
-            ComponentType::U8 => u32::from(self.component_bytes::<1>(entry, 0)[0]),
+            ComponentType::U8 => u32::from(u8::from_le_bytes(self.component_bytes(entry, 0))),
             ComponentType::U16 => u32::from(u16::from_le_bytes(self.component_bytes(entry, 0))),
             _ => u32::from_le_bytes(self.component_bytes(entry, 0)),
         }

@@ -1,5 +1,15 @@
 //! Reads scenes as Habitat does: GLB and glTF with their textures, rotated according to the stage configuration.
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 mod accessor;
 mod asset;
 mod nodes;
@@ -71,12 +81,18 @@ impl SceneModel {
 }
 
 /// Lights a mesh without a material, face by face.
-fn light_mesh(mesh: &mut Mesh) {
+///
+/// # Errors
+/// If the faces have more corners than a mesh may have.
+fn light_mesh(mesh: &mut Mesh) -> Result<(), String> {
     let corner = |vertex: u32| mesh.positions.get(vertex as usize).copied().unwrap_or_default();
     let faces: Vec<[Vec3; 3]> = mesh.triangles.iter().map(|triangle| triangle.map(corner)).collect();
-    mesh.triangles = (0..faces.len() as u32).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
+    let corners = u32::try_from(faces.as_flattened().len())
+        .map_err(|_| format!("has {} triangles, more than a mesh without a material may have", faces.len()))?;
+    mesh.triangles = (0..corners).step_by(3).map(|first| [first, first + 1, first + 2]).collect();
     mesh.colours = faces.iter().flat_map(|[a, b, c]| [studio::studio_light((*b - *a).cross(*c - *a)); 3]).collect();
     mesh.positions = faces.into_iter().flatten().collect();
+    Ok(())
 }
 
 /// A model that is being read.
@@ -121,7 +137,7 @@ impl<'a> SceneModelBuilder<'a> {
                     *position = wayword_from_habitat(placed).as_vec3();
                 }
                 if self.plain == Some(mesh.material) && mesh.colours.is_empty() {
-                    light_mesh(&mut mesh);
+                    light_mesh(&mut mesh).map_err(wrong)?;
                 }
                 self.model.meshes.push(mesh);
             }

@@ -15,8 +15,8 @@ pub(super) fn placed_meshes(root: &Root) -> Vec<(usize, DMat4)> {
     };
     let mut placed = Vec::new();
     while let Some((index, above)) = pending.pop() {
-        let Some(node) = root.nodes.get(index) else { continue };
-        if std::mem::replace(&mut seen[index], true) {
+        let (Some(node), Some(seen)) = (root.nodes.get(index), seen.get_mut(index)) else { continue };
+        if std::mem::replace(seen, true) {
             continue;
         }
         let here = above * local_transform(node);
@@ -36,7 +36,7 @@ fn root_nodes(root: &Root) -> Vec<usize> {
             *has_parent = true;
         }
     }
-    (0..has_parent.len()).filter(|node| !has_parent[*node]).collect()
+    has_parent.iter().enumerate().filter(|(_, has_parent)| !**has_parent).map(|(node, _)| node).collect()
 }
 
 /// The transform from a node's frame into that of its parent.

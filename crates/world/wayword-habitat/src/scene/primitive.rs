@@ -27,7 +27,10 @@ pub(super) fn read_primitive(asset: &GltfAsset, primitive: &Primitive) -> Result
     };
     let order = match primitive.indices {
         Some(index) => accessor::read_indices(asset, index)?,
-        None => (0..positions.len() as u32).collect(),
+        None => {
+            let count = u32::try_from(positions.len());
+            (0..count.map_err(|_| format!("has {} positions, more than a mesh may have", positions.len()))?).collect()
+        }
     };
     Ok(Some(Mesh { positions, uvs, colours, triangles: triangles_from_order(mode, &order), ..Mesh::default() }))
 }
@@ -44,11 +47,12 @@ fn triangles_from_order(mode: Mode, order: &[u32]) -> Vec<[u32; 3]> {
     match mode {
         Mode::TriangleStrip => {
             let winding = |(at, [a, b, c]): (usize, [u32; 3])| if at % 2 == 0 { [a, b, c] } else { [b, a, c] };
-            order.windows(3).map(|corners| [corners[0], corners[1], corners[2]]).enumerate().map(winding).collect()
+            let corners = order.windows(3).filter_map(|corners| corners.first_chunk().copied());
+            corners.enumerate().map(winding).collect()
         }
         Mode::TriangleFan => {
-            let fan = order.get(1..).unwrap_or_default();
-            fan.windows(2).map(|pair| [order[0], pair[0], pair[1]]).collect()
+            let Some((first, fan)) = order.split_first() else { return Vec::new() };
+            fan.windows(2).filter_map(|pair| pair.first_chunk::<2>()).map(|[b, c]| [*first, *b, *c]).collect()
         }
         _ => order.as_chunks().0.to_vec(),
     }

@@ -9,15 +9,12 @@
 
 use glam::Vec3;
 
-/// Colour of the light on surfaces that look east, west, north, south, up and down, 0..=255. Only east, south and up
+/// Colour of the light on surfaces that look east and west, north and south, up and down, 0..=255. Only east, south and up
 /// were measured: west and down are assumed to equal south, and north to equal east.
-const LIGHT_BY_DIRECTION: [[f32; 3]; 6] = [
-    [142.0, 132.0, 104.0],
-    [109.0, 95.0, 79.0],
-    [142.0, 132.0, 104.0],
-    [109.0, 95.0, 79.0],
-    [141.0, 124.0, 85.0],
-    [109.0, 95.0, 79.0],
+const LIGHT_BY_DIRECTION: [[[f32; 3]; 2]; 3] = [
+    [[142.0, 132.0, 104.0], [109.0, 95.0, 79.0]],
+    [[142.0, 132.0, 104.0], [109.0, 95.0, 79.0]],
+    [[141.0, 124.0, 85.0], [109.0, 95.0, 79.0]],
 ];
 
 /// The light on a surface with this normal, as factors: the mean of the axes' colours, weighted with the squares of the
@@ -25,10 +22,10 @@ const LIGHT_BY_DIRECTION: [[f32; 3]; 6] = [
 pub(super) fn studio_light(normal: Vec3) -> [f32; 3] {
     let normal = normal.normalize_or(Vec3::Z);
     let mut light = [0.0; 3];
-    for axis in 0..3 {
-        let towards = LIGHT_BY_DIRECTION[2 * axis + usize::from(normal[axis] < 0.0)];
+    for (along, [ahead, behind]) in normal.to_array().into_iter().zip(LIGHT_BY_DIRECTION) {
+        let towards = if along < 0.0 { behind } else { ahead };
         for (sum, part) in light.iter_mut().zip(towards) {
-            *sum += normal[axis] * normal[axis] * part / 255.0;
+            *sum += along * along * part / 255.0;
         }
     }
     light

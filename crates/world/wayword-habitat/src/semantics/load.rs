@@ -6,7 +6,7 @@ use crate::{
     file_error::{self, FileError},
     scene::SceneModel,
 };
-use glam::{DMat3, Vec2, Vec3};
+use glam::{DMat3, UVec2, Vec2, Vec3};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
@@ -74,9 +74,13 @@ fn load_painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> R
         let texture = model.materials.get(each.material).and_then(|material| material.texture);
         let texture = texture.and_then(|texture| model.textures.get(texture));
         let colour = |corners: [u32; 3]| match texture {
-            Some(texture) => Some(texel_at(texture, uv_middle(&each.uvs, corners))),
+            Some(texture) => texel_at(texture, uv_middle(&each.uvs, corners)),
             // The vertices are painted: a triangle belongs to the object of its first corner.
-            None => each.colours.get(corners[0] as usize).map(|all| all.map(|factor| (factor * 255.0 + 0.5) as u8)),
+            None => {
+                let [first, ..] = corners;
+                let factors = Vec3::from_array(*each.colours.get(first as usize)?);
+                Some((factors * 255.0 + 0.5).as_u8vec3().to_array())
+            }
         };
         let thing = |corners: [u32; 3]| colour(corners).and_then(|colour| by_colour.get(&colour)).copied();
         let owned_triangles: Vec<OwnedTriangle> =
@@ -85,7 +89,10 @@ fn load_painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> R
         shells.extend(shell_triangles(&each.positions, &owned_triangles, &things));
         match texture {
             Some(_) => meshes.push(Mesh { id: PAINTED_ID, colours: Vec::new(), ..each }),
-            None => meshes.extend(by_thing(&each.positions, &owned_triangles)),
+            None => {
+                let parts = by_thing(&each.positions, &owned_triangles);
+                meshes.extend(parts.map_err(|reason| FileError::new(mesh, reason, HM3D_HINT))?);
+            }
         }
     }
     // The picture must have the colours of the file, so no material may change them.
@@ -121,7 +128,7 @@ fn load_numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result
     let owned_triangles: Vec<OwnedTriangle> =
         faces.triangles.iter().map(|(corners, object)| (*corners, thing(*object))).collect();
     measure_things(&positions, &owned_triangles, &mut things);
-    let meshes = by_thing(&positions, &owned_triangles);
+    let meshes = by_thing(&positions, &owned_triangles).map_err(wrong)?;
     // Scans are seen only from inside, and the winding of their faces is not reliable.
     let material = MeshMaterial { double_sided: true, ..MeshMaterial::default() };
     let scene = RenderScene::new(meshes, vec![material], Vec::new()).map_err(|error| wrong(error.to_string()))?;
@@ -152,21 +159,31 @@ fn shell_triangles(
     let owned_triangles = owned_triangles.iter().filter_map(|(corners, thing)| Some((corners, (*thing)?)));
     owned_triangles
         .filter(|(_, thing)| is_shell(*thing))
-        .map(|(corners, thing)| (corners.map(place), thing as u32))
+        .filter_map(|(corners, thing)| Some((corners.map(place), u32::try_from(thing).ok()?)))
         .collect()
 }
 
-/// One mesh for each thing. Its id is the thing's index plus 1; for triangles without a thing it is 0.
-fn by_thing(positions: &[Vec3], owned_triangles: &[OwnedTriangle]) -> Vec<Mesh> {
+/// The id of a thing in drawn pictures: its index plus 1, or 0 for no thing. A list of [`MAX_TEXT`] bytes cannot have more
+/// things than there are ids.
+pub(super) fn picture_id(thing: Option<usize>) -> u32 {
+    thing.and_then(|thing| u32::try_from(thing).ok()?.checked_add(1)).unwrap_or(0)
+}
+
+/// One mesh for each thing, with the thing's id.
+///
+/// # Errors
+/// If a thing has more corners than a mesh may have.
+fn by_thing(positions: &[Vec3], owned_triangles: &[OwnedTriangle]) -> Result<Vec<Mesh>, String> {
     let mut parts: BTreeMap<u32, Mesh> = BTreeMap::new();
     for (corners, thing) in owned_triangles {
-        let id = thing.map_or(0, |thing| thing as u32 + 1);
+        let id = picture_id(*thing);
         let part = parts.entry(id).or_insert_with(|| Mesh { id, ..Mesh::default() });
-        let first = part.positions.len() as u32;
+        let end = u32::try_from(part.positions.len() + 3)
+            .map_err(|_| format!("one object has more than {} triangles", part.triangles.len()))?;
         part.positions.extend(corners.map(|corner| positions.get(corner as usize).copied().unwrap_or_default()));
-        part.triangles.push([first, first + 1, first + 2]);
+        part.triangles.push([end - 3, end - 2, end - 1]);
     }
-    parts.into_values().collect()
+    Ok(parts.into_values().collect())
 }
 
 /// The texture coordinates in the middle of a triangle.
@@ -175,9 +192,10 @@ fn uv_middle(uvs: &[Vec2], corners: [u32; 3]) -> Vec2 {
 }
 
 /// The texel at texture coordinates.
-fn texel_at(texture: &Texture, uv: Vec2) -> [u8; 3] {
-    let at = |u: f32, side: u32| ((u - u.floor()) * side as f32) as u32;
-    let (x, y) = (at(uv.x, texture.width).min(texture.width - 1), at(uv.y, texture.height).min(texture.height - 1));
-    let [red, green, blue, _] = texture.texels[(y * texture.width + x) as usize];
-    [red, green, blue]
+fn texel_at(texture: &Texture, uv: Vec2) -> Option<[u8; 3]> {
+    let size = UVec2::new(texture.width, texture.height);
+    let place = ((uv - uv.floor()) * size.as_vec2()).as_uvec2().min(size.saturating_sub(UVec2::ONE));
+    let index = place.y as usize * texture.width as usize + place.x as usize;
+    let [red, green, blue, _] = *texture.texels.get(index)?;
+    Some([red, green, blue])
 }

@@ -1,10 +1,27 @@
 //! Finds the objects and the room that a camera sees. The scene's semantic mesh is drawn, and the pixels show the objects.
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 mod hm3d;
 mod house;
 mod labels;
 mod load;
 mod ply;
+#[allow(
+    clippy::indexing_slicing,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_possible_wrap,
+    reason = "it computes with places, and reads no file"
+)]
 mod rooms;
 #[cfg(test)]
 mod tests;
@@ -75,7 +92,7 @@ impl SceneSemantics {
         let mut picture = render_scene(&self.scene, camera)?;
         let painted = picture.rgb.as_chunks::<3>().0;
         for (id, colour) in picture.ids.iter_mut().zip(painted).filter(|(id, _)| **id == load::PAINTED_ID) {
-            *id = self.by_colour.get(colour).map_or(0, |thing| *thing as u32 + 1);
+            *id = load::picture_id(self.by_colour.get(colour).copied());
         }
         Ok(picture)
     }

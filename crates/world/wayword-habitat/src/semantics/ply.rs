@@ -64,8 +64,11 @@ fn read_faces(bytes: &[u8]) -> Result<SemanticFaces, String> {
                 "vertex" => faces.positions.push(entry.position),
                 "face" => {
                     let fan = entry.corners.get(1..).unwrap_or_default().windows(2);
-                    let triangle = |pair: &[u32]| ([entry.corners[0], pair[0], pair[1]], entry.object);
-                    faces.triangles.extend(fan.map(triangle));
+                    let triangle = |pair: &[u32]| {
+                        let (a, [b, c]) = (entry.corners.first()?, pair.first_chunk::<2>()?);
+                        Some(([*a, *b, *c], entry.object))
+                    };
+                    faces.triangles.extend(fan.filter_map(triangle));
                 }
                 _ => {}
             }
@@ -76,7 +79,7 @@ fn read_faces(bytes: &[u8]) -> Result<SemanticFaces, String> {
 
 /// The header, and the bytes after it.
 fn read_header(bytes: &[u8]) -> Result<(Header, &[u8]), String> {
-    let within = &bytes[..bytes.len().min(MAX_HEADER)];
+    let within = bytes.get(..MAX_HEADER).unwrap_or(bytes);
     let mut reader = Reader::new(within);
     let header = Parser::<PlyEntry>::new().read_header(&mut reader);
     let header = header.map_err(|error| format!("has no header of a PLY file: {}", brief_message(&error)))?;
@@ -109,16 +112,16 @@ impl PropertyAccess for PlyEntry {
             "y" => value.to_f32_lossy().map(|y| self.position.y = y),
             "z" => value.to_f32_lossy().map(|z| self.position.z = z),
             "vertex_indices" | "vertex_index" => value.to_u32_list().map(|corners| self.corners = corners),
-            // Casts saturate; -1, which means no object, becomes a number that no object has.
-            "object_id" => property_number(&value).map(|id| self.object = if id >= 0.0 { id as u32 } else { u32::MAX }),
+            // -1, which means no object, becomes a number that no object has.
+            "object_id" => whole_number(&value).map(|id| self.object = u32::try_from(id).unwrap_or(u32::MAX)),
             _ => return PropertyAccessResult::Ignored,
         };
         if is_known.is_some() { PropertyAccessResult::Set } else { PropertyAccessResult::UnsupportedType }
     }
 }
 
-/// The value of a property that is a single number.
-fn property_number(property: &Property) -> Option<f64> {
+/// The value of a property that is a single whole number.
+fn whole_number(property: &Property) -> Option<i64> {
     Some(match *property {
         Property::Char(number) => number.into(),
         Property::UChar(number) => number.into(),
@@ -126,8 +129,6 @@ fn property_number(property: &Property) -> Option<f64> {
         Property::UShort(number) => number.into(),
         Property::Int(number) => number.into(),
         Property::UInt(number) => number.into(),
-        Property::Float(number) => number.into(),
-        Property::Double(number) => number,
         _ => return None,
     })
 }

@@ -8,6 +8,16 @@
 //! the input: a hostile buffer can point many offsets at one long string, and this takes no memory. Offsets cannot lead
 //! in a circle, because the code that reads a table sets the depth, and not the bytes.
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 /// Bytes that do not have the expected form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("byte {at}: expected {expected}")]
@@ -70,7 +80,8 @@ impl<'a> FlatBufferTable<'a> {
     fn table_at(bytes: &'a [u8], at: usize) -> Result<Self, FlatBufferError> {
         let expected = "an offset to a vtable";
         let back = i64::from(i32::from_le_bytes(fixed_bytes(bytes, at, expected)?));
-        let start = usize::try_from(at as i64 - back).map_err(|_| FlatBufferError { at, expected })?;
+        let start = i64::try_from(at).ok().and_then(|at| usize::try_from(at - back).ok());
+        let start = start.ok_or(FlatBufferError { at, expected })?;
         let length = u16_at(bytes, start, expected)?;
         let vtable = start.checked_add(length).and_then(|end| bytes.get(start..end));
         let vtable =
@@ -147,7 +158,7 @@ impl<'a> FlatBufferTable<'a> {
 
     /// A struct of three integers.
     pub(super) fn three_i32(&self, slot: usize) -> Result<[i32; 3], FlatBufferError> {
-        Ok(self.read_floats::<3>(slot)?.map(|raw| raw.to_bits() as i32))
+        Ok(self.read_floats::<3>(slot)?.map(|raw| raw.to_bits().cast_signed()))
     }
 
     /// A text; empty where the table leaves it out.
@@ -208,7 +219,8 @@ impl<'a> FlatBufferVector<'a> {
     }
 
     pub(super) fn raw_bytes(&self) -> &'a [u8] {
-        &self.bytes[self.from..self.from + self.size * self.count]
+        // The vector ends within the frame.
+        self.bytes.get(self.from..self.from + self.size * self.count).unwrap_or_default()
     }
 
     /// Where the offsets of a vector lead.

@@ -1,5 +1,15 @@
 //! Decodes the passes of a picture: colours (`_img`), object colours (`_id`) and depth (`_depth`).
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 use super::{error::TdwError, output::PicturePass};
 use crate::decode;
 use image::ImageFormat;

@@ -1,13 +1,24 @@
 //! A client for VirtualHome's HTTP protocol. The size of answers and the time for them are limited.
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 use super::{error::HomeError, graph::EnvironmentGraph};
 use crate::decode;
 use base64::{Engine, prelude::BASE64_STANDARD};
 use image::ImageFormat;
 use serde::{Deserialize, de::DeserializeOwned};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::{collections::BTreeMap, time::Duration};
 use ureq::Agent;
+use wayword_core::DVec3;
 
 /// Largest answer that is read, bytes: a picture of 8192 x 4096 pixels in base64.
 const LARGEST_ANSWER: u64 = 128 << 20;
@@ -89,15 +100,18 @@ impl VirtualHomeClient {
         texts: &[String],
     ) -> Result<VirtualHomeAnswer, HomeError> {
         self.asked += 1;
-        let mut request = json!({ "id": self.asked.to_string(), "action": action });
+        let mut request = Map::new();
+        request.insert("id".to_owned(), json!(self.asked.to_string()));
+        request.insert("action".to_owned(), json!(action));
         if !ints.is_empty() {
-            request["intParams"] = json!(ints);
+            request.insert("intParams".to_owned(), json!(ints));
         }
         if !texts.is_empty() {
-            request["stringParams"] = json!(texts);
+            request.insert("stringParams".to_owned(), json!(texts));
         }
         let unreachable = |error: ureq::Error| HomeError::Unreachable { action, reason: error.to_string() };
-        let sent = self.agent.post(&self.url).header("content-type", "application/json").send(request.to_string());
+        let request = Value::Object(request).to_string();
+        let sent = self.agent.post(&self.url).header("content-type", "application/json").send(request);
         let (head, mut body) = sent.map_err(unreachable)?.into_parts();
         let body = body.with_config().limit(LARGEST_ANSWER).read_to_vec().map_err(unreachable)?;
         if head.status != 200 {
@@ -196,8 +210,11 @@ impl VirtualHomeClient {
         let colours: BTreeMap<i64, [f64; 3]> = parse_answer(action, "three numbers for each id", message.as_bytes())?;
         // Channels of Unity's colours lie between 0 and 1. A channel above 1 shows that these are bytes.
         let scale = if colours.values().flatten().any(|channel| *channel > 1.0) { 1.0 } else { 255.0 };
-        let byte = |channel: f64| (channel * scale).round().clamp(0.0, 255.0) as u8;
-        Ok(colours.into_iter().map(|(id, rgb)| (id, rgb.map(byte))).collect())
+        let bytes = |rgb: [f64; 3]| {
+            let channels = (DVec3::from_array(rgb) * scale).round();
+            channels.clamp(DVec3::ZERO, DVec3::splat(255.0)).as_u8vec3().to_array()
+        };
+        Ok(colours.into_iter().map(|(id, rgb)| (id, bytes(rgb))).collect())
     }
 }
 

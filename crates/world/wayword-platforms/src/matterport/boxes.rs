@@ -148,7 +148,8 @@ fn parse_listed_object(object: &str, entry: &Value) -> Result<ListedObject, Stri
 }
 
 fn parse_seen_box(view: &Value, found: &Value) -> Result<SeenBox, String> {
-    let view = view.as_u64().filter(|view| *view < SIMULATOR_VIEW_COUNT as u64);
+    let view = view.as_u64().and_then(|view| u8::try_from(view).ok());
+    let view = view.filter(|view| usize::from(*view) < SIMULATOR_VIEW_COUNT);
     let view = view.ok_or("field `visible_pos` has an entry that is not a view index (0..35)")?;
     let numbers = found.as_array().filter(|numbers| numbers.len() == 4);
     let numbers = numbers.ok_or("field `bbox2d` has an entry that is not a box of four numbers")?;
@@ -156,10 +157,11 @@ fn parse_seen_box(view: &Value, found: &Value) -> Result<SeenBox, String> {
     for (place, number) in box_px.iter_mut().zip(numbers) {
         *place = file_reading::read_coordinate(number, "bbox2d")?;
     }
-    if box_px[2] < 0.0 || box_px[3] < 0.0 {
+    let [_, _, width, height] = box_px;
+    if width < 0.0 || height < 0.0 {
         return Err("field `bbox2d` has a box of negative size".into());
     }
-    Ok(SeenBox { view: view as u8, box_px })
+    Ok(SeenBox { view, box_px })
 }
 
 #[cfg(test)]

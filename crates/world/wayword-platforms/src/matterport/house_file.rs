@@ -55,7 +55,7 @@ impl MatterportHouseFile {
         let height_m = self.levels_m.get(&region.level)?;
         // Storeys are numbered from the lowest, whatever the order in the file is.
         let lower = self.levels_m.iter().filter(|(index, other_m)| (**other_m, **index) < (*height_m, region.level));
-        Some(lower.count() as u32 + 1)
+        u32::try_from(lower.count() + 1).ok()
     }
 
     /// The letter of a viewpoint's region.

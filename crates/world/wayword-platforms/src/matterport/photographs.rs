@@ -71,14 +71,15 @@ fn read_cube_map(files: &SkyboxFiles) -> Result<CubeMap, PlatformError> {
                 .map_err(|error| file_reading::file_error(file, error.to_string(), PICTURE_HINT))
         }
         SkyboxFiles::Faces(files) => {
+            let [first, ..] = files;
             let mut faces = Vec::with_capacity(6);
             for file in files {
                 let picture = file_reading::read_picture(file)?;
                 faces.push(CubeFace { side_px: picture.height_px(), rgb: picture.rgb_bytes().to_vec() });
             }
             let faces = <[CubeFace; 6]>::try_from(faces)
-                .map_err(|_| file_reading::file_error(&files[0], "must have six faces", PICTURE_HINT))?;
-            CubeMap::new(faces).map_err(|error| file_reading::file_error(&files[0], error.to_string(), PICTURE_HINT))
+                .map_err(|_| file_reading::file_error(first, "must have six faces", PICTURE_HINT))?;
+            CubeMap::new(faces).map_err(|error| file_reading::file_error(first, error.to_string(), PICTURE_HINT))
         }
     }
 }

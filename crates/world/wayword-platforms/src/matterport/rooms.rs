@@ -34,7 +34,7 @@ fn parse_rooms(text: &str) -> Result<RoomLetters, String> {
         }
         let (viewpoint, letter) = parse_room_line(&words).map_err(|reason| format!("line {}: {reason}", number + 1))?;
         if rooms.insert(viewpoint, letter).is_some() {
-            return Err(format!("line {}: viewpoint {} is listed twice", number + 1, words[1]));
+            return Err(format!("line {}: viewpoint {} is listed twice", number + 1, words.get(1).unwrap_or(&"")));
         }
     }
     Ok(rooms)

@@ -4,6 +4,7 @@
 //! nearly in the pixel's direction.
 
 use super::{boxes::SIMULATOR_VIEW_COUNT, file_reading};
+use glam::{DVec2, DVec3, UVec2};
 use rayon::prelude::*;
 use std::{f64::consts::FRAC_PI_6, path::Path};
 use wayword_core::{Image, PlatformError, ViewGaze};
@@ -78,25 +79,23 @@ impl ThirtySix {
         rgb
     }
 
-    /// The colour along a ray, given as in [`Self::meet_row`], from the row with the nearest axis.
+    /// The colour along a ray, given as (right, ahead, up) in a column's axes, from the row with the nearest axis.
     fn colour_along(&self, column: usize, right: f64, ahead: f64, up: f64) -> [u8; 3] {
-        let mut best = (0, self.meet_row(0, right, ahead, up));
-        for row in 1..VIEW_ROWS {
-            let hit = self.meet_row(row, right, ahead, up);
-            if hit.along > best.1.along {
-                best = (row, hit);
-            }
-        }
-        sample_bilinear(&self.views[VIEW_COLUMNS * best.0 + column], best.1.x_px, best.1.y_px)
+        let rows = self.views.iter().skip(column).step_by(VIEW_COLUMNS).zip(ROW_TILTS_SIN_COS);
+        let hits = rows.map(|(view, tilt)| (view, ViewHit::in_view(view, tilt, right, ahead, up)));
+        let nearest = hits.reduce(|best, hit| if hit.1.along > best.1.along { hit } else { best });
+        nearest.map_or([0; 3], |(view, hit)| sample_bilinear(view, hit.x_px, hit.y_px))
     }
+}
 
-    /// Where a ray, given as (right, ahead, up) in a column's axes, meets the view in a row of that column.
-    fn meet_row(&self, row: usize, right: f64, ahead: f64, up: f64) -> ViewHit {
-        let (sin, cos) = ROW_TILTS_SIN_COS[row];
+impl ViewHit {
+    /// Where a ray, given as (right, ahead, up) in the axes of a view's column, meets the view, which has this sine and cosine
+    /// of its elevation.
+    fn in_view(view: &Image, (sin, cos): (f64, f64), right: f64, ahead: f64, up: f64) -> Self {
         let (along, above) = (ahead * cos + up * sin, up * cos - ahead * sin);
-        let (width, height) = (f64::from(self.views[0].width_px()), f64::from(self.views[0].height_px()));
+        let (width, height) = (f64::from(view.width_px()), f64::from(view.height_px()));
         let focal_px = height / 2.0 / libm::tan(HALF_FOV_RAD);
-        ViewHit { along, x_px: width / 2.0 + focal_px * right / along, y_px: height / 2.0 - focal_px * above / along }
+        Self { along, x_px: width / 2.0 + focal_px * right / along, y_px: height / 2.0 - focal_px * above / along }
     }
 }
 
@@ -110,26 +109,27 @@ fn nearest_column(heading_rad: f64, off: f64) -> (usize, f64, f64) {
     let steps = libm::round((heading_rad + libm::atan(off)) / FRAC_PI_6);
     let turn = heading_rad - steps * FRAC_PI_6;
     let (sin, cos) = (libm::sin(turn), libm::cos(turn));
-    (steps.rem_euclid(VIEW_COLUMNS as f64) as usize % VIEW_COLUMNS, sin + cos * off, cos - sin * off)
+    let around = steps.rem_euclid(VIEW_COLUMNS as f64);
+    // The remainder is rounded, and can be a whole turn, which is column 0 again.
+    let column = (0..VIEW_COLUMNS).find(|column| *column as f64 == around).unwrap_or(0);
+    (column, sin + cos * off, cos - sin * off)
 }
 
 /// Bilinear interpolation between pixel centres, clamped at the edges.
 fn sample_bilinear(picture: &Image, x_px: f64, y_px: f64) -> [u8; 3] {
-    let split = |position: f64, side: u32| {
-        let position = (position - 0.5).clamp(0.0, f64::from(side - 1));
-        let index = position as usize;
-        (index, (index + 1).min(side as usize - 1), position - index as f64)
+    let last = UVec2::new(picture.width_px(), picture.height_px()).saturating_sub(UVec2::ONE);
+    let place = (DVec2::new(x_px, y_px) - 0.5).clamp(DVec2::ZERO, last.as_dvec2());
+    let low = place.as_uvec2();
+    let high = (low + 1).min(last);
+    let DVec2 { x: across, y: down } = place - low.as_dvec2();
+    let pixels = picture.rgb_bytes().as_chunks::<3>().0;
+    let at = |x: u32, y: u32| {
+        let index = y as usize * picture.width_px() as usize + x as usize;
+        DVec3::from_array(pixels.get(index).copied().unwrap_or_default().map(f64::from))
     };
-    let (left, right, across) = split(x_px, picture.width_px());
-    let (above, below, down) = split(y_px, picture.height_px());
-    let at = |x: usize, y: usize, channel: usize| {
-        f64::from(picture.rgb_bytes()[3 * (y * picture.width_px() as usize + x) + channel])
-    };
-    std::array::from_fn(|channel| {
-        let top = at(left, above, channel) * (1.0 - across) + at(right, above, channel) * across;
-        let bottom = at(left, below, channel) * (1.0 - across) + at(right, below, channel) * across;
-        (top * (1.0 - down) + bottom * down + 0.5) as u8
-    })
+    let top = at(low.x, low.y) * (1.0 - across) + at(high.x, low.y) * across;
+    let bottom = at(low.x, high.y) * (1.0 - across) + at(high.x, high.y) * across;
+    (top * (1.0 - down) + bottom * down + 0.5).as_u8vec3().to_array()
 }
 
 #[cfg(test)]

@@ -58,7 +58,7 @@ pub(crate) fn parse_answer(line: &[u8]) -> Result<ChildAnswer, ChildFault> {
 
 /// The beginning of a line, in a form that an error may show.
 fn start_of(line: &[u8]) -> String {
-    let start = String::from_utf8_lossy(&line[..line.len().min(4 * SHOWN_CHARS)]);
+    let start = String::from_utf8_lossy(line.get(..4 * SHOWN_CHARS).unwrap_or(line));
     to_safe_text(&start, SHOWN_CHARS)
 }
 

@@ -142,7 +142,8 @@ fn by_walking(
     let tried = near_pairs(&points, REACH_SPACINGS * spacing_m);
     let mut open = Vec::new();
     for batch in tried.chunks(MAX_PAIRS_PER_REQUEST) {
-        let pairs: Vec<_> = batch.iter().map(|(a, b)| [points[*a].position, points[*b].position]).collect();
+        let place = |point: &usize| points.get(*point).map(|point| point.position);
+        let pairs: Vec<_> = batch.iter().filter_map(|(a, b)| Some([place(a)?, place(b)?])).collect();
         let WalkableAnswer { walkable } =
             keeper.ask_and_read("walkable", &json!({ "scene": scene, "pairs": pairs }))?;
         if walkable.len() != batch.len() {
@@ -201,8 +202,9 @@ fn largest_connected_part(points: &[ChildWaypoint], open: &[(usize, usize)]) -> 
             )?;
         }
     }
+    let id_of = |point: &usize| points.get(*point)?.id.as_ref();
     for (a, b) in open {
-        if let (Some(from), Some(to), true) = (&points[*a].id, &points[*b].id, Some(part[*a]) == largest) {
+        if let (Some(from), Some(to), true) = (id_of(a), id_of(b), part.get(*a).copied() == largest) {
             graph.join_viewpoints(from, to)?;
         }
     }
@@ -212,17 +214,19 @@ fn largest_connected_part(points: &[ChildWaypoint], open: &[(usize, usize)]) -> 
 /// For each place, the first place of its connected part.
 fn label_parts(count: usize, open: &[(usize, usize)]) -> Vec<usize> {
     let mut beside = vec![Vec::new(); count];
-    for (a, b) in open {
-        beside[*a].push(*b);
-        beside[*b].push(*a);
+    for (from, to) in open.iter().flat_map(|(a, b)| [(*a, *b), (*b, *a)]) {
+        if let Some(beside) = beside.get_mut(from) {
+            beside.push(to);
+        }
     }
     let mut part: Vec<Option<usize>> = vec![None; count];
     for start in 0..count {
         let mut waiting = vec![start];
         while let Some(here) = waiting.pop() {
-            if part[here].is_none() {
-                part[here] = Some(start);
-                waiting.extend(&beside[here]);
+            let Some((part, beside)) = part.get_mut(here).zip(beside.get(here)) else { continue };
+            if part.is_none() {
+                *part = Some(start);
+                waiting.extend(beside);
             }
         }
     }

@@ -13,6 +13,16 @@
 //! and by [`end_all`]. If this program is killed, or exits without dropping the platform, only a guard can end the
 //! child (`guard.rs`): see [`ProcessOptions::guard`].
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 mod answer;
 mod child;
 mod child_keeper;

@@ -4,6 +4,8 @@
 //! look away from the path are left out. First [`marks`] are set along the track, each with some pictures near it as
 //! candidates; then the candidates are read and compared.
 
+#![allow(clippy::indexing_slicing, reason = "all indices are counted here, and none is read from a file")]
+
 mod marks;
 mod picture_measure;
 

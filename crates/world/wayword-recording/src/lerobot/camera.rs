@@ -50,6 +50,7 @@ pub(super) fn choose_camera(
         (None, [only]) => *only,
         (None, _) => return Err(wrong(format!("has several cameras: {}", listed()), CHOOSE_CAMERA_HINT)),
     };
-    let storage = if info.features[key].dtype == "video" { PictureStorage::Video } else { PictureStorage::Rows };
+    let is_video = info.features.get(key).is_some_and(|feature| feature.dtype == "video");
+    let storage = if is_video { PictureStorage::Video } else { PictureStorage::Rows };
     Ok(DatasetCamera { key: key.clone(), kept: storage })
 }

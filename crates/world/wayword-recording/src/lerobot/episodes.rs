@@ -50,12 +50,9 @@ pub(super) fn read_episodes(
         _ => one_by_one(root, info, camera)?,
     };
     episodes.sort_by_key(|episode| episode.number);
-    if let Some(pair) = episodes.windows(2).find(|pair| pair[0].number == pair[1].number) {
-        return Err(files::file_error(
-            &root.join("meta"),
-            format!("episode {} is listed twice", pair[0].number),
-            META_HINT,
-        ));
+    if let Some([twice, _]) = episodes.array_windows::<2>().find(|[one, next]| one.number == next.number) {
+        let reason = format!("episode {} is listed twice", twice.number);
+        return Err(files::file_error(&root.join("meta"), reason, META_HINT));
     }
     Ok(episodes)
 }
@@ -130,7 +127,8 @@ fn in_file(
                 from_s.push(time_s);
                 if time_s.is_finite() { Ok(()) } else { Err(format!("row {row} holds {time_s}, which is not a time")) }
             })?;
-            Some((whole(&video_column("chunk_index"))?, whole(&video_column("file_index"))?, from_s))
+            let (chunks, file_numbers) = (whole(&video_column("chunk_index"))?, whole(&video_column("file_index"))?);
+            Some(chunks.into_iter().zip(file_numbers).zip(from_s).collect::<Vec<_>>())
         }
     };
     let path = |template: &str, chunk: u64, part: u64| {
@@ -141,21 +139,22 @@ fn in_file(
         ];
         path_in_dataset(root, template, &values)
     };
-    let episodes = (0..numbers.len()).map(|at| {
-        let clip = match &clips {
+    // Each column has a number for every row.
+    let rows = numbers.into_iter().zip(lengths).zip(chunks.into_iter().zip(file_numbers)).enumerate();
+    let episodes = rows.map(|(at, ((number, length), (chunk, part)))| {
+        let clip = match clips.as_ref().and_then(|clips| clips.get(at)) {
             None => None,
-            Some((chunks, file_numbers, from_s)) => Some(VideoClip {
-                file: path(video_path(root, info)?, chunks[at], file_numbers[at])?,
-                from_s: from_s[at],
-            }),
+            Some(((chunk, part), from_s)) => {
+                Some(VideoClip { file: path(video_path(root, info)?, *chunk, *part)?, from_s: *from_s })
+            }
         };
-        let data = path(&info.data_path, chunks[at], file_numbers[at])?;
-        Ok(DatasetEpisode { number: numbers[at], length: lengths[at], data, clip })
+        Ok(DatasetEpisode { number, length, data: path(&info.data_path, chunk, part)?, clip })
     });
     episodes.collect()
 }
 
 /// A column of whole numbers that are not negative: one for each row.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "each number is checked before")]
 fn whole_numbers(table: &ParquetTable, name: &str) -> Result<Vec<u64>, PlatformError> {
     let mut numbers = Vec::new();
     table.read_numbers(name, 0..table.row_count(), &mut |row, number| {

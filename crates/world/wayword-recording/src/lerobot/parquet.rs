@@ -28,7 +28,7 @@ mod thrift;
 use column::{ColumnCells, ParquetColumn};
 use parquet::{
     basic::Type,
-    file::metadata::ParquetMetaData,
+    file::metadata::{ParquetMetaData, RowGroupMetaData},
     schema::types::{ColumnDescPtr, ColumnDescriptor},
 };
 use std::{
@@ -75,7 +75,7 @@ impl ParquetTable {
 
     /// Number of rows.
     pub(super) fn row_count(&self) -> u64 {
-        self.about.row_groups().iter().map(|group| group.num_rows() as u64).sum()
+        self.about.row_groups().iter().map(count_rows).sum()
     }
 
     /// Whether there is a column of this name.
@@ -203,11 +203,11 @@ impl ParquetTable {
         wanted: Range<u64>,
         mut read: impl FnMut(&mut ParquetColumn, Range<u64>, Range<u64>) -> Result<(), String>,
     ) -> Result<(), PlatformError> {
-        let name = self.leaf_columns()[leaf].path().string();
+        let name = self.leaf_columns().get(leaf).map(|column| column.path().string()).unwrap_or_default();
         let wrong = |reason: String| files::file_error(&self.path, format!("column {name:?}: {reason}"), PARQUET_HINT);
         let mut first = 0;
         for group in self.about.row_groups() {
-            let rows = first..first + group.num_rows() as u64;
+            let rows = first..first + count_rows(group);
             first = rows.end;
             let within = wanted.start.max(rows.start)..wanted.end.min(rows.end);
             if !within.is_empty() {
@@ -219,6 +219,11 @@ impl ParquetTable {
         }
         Ok(())
     }
+}
+
+/// Number of rows of a row group. A footer with a negative one was refused.
+fn count_rows(group: &RowGroupMetaData) -> u64 {
+    u64::try_from(group.num_rows()).unwrap_or(0)
 }
 
 /// Whether a column, or the group of columns in which it lies, has this name.

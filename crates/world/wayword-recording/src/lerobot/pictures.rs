@@ -43,7 +43,8 @@ impl PictureReel for RowReel {
             };
             let bytes =
                 bytes.ok_or_else(|| wrong("only the picture's name is stored here, not the picture".to_owned()))?;
-            take((row - self.first) as usize, files::decode_picture(bytes).map_err(wrong)?)
+            let number = usize::try_from(row - self.first).map_err(|error| wrong(error.to_string()))?;
+            take(number, files::decode_picture(bytes).map_err(wrong)?)
         })
     }
 }

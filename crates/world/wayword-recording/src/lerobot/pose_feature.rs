@@ -107,12 +107,12 @@ impl PoseFeature {
         let names = feature.element_names().ok_or("its elements have no names")?;
         let roles: Vec<Option<ElementRole>> = names.iter().map(|name| element_role(name)).collect();
         let at = |wanted: ElementRole| {
-            let mut found = roles.iter().enumerate().filter(|(_, role)| **role == Some(wanted)).map(|(at, _)| at);
+            let mut found = roles.iter().zip(&names).enumerate().filter(|(_, (role, _))| **role == Some(wanted));
             match (found.next(), found.next()) {
-                (Some(first), Some(second)) => {
-                    Err(format!("both {:?} and {:?} may be the one", names[first], names[second]))
+                (Some((_, (_, first))), Some((_, (_, second)))) => {
+                    Err(format!("both {first:?} and {second:?} may be the one"))
                 }
-                (first, _) => Ok(first),
+                (first, _) => Ok(first.map(|(at, _)| at)),
             }
         };
         let (Some(x), Some(y)) = (at(ElementRole::X)?, at(ElementRole::Y)?) else {

@@ -22,20 +22,21 @@ impl<'a> CdrReader<'a> {
     /// # Errors
     /// When it is too short, or not plain CDR.
     pub(crate) fn new(message: &'a [u8]) -> Result<Self, String> {
-        let (head, body) = message.split_at_checked(ENCAPSULATION_BYTES).ok_or("byte 0: is too short for a message")?;
-        if head == ZSTD_MAGIC {
+        let (head, body) =
+            message.split_first_chunk::<ENCAPSULATION_BYTES>().ok_or("byte 0: is too short for a message")?;
+        if *head == ZSTD_MAGIC {
             let why =
                 "each message is compressed by itself; write the bag again with `--compression-mode file` or `none`";
             return Err(format!("byte 0: {why} (`ros2 bag convert`)"));
         }
-        match head[..2] {
-            [0, byte_order @ (0 | 1)] => Ok(Self { body, at: 0, big_endian: byte_order == 0 }),
-            _ => Err(format!("byte 0: is written as {:#04x}{:02x}, not as plain CDR", head[0], head[1])),
+        match *head {
+            [0, byte_order @ (0 | 1), ..] => Ok(Self { body, at: 0, big_endian: byte_order == 0 }),
+            [first, second, ..] => Err(format!("byte 0: is written as {first:#04x}{second:02x}, not as plain CDR")),
         }
     }
 
     pub(crate) fn read_u8(&mut self) -> Result<u8, String> {
-        Ok(self.read_number::<1>()?[0])
+        self.read_number().map(u8::from_le_bytes)
     }
 
     pub(crate) fn read_u32(&mut self) -> Result<u32, String> {

@@ -157,7 +157,8 @@ impl McapFile {
                 None => track,
             })
         };
-        let clocks = if has_stamps { &[MessageClock::Stamp, MessageClock::Log][..] } else { &[MessageClock::Log] };
+        let clocks: &[MessageClock] =
+            if has_stamps { &[MessageClock::Stamp, MessageClock::Log] } else { &[MessageClock::Log] };
         clocks.iter().find_map(|clock| Some((Some(track_on(*clock)?), *clock))).unwrap_or((None, usual_clock))
     }
 }

@@ -92,16 +92,17 @@ fn decode_raw(raw: &RawPicture<'_>) -> Result<Image, String> {
         let (encoding, bytes) = (&raw.encoding, raw.pixels.len());
         return Err(format!("has {bytes} bytes in rows of {stride} for {width} x {height} pixels of {encoding}"));
     }
-    let row = |y: usize| &raw.pixels[y * stride..y * stride + row_bytes];
+    let row = |y: usize| raw.pixels.get(y * stride..y * stride + row_bytes).unwrap_or_default();
     let mut rgb = Vec::with_capacity(width * height * 3);
     for y in 0..height {
         match layout {
             RosPixelLayout::Plain { bytes, rgb: [r, g, b] } => {
-                rgb.extend(row(y).chunks_exact(bytes).flat_map(|pixel| [pixel[r], pixel[g], pixel[b]]));
+                let level = |pixel: &[u8], at: usize| pixel.get(at).copied().unwrap_or_default();
+                rgb.extend(row(y).chunks_exact(bytes).flat_map(|pixel| [r, g, b].map(|at| level(pixel, at))));
             }
             RosPixelLayout::Grey16 => {
                 let high = usize::from(!raw.big_endian);
-                rgb.extend(row(y).chunks_exact(2).flat_map(|pixel| [pixel[high]; 3]));
+                rgb.extend(row(y).iter().skip(high).step_by(2).flat_map(|level| [*level; 3]));
             }
             RosPixelLayout::Yuv422 { y: first, u } => decode_yuv422(row(y), [first, u], &mut rgb),
             RosPixelLayout::Bayer { red } => {
@@ -117,36 +118,39 @@ fn decode_raw(raw: &RawPicture<'_>) -> Result<Image, String> {
 fn decode_yuv422(row: &[u8], [first, u]: [usize; 2], rgb: &mut Vec<u8>) {
     for pair in row.chunks(4) {
         // The last pixel of an odd row has a U but no V, so it becomes grey.
-        let chroma = |at: usize| if pair.len() == 4 { i32::from(pair[at]) - 128 } else { 0 };
+        let chroma = |at: usize| pair.get(at).filter(|_| pair.len() == 4).map_or(0, |level| i32::from(*level) - 128);
         let (blue, red) = (chroma(u), chroma(u + 2));
         for y in pair.iter().skip(first).step_by(2) {
             // The factors of the standard in 256ths.
             let light = 298 * (i32::from(*y) - 16) + 128;
             let colours = [light + 409 * red, light - 100 * blue - 208 * red, light + 516 * blue];
-            rgb.extend(colours.map(|colour| (colour >> 8).clamp(0, 255) as u8));
+            rgb.extend(colours.map(|colour| u8::try_from((colour >> 8).max(0)).unwrap_or(u8::MAX)));
         }
     }
 }
 
 /// A row of a Bayer picture: each colour of a pixel is the mean of that colour in the 3 x 3 pixels around it.
 fn decode_bayer(rows: [&[u8]; 3], y: usize, [red_x, red_y]: [usize; 2], rgb: &mut Vec<u8>) {
-    let width = rows[1].len();
+    let [_, own_row, _] = rows;
+    let width = own_row.len();
     for x in 0..width {
-        let (mut sums, mut counts) = ([0_u32; 3], [0_u32; 3]);
+        // The sum and the number of the levels of each colour.
+        let mut colours = [(0_u32, 0_u32); 3];
         // The rows above and below have the other parity than row `y`.
         for (row, row_parity) in rows.iter().zip([1, 0, 1]) {
             for column in x.saturating_sub(1)..=(x + 1).min(width - 1) {
                 // At the edge the row itself replaces the missing one. It has other colours, so it does not count.
-                let is_edge_copy = row_parity == 1 && std::ptr::eq(row.as_ptr(), rows[1].as_ptr());
+                let is_edge_copy = row_parity == 1 && std::ptr::eq(row.as_ptr(), own_row.as_ptr());
                 if !is_edge_copy {
-                    let steps_from_red = [(column + red_x) % 2, (y + row_parity + red_y) % 2];
-                    let colour = steps_from_red[0] + steps_from_red[1];
-                    sums[colour] += u32::from(row[column]);
-                    counts[colour] += 1;
+                    let steps_from_red = (column + red_x) % 2 + (y + row_parity + red_y) % 2;
+                    if let (Some((sum, count)), Some(level)) = (colours.get_mut(steps_from_red), row.get(column)) {
+                        *sum += u32::from(*level);
+                        *count += 1;
+                    }
                 }
             }
         }
-        rgb.extend([0, 1, 2].map(|colour| (sums[colour] / counts[colour].max(1)) as u8));
+        rgb.extend(colours.map(|(sum, count)| u8::try_from(sum / count.max(1)).unwrap_or(u8::MAX)));
     }
 }
 

@@ -96,7 +96,7 @@ impl RecordedPoses {
             };
             let of_kind = self.topics.iter().filter(|(name, poses)| poses.kind == kind && !is_goal(name));
             let own_poses: Vec<(&String, &TopicPoses)> = of_kind.collect();
-            match own_poses[..] {
+            match *own_poses.as_slice() {
                 [] => {}
                 [(_, poses)] => return Ok(Some(self.chain_for_topic(poses))),
                 _ => {

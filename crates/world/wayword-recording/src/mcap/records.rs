@@ -122,8 +122,8 @@ impl<'a> RecordReader<'a> {
 
     /// Type of the next record, and length of its body.
     fn read_head(&mut self) -> Result<(u8, u64), String> {
-        let head = self.read_exactly::<{ HEAD_BYTES as usize }>()?;
-        let (opcode, length) = (head[0], u64_at(&head, 1));
+        let [opcode] = self.read_exactly::<1>()?;
+        let length = u64::from_le_bytes(self.read_exactly()?);
         let end = if self.at < self.chunk_end { self.chunk_end } else { self.end };
         // A chunk that was cut off can still be read in part.
         if opcode != op::CHUNK && length > end.saturating_sub(self.at + HEAD_BYTES) {
@@ -136,23 +136,28 @@ impl<'a> RecordReader<'a> {
     fn open_chunk(&mut self, length: u64) -> Result<(), String> {
         let from = self.at;
         let end = from.saturating_add(HEAD_BYTES).saturating_add(length).min(self.end);
-        let head = self.read_exactly::<{ CHUNK_HEAD_BYTES as usize }>()?;
-        // A chunk's head: two times, at 16 the unpacked length, a checksum, at 28 the length of the compression's name, the name
-        // (empty if not compressed), and then the length of the records.
-        let is_packed = head[28..32] != [0; 4];
+        // A chunk's head: two times, the unpacked length, a checksum, the length of the compression's name, the name (empty if
+        // not compressed), and then the length of the records.
+        self.read_exactly::<16>()?;
+        let unpacked_bytes = u64::from_le_bytes(self.read_exactly()?);
+        self.read_exactly::<4>()?;
+        let is_packed = self.read_exactly::<4>()? != [0; 4];
+        let records_bytes = u64::from_le_bytes(self.read_exactly()?);
         // The crate handles all unusual chunks.
-        if !is_packed && u64_at(&head, 32).checked_add(CHUNK_HEAD_BYTES) == Some(length) {
+        if !is_packed && records_bytes.checked_add(CHUNK_HEAD_BYTES) == Some(length) {
             (self.at, self.chunk_end) = (from + HEAD_BYTES + CHUNK_HEAD_BYTES, end);
             return Ok(());
         }
-        let (unpacked_bytes, packed_bytes) = (u64_at(&head, 16), end - from);
+        let packed_bytes = end - from;
         if is_packed && unpacked_bytes > MAX_UNPACKED.0.saturating_add(packed_bytes.saturating_mul(MAX_UNPACKED.1)) {
             return Err(format!(
                 "byte {from}: a chunk of {packed_bytes} bytes claims to unpack to {unpacked_bytes} bytes"
             ));
         }
-        self.file.seek_relative(-((HEAD_BYTES + CHUNK_HEAD_BYTES) as i64)).map_err(|error| self.broken_at(&error))?;
-        let record_bytes = unpacked_bytes.clamp(UNPACKED_RECORD.0, UNPACKED_RECORD.1) as usize;
+        let back = -(HEAD_BYTES + CHUNK_HEAD_BYTES).cast_signed();
+        self.file.seek_relative(back).map_err(|error| self.broken_at(&error))?;
+        let record_bytes = unpacked_bytes.clamp(UNPACKED_RECORD.0, UNPACKED_RECORD.1);
+        let record_bytes = usize::try_from(record_bytes).unwrap_or(usize::MAX);
         let options = LinearReaderOptions::default().with_skip_start_magic(true).with_skip_end_magic(true);
         let reader = LinearReader::new_with_options(options.with_record_length_limit(record_bytes));
         self.packed = Some(PackedChunk { reader, from, end, left: packed_bytes, at: 0 });
@@ -250,9 +255,4 @@ fn wanted_bytes(opcode: u8, body: &[u8], most: &MostBytes<'_>) -> Option<u64> {
         op::SCHEMA | op::CHANNEL | op::CHUNK_INDEX | op::STATISTICS | op::FOOTER => Some(MAX_RECORD_BYTES),
         _ => None,
     }
-}
-
-/// The little-endian number at an offset; 0 if the bytes end before it does.
-fn u64_at(bytes: &[u8], at: usize) -> u64 {
-    bytes.get(at..).and_then(<[u8]>::first_chunk).copied().map_or(0, u64::from_le_bytes)
 }

@@ -101,7 +101,7 @@ pub(crate) fn list_names<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let names: Vec<&str> = names.collect();
     match names.len().saturating_sub(MAX_NAMES) {
         0 => names.join(", "),
-        more => format!("{} and {more} more", names[..MAX_NAMES].join(", ")),
+        more => format!("{} and {more} more", names.get(..MAX_NAMES).unwrap_or_default().join(", ")),
     }
 }
 

@@ -183,7 +183,7 @@ impl TransformTree {
     pub(crate) fn up_to(&self, frame: &str) -> Option<Vec<&TransformEdge>> {
         let above = self.frames_above(&self.camera);
         let to = above.iter().position(|above| *above == frame)?;
-        above[..to].iter().map(|frame| self.edges.get(*frame)).collect()
+        above.iter().take(to).map(|frame| self.edges.get(*frame)).collect()
     }
 
     /// The edges from the camera's frame up to the best fixed frame. With `any`, up to the root if there is no fixed frame.

@@ -70,12 +70,13 @@ fn rows_of(
 
 impl NerfFrame {
     fn into_row(self) -> Option<PoseRow> {
-        let [a, b, c, ..] = *self.transform_matrix.as_slice() else { return None };
-        let column = |at: usize| DVec3::new(a[at], b[at], c[at]);
+        let [[ax, ay, az, x], [bx, by, bz, y], [cx, cy, cz, z], ..] = *self.transform_matrix.as_slice() else {
+            return None;
+        };
         Some(PoseRow {
             of: PoseKey::Picture(self.file_path),
-            position: column(3),
-            facing: PoseFacing::Columns([column(0), column(1), column(2)]),
+            position: DVec3::new(x, y, z),
+            facing: PoseFacing::Columns([DVec3::new(ax, bx, cx), DVec3::new(ay, by, cy), DVec3::new(az, bz, cz)]),
         })
     }
 }

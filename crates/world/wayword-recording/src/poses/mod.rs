@@ -117,7 +117,7 @@ fn on_clock(
             PoseKey::Picture(picture) => {
                 let stem = rows::picture_stem(picture);
                 let found = named.binary_search_by(|(other, _)| other.as_str().cmp(&stem)).ok();
-                found.map(|at| named[at].1)
+                found.and_then(|at| named.get(at)).map(|(_, time_s)| *time_s)
             }
         };
         Some(row.fix_at(time_s?, axes))

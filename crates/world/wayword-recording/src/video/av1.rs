@@ -80,10 +80,11 @@ fn hand_out(picture: &Picture, container: StreamColour, out: &mut TakePlanes<'_>
         shift_x: *shift_x,
         shift_y: *shift_y,
     });
+    let bits = u32::try_from(picture.bit_depth()).map_err(|_| "its decoder gave samples of an impossible size")?;
     let planes = PicturePlanes {
         width_px: picture.width(),
         height_px: picture.height(),
-        bits: picture.bit_depth() as u32,
+        bits,
         brightness: PicturePlane { bytes: brightness.as_ref(), stride: stride(Y) },
         chroma,
         colour: stream_colour(picture).or(container),

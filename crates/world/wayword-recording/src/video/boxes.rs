@@ -15,9 +15,9 @@ pub(super) struct Mp4Box<'a> {
 pub(super) fn boxes_in(mut rest: &[u8]) -> impl Iterator<Item = Mp4Box<'_>> {
     std::iter::from_fn(move || {
         let BoxHeader { kind, length, bytes } = BoxHeader::read(rest, rest.len() as u64)?;
-        let end = usize::try_from(bytes).ok().filter(|end| *end <= rest.len())?;
-        let body = rest.get(length..end)?;
-        rest = &rest[end..];
+        let (whole, after) = rest.split_at_checked(usize::try_from(bytes).ok()?)?;
+        let body = whole.get(length..)?;
+        rest = after;
         Some(Mp4Box { kind, body })
     })
 }
@@ -81,8 +81,8 @@ impl<'a> BoxFields<'a> {
     /// version, and the flags.
     pub(super) fn with_version(bytes: &'a [u8]) -> Result<(Self, u8, u32), String> {
         let mut fields = Self::new(bytes);
-        let word = fields.read_u32()?;
-        Ok((fields, (word >> 24) as u8, word & 0x00ff_ffff))
+        let [version, a, b, c] = fields.read_array::<4>()?;
+        Ok((fields, version, u32::from_be_bytes([0, a, b, c])))
     }
 
     pub(super) fn remaining_bytes(&self) -> &'a [u8] {

@@ -95,6 +95,7 @@ struct RgbFactors {
 
 impl RgbFactors {
     /// The factors for samples of `bits` bits (H.273, section 8.3, equations 21 to 23 and 39 to 44).
+    #[allow(clippy::cast_possible_truncation, reason = "a factor is at most 3.0, whatever the file has")]
     fn new(colour: StreamColour, bits: u32) -> Result<Self, String> {
         let (red_weight, blue_weight) = colour.brightness_weights()?;
         let green_weight = 1.0 - red_weight - blue_weight;
@@ -120,7 +121,7 @@ impl RgbFactors {
     fn to_rgb(&self, brightness: i32, blue: i32, red: i32) -> [u8; 3] {
         let base = (brightness - self.black) * self.brightness + (1 << 15);
         let (blue, red) = (blue - self.grey, red - self.grey);
-        let byte = |fixed: i32| (fixed >> 16).clamp(0, 255) as u8;
+        let byte = |fixed: i32| u8::try_from((fixed >> 16).max(0)).unwrap_or(u8::MAX);
         [
             byte(base + red * self.red),
             byte(base + red * self.green_of_red + blue * self.green_of_blue),
@@ -157,7 +158,7 @@ fn convert_row<const BYTES: usize>(
     let pixels = rgb.chunks_exact_mut(3).enumerate();
     let Some(chroma) = planes.chroma else {
         for (x, pixel) in pixels {
-            pixel.copy_from_slice(&factors.to_rgb(sample_at::<BYTES>(brightness, x), factors.grey, factors.grey));
+            pixel.copy_from_slice(&factors.to_rgb(sample_at::<BYTES>(brightness, x)?, factors.grey, factors.grey));
         }
         return Some(());
     };
@@ -166,17 +167,17 @@ fn convert_row<const BYTES: usize>(
     let red = chroma.red.row(y >> chroma.shift_y, narrow * BYTES)?;
     for (x, pixel) in pixels {
         let shared = x >> chroma.shift_x;
-        let (blue, red) = (sample_at::<BYTES>(blue, shared), sample_at::<BYTES>(red, shared));
-        pixel.copy_from_slice(&factors.to_rgb(sample_at::<BYTES>(brightness, x), blue, red));
+        let (blue, red) = (sample_at::<BYTES>(blue, shared)?, sample_at::<BYTES>(red, shared)?);
+        pixel.copy_from_slice(&factors.to_rgb(sample_at::<BYTES>(brightness, x)?, blue, red));
     }
     Some(())
 }
 
-/// A sample of one byte, or of two in the byte order of this machine.
-fn sample_at<const BYTES: usize>(row: &[u8], at: usize) -> i32 {
+/// A sample of one byte, or of two in the byte order of this machine; `None` after the end of the row.
+fn sample_at<const BYTES: usize>(row: &[u8], at: usize) -> Option<i32> {
     match BYTES {
-        1 => i32::from(row[at]),
-        _ => i32::from(u16::from_ne_bytes([row[2 * at], row[2 * at + 1]])),
+        1 => row.get(at).map(|byte| i32::from(*byte)),
+        _ => row.as_chunks::<2>().0.get(at).map(|bytes| i32::from(u16::from_ne_bytes(*bytes))),
     }
 }
 

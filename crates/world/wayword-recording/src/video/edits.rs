@@ -74,10 +74,10 @@ pub(super) fn shown_pictures(samples: &[TrackSample], edit: Option<TrackEdit>, c
     let TrackEdit { wait, start, length } = edit.unwrap_or(TrackEdit { wait: 0, start: first, length: 0 });
     // Lengths are rounded to the movie's ticks, so a picture that begins within the last tick begins after the end.
     let end_s = if length == 0 { f64::INFINITY } else { (length as f64 - 1.0) / movie };
-    let mut order: Vec<usize> = (0..samples.len()).collect();
-    order.sort_by_key(|at| samples[*at].shown);
-    let timed = order.into_iter().filter_map(|sample| {
-        let ticks = samples[sample].shown - start;
+    let mut order: Vec<(usize, i64)> = samples.iter().map(|sample| sample.shown).enumerate().collect();
+    order.sort_by_key(|(_, shown)| *shown);
+    let timed = order.into_iter().filter_map(|(sample, shown)| {
+        let ticks = shown - start;
         let time_s = ticks as f64 / track;
         (ticks >= 0 && time_s < end_s).then(|| ShownPicture { time_s: time_s + wait as f64 / movie, sample })
     });

@@ -5,6 +5,7 @@ use super::{
     decoder::{CodedSample, SampleDecoder},
     edits::ShownPicture,
     movie::{Mp4Movie, VIDEO_HINT, bytes_at},
+    tables::TrackSample,
 };
 use crate::{file_kind, reel::TakePicture};
 use std::{
@@ -61,9 +62,8 @@ impl Mp4Film {
         for run in self.decode_runs(&mut file, wanted).map_err(wrong)? {
             for sample in run {
                 let fed = self.feed_sample(&mut file, sample, decoder.as_mut(), &mut buffer);
-                fed.map_err(|reason| {
-                    wrong(format!("picture at byte {}: {reason}", self.movie.samples[sample].offset))
-                })?;
+                let offset = self.movie.samples.get(sample).map_or(0, |sample| sample.offset);
+                fed.map_err(|reason| wrong(format!("picture at byte {offset}: {reason}")))?;
                 buffer.hand_over(take)?;
             }
         }
@@ -84,13 +84,18 @@ impl Mp4Film {
         buffer: &mut PictureBuffer<'_>,
     ) -> Result<(), String> {
         let bytes = self.read_sample(file, sample)?;
-        let coded = CodedSample { sample, shown: self.movie.samples[sample].shown, bytes: &bytes };
+        let coded = CodedSample { sample, shown: self.find_sample(sample)?.shown, bytes: &bytes };
         run_decoder(|| decoder.feed(coded, &mut |sample, planes| buffer.put_picture(sample, planes)))
+    }
+
+    /// A sample by its index in the order of decoding.
+    fn find_sample(&self, sample: usize) -> Result<&TrackSample, String> {
+        self.movie.samples.get(sample).ok_or_else(|| format!("has no sample {sample}"))
     }
 
     /// The bytes of a sample.
     fn read_sample(&self, file: &mut File, sample: usize) -> Result<Vec<u8>, String> {
-        let sample = self.movie.samples[sample];
+        let sample = self.find_sample(sample)?;
         bytes_at(file, sample.offset, sample.bytes.into())
     }
 
@@ -115,7 +120,7 @@ impl Mp4Film {
     /// The last sample from which the wanted one can be decoded; `decoded_to`, up to which samples are decoded anyway, if there is
     /// none after it.
     fn key_before(&self, file: &mut File, wanted: usize, decoded_to: usize) -> Result<usize, String> {
-        for key in (decoded_to..=wanted).rev().filter(|at| self.movie.samples[*at].is_key) {
+        for key in (decoded_to..=wanted).rev().filter(|at| self.find_sample(*at).is_ok_and(|sample| sample.is_key)) {
             if self.movie.codec.can_begin_with(&self.read_sample(file, key)?) {
                 return Ok(key);
             }

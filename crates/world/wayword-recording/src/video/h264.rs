@@ -186,6 +186,8 @@ fn hand_out(
         shift_y: 1,
     };
     let brightness = PicturePlane { bytes: decoded.y(), stride };
-    let (width_px, height_px) = (width as u32, height as u32);
+    let (Ok(width_px), Ok(height_px)) = (u32::try_from(width), u32::try_from(height)) else {
+        return Err("its decoder gave a picture of an impossible size".to_owned());
+    };
     out(sample, &PicturePlanes { width_px, height_px, bits: 8, brightness, chroma: Some(chroma), colour })
 }

@@ -226,12 +226,12 @@ fn choose_track<'a, 'b>(tracks: &'b [VideoTrack<'a>], camera: Option<&str>) -> R
 /// Checks that all samples lie in the file. A fragmented file that was cut off is read as far as it goes.
 fn check_whole(samples: &mut Vec<TrackSample>, file_bytes: u64, is_fragmented: bool) -> Result<(), String> {
     let outside = |sample: &TrackSample| sample.offset.saturating_add(u64::from(sample.bytes)) > file_bytes;
-    let Some(first) = samples.iter().position(outside) else { return Ok(()) };
+    let first = samples.iter().position(outside).and_then(|at| Some((at, samples.get(at)?.offset)));
+    let Some((first, offset)) = first else { return Ok(()) };
     if is_fragmented && first > 0 {
         samples.truncate(first);
         return Ok(());
     }
-    let offset = samples[first].offset;
     Err(format!(
         "is cut off: picture {first} of {} should lie at byte {offset}, but the file has only {file_bytes} bytes",
         samples.len()

@@ -8,8 +8,8 @@ use wayword_core::Image;
 /// correspond to a step to the right and a step down in the coded one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct PictureTurn {
-    right: (i8, i8),
-    down: (i8, i8),
+    right: (i32, i32),
+    down: (i32, i32),
 }
 
 impl PictureTurn {
@@ -24,8 +24,7 @@ impl PictureTurn {
         let (a, b) = (fields.read_i32()?, fields.read_i32()?);
         fields.read_i32()?;
         let (c, d) = (fields.read_i32()?, fields.read_i32()?);
-        let sign = |number: i32| number.signum() as i8;
-        let turn = Self { right: (sign(a), sign(b)), down: (sign(c), sign(d)) };
+        let turn = Self { right: (a.signum(), b.signum()), down: (c.signum(), d.signum()) };
         let is_turn = (b == 0 && c == 0 && a != 0 && d != 0) || (a == 0 && d == 0 && b != 0 && c != 0);
         Ok(if is_turn { turn } else { Self::NO_TURN })
     }
@@ -35,18 +34,21 @@ impl PictureTurn {
         if self == Self::NO_TURN {
             return coded;
         }
-        let (width, height) = (coded.width_px() as usize, coded.height_px() as usize);
-        let (shown_width, shown_height) = if self.right.0 == 0 { (height, width) } else { (width, height) };
+        let (width_px, height_px) = (coded.width_px(), coded.height_px());
+        let (shown_width_px, shown_height_px) =
+            if self.right.0 == 0 { (height_px, width_px) } else { (width_px, height_px) };
+        let (width, height) = (width_px as usize, height_px as usize);
         // The inverse of a turn is its transpose; where a step leads backwards, counting starts from the far end.
         let (x, y) = (TurnAxis::new(self.right, width), TurnAxis::new(self.down, height));
-        let mut rgb = Vec::with_capacity(coded.rgb_bytes().len());
-        for shown_y in 0..shown_height {
-            for shown_x in 0..shown_width {
-                let at = (y.coded_at(shown_x, shown_y) * width + x.coded_at(shown_x, shown_y)) * 3;
-                rgb.extend_from_slice(&coded.rgb_bytes()[at..at + 3]);
+        let pixels = coded.rgb_bytes().as_chunks::<3>().0;
+        let mut rgb: Vec<u8> = Vec::with_capacity(coded.rgb_bytes().len());
+        for shown_y in 0..shown_height_px as usize {
+            for shown_x in 0..shown_width_px as usize {
+                let at = y.coded_at(shown_x, shown_y) * width + x.coded_at(shown_x, shown_y);
+                rgb.extend(pixels.get(at).copied().unwrap_or_default());
             }
         }
-        Image::new(shown_width as u32, shown_height as u32, rgb).unwrap_or(coded)
+        Image::new(shown_width_px, shown_height_px, rgb).unwrap_or(coded)
     }
 }
 
@@ -59,7 +61,7 @@ struct TurnAxis {
 }
 
 impl TurnAxis {
-    fn new((x, y): (i8, i8), length: usize) -> Self {
+    fn new((x, y): (i32, i32), length: usize) -> Self {
         Self { along_x: x != 0, from_end: (x + y < 0).then(|| length.saturating_sub(1)) }
     }
 

@@ -8,13 +8,16 @@ use std::collections::BTreeSet;
 
 /// A text as words with its marks and its names.
 pub(super) struct ListenerText {
+    /// All words, in lower case.
     pub words: Vec<String>,
     /// For each word, whether it is the first of the text or after a mark.
     pub(super) after_mark: Vec<bool>,
+    /// The names of rooms and things among the words.
     pub(super) names: Vec<LexiconName>,
 }
 
 impl ListenerText {
+    /// Splits a text. `known`: names of things in addition to those of the lexicon.
     pub(super) fn from_text(text: &str, known: &BTreeSet<String>) -> Self {
         let (mut all, mut after_mark) = (Vec::new(), Vec::new());
         for part in text.split(['.', ',', ';', ':', '!', '?']) {
@@ -58,6 +61,7 @@ impl ListenerText {
         !is_small && matches!(next, "the" | "a" | "an" | "on" | "off" | "me" | "up" | "down" | "out")
     }
 
+    /// Whether a clause gives a task. Its first word that is no filler decides.
     pub(super) fn is_task(&self, [from, to]: [usize; 2]) -> bool {
         let Some(at) = (from..to).find(|at| !FILLER_WORDS.contains(&self.words[*at].as_str())) else { return false };
         let next = self.words.get(at + 1).filter(|_| at + 1 < to).map_or("", String::as_str);
@@ -78,6 +82,7 @@ impl ListenerText {
         }
     }
 
+    /// Whether words of a range name stairs or a side, so that "take" and "make" command a move: "take the stairs".
     pub(super) fn names_stairs(&self, from: usize, to: usize) -> bool {
         self.words[from..to]
             .iter()

@@ -24,8 +24,13 @@ impl TargetListener<'_> {
         if first.is_some_and(|relation| self.denies_relation(object, relation, &alike)) {
             return Some("relation");
         }
-        let seen: BTreeSet<usize> =
-            self.related_objects().objects.into_iter().chain([object]).filter(|one| self.is_in_view(*one)).collect();
+        let seen: BTreeSet<usize> = self
+            .related_objects()
+            .objects
+            .into_iter()
+            .chain([object])
+            .filter(|other| self.is_in_view(*other))
+            .collect();
         if !self.is_in_view(object) {
             return None;
         }
@@ -39,6 +44,8 @@ impl TargetListener<'_> {
             .map(|_| "side")
     }
 
+    /// Whether the positions of the landmarks surely contradict a relation of an object. `namesakes`: the objects of its
+    /// name.
     fn denies_relation(&self, object: usize, relation: &TargetRelation, namesakes: &BTreeSet<usize>) -> bool {
         let place = self.scene.objects[object].position;
         let spots = self.landmark_positions(&relation.to[0], Some(object));

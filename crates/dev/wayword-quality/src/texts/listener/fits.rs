@@ -8,36 +8,45 @@ use super::{
 use std::{collections::BTreeSet, f64::consts::PI};
 use wayword_core::{DVec3, Heading};
 
-/// Objects that a text relates are this near to each other, metres.
+/// Objects that a text relates ("next to the lamp") are at most this far from each other, metres.
 pub(super) const NEAR_M: f64 = 1.5;
 /// The geometry denies a relation between objects that are farther from each other than this, metres.
 pub(super) const FAR_M: f64 = 3.0;
-/// A room is near within this, metres.
+/// A room is near an object up to this distance from one of its viewpoints, metres.
 pub(super) const NEAR_ROOM_M: f64 = 3.0;
 /// An object is above another if it is at least this much higher, metres.
 pub(super) const ABOVE_M: f64 = 0.15;
-/// Things between two others are this near to the line, metres.
+/// A thing between two others is at most this far from the line between them, metres.
 pub(super) const BETWEEN_M: f64 = 0.8;
-/// Angles within this of ahead are on neither side, radians.
+/// A thing up to this far from straight ahead is on neither side, radians.
 pub(super) const AHEAD_RAD: f64 = 0.26;
-/// Angles (radians), distances and heights (metres) that differ by less than this do not deny a rank.
+/// Two directions that differ by less than this do not deny a rank such as "the leftmost", radians.
 pub(super) const SLACK_RAD: f64 = 0.15;
+/// Two distances that differ by less than this do not deny a rank such as "the nearest", metres.
 pub(super) const SLACK_M: f64 = 0.5;
+/// Two heights that differ by less than this do not deny a rank such as "the highest", metres.
 pub(super) const SLACK_HEIGHT_M: f64 = 0.25;
 
-/// The end of a walk: the viewpoint, the position of the eye, the heading on arrival, the storey of the start and the highest storey.
+/// The end of a walk.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ListenerArrival {
+    /// The index of the last viewpoint.
     pub(super) at: usize,
+    /// The position of the eye.
     pub(super) eye: DVec3,
+    /// The heading on arrival.
     pub(super) heading: Heading,
+    /// The storey of the start, where it is known.
     pub(super) start_level: Option<u32>,
+    /// The highest storey of the building, where storeys are known.
     pub(super) top_level: Option<u32>,
 }
 
 /// A listener at the end of a walk, who compares a description with the objects of a building.
 pub(super) struct TargetListener<'a> {
+    /// The building.
     pub(super) scene: &'a ListenerScene,
+    /// The description that is compared.
     pub(super) said: &'a TargetDescription,
     pub(super) arrival: ListenerArrival,
 }
@@ -61,39 +70,39 @@ impl RemainingObjects {
 impl TargetListener<'_> {
     /// The objects that fit the whole description, as far as labels can confirm it.
     pub(super) fn fitting_objects(&self) -> RemainingObjects {
-        let mut left = self.related_objects();
+        let mut remaining = self.related_objects();
         if !self.said.ranks.is_empty() {
             let has_all = |object: usize, among: &BTreeSet<usize>| {
                 let seen = among.iter().copied().filter(|object| self.is_in_view(*object)).collect();
                 let mut ranks = self.said.ranks.iter();
                 self.is_in_view(object) && ranks.all(|rank| self.has_rank(object, *rank, &seen, false))
             };
-            left = left.narrow_by(has_all);
+            remaining = remaining.narrow_by(has_all);
         }
-        let Some(side) = self.said.side else { return left };
-        left.narrow_by(|object, among| self.on_side(among, side).contains(&object))
+        let Some(side) = self.said.side else { return remaining };
+        remaining.narrow_by(|object, among| self.on_side(among, side).contains(&object))
     }
 
     /// The objects that fit the name, the level and the room.
     pub(super) fn objects_in_room(&self) -> RemainingObjects {
-        let left = RemainingObjects { objects: self.scene.objects_called(&self.said.name).collect(), left_out: 0 };
-        let left = left.narrow_by(|object, _| self.fits_level(object));
-        let Some(said) = &self.said.room else { return left };
+        let remaining = RemainingObjects { objects: self.scene.objects_called(&self.said.name).collect(), left_out: 0 };
+        let remaining = remaining.narrow_by(|object, _| self.fits_level(object));
+        let Some(described) = &self.said.room else { return remaining };
         let rooms = |object: usize| &self.scene.objects[object].rooms;
-        let mut left = left;
-        if !said.name.is_empty() {
-            let kinds = self.scene.rooms_called(&said.name);
-            left = left.narrow_by(|object, _| !rooms(object).is_disjoint(&kinds));
+        let mut remaining = remaining;
+        if !described.name.is_empty() {
+            let kinds = self.scene.rooms_called(&described.name);
+            remaining = remaining.narrow_by(|object, _| !rooms(object).is_disjoint(&kinds));
         }
-        for thing in &said.things {
-            left = left.narrow_by(|object, _| rooms(object).iter().any(|room| self.room_has(*room, thing)));
+        for thing in &described.things {
+            remaining = remaining.narrow_by(|object, _| rooms(object).iter().any(|room| self.room_has(*room, thing)));
         }
-        for name in &said.beside {
+        for name in &described.beside {
             let kinds = self.scene.rooms_called(name);
             let is_beside = |room: &usize| !kinds.is_disjoint(&self.scene.rooms[*room].beside);
-            left = left.narrow_by(|object, _| rooms(object).iter().any(is_beside));
+            remaining = remaining.narrow_by(|object, _| rooms(object).iter().any(is_beside));
         }
-        left
+        remaining
     }
 
     /// Whether a room has a thing.
@@ -104,17 +113,18 @@ impl TargetListener<'_> {
     /// The objects that fit the relations too. A relation after the first may belong to the thing before it: in "the vase on the table by
     /// the window" the table is by the window.
     pub(super) fn related_objects(&self) -> RemainingObjects {
-        let mut left = self.objects_in_room();
+        let mut remaining = self.objects_in_room();
         for at in 0..self.said.relations.len() {
-            left = if self.is_unknown(&self.said.relations[at]) {
-                RemainingObjects { left_out: left.left_out + 1, ..left }
+            remaining = if self.is_unknown(&self.said.relations[at]) {
+                RemainingObjects { left_out: remaining.left_out + 1, ..remaining }
             } else {
-                left.narrow_by(|object, among| self.fits_relation(object, at, among))
+                remaining.narrow_by(|object, among| self.fits_relation(object, at, among))
             };
         }
-        left
+        remaining
     }
 
+    /// Whether an object has the relation number `at`, or a thing near it does that an earlier relation names.
     pub(super) fn fits_relation(&self, object: usize, at: usize, namesakes: &BTreeSet<usize>) -> bool {
         let relation = &self.said.relations[at];
         let place = self.scene.objects[object].position;
@@ -131,10 +141,11 @@ impl TargetListener<'_> {
         relation.how == RelationKind::Unknown || !relation.to.iter().all(lists)
     }
 
+    /// Whether an object is on the storey of the description; true where one of the two is not known.
     pub(super) fn fits_level(&self, object: usize) -> bool {
-        let (Some(said), Some(level)) = (self.said.level, self.scene.objects[object].level) else { return true };
+        let (Some(mention), Some(level)) = (self.said.level, self.scene.objects[object].level) else { return true };
         let than_start = |fits: &dyn Fn(u32) -> bool| self.arrival.start_level.is_none_or(fits);
-        match said {
+        match mention {
             LevelMention::Number(number) => level == number,
             LevelMention::Up => than_start(&|start| level > start),
             LevelMention::Down => than_start(&|start| level < start),
@@ -156,6 +167,7 @@ impl TargetListener<'_> {
         called.map(|object| self.scene.objects[object].position).collect()
     }
 
+    /// Whether an object has a relation to its landmarks, by the positions of both.
     pub(super) fn relation_holds(&self, object: usize, relation: &TargetRelation, namesakes: &BTreeSet<usize>) -> bool {
         let place = self.scene.objects[object].position;
         let spots = self.landmark_positions(&relation.to[0], Some(object));
@@ -192,11 +204,13 @@ impl TargetListener<'_> {
         namesakes.iter().filter(in_room).map(|other| self.scene.objects[*other].position)
     }
 
+    /// Whether no rival is nearer to a spot, beyond `slack_m`.
     pub(super) fn is_nearest(&self, object: usize, spot: DVec3, namesakes: &BTreeSet<usize>, slack_m: f64) -> bool {
         let own_m = self.scene.objects[object].position.distance(spot);
         self.rival_positions(object, namesakes).all(|other| other.distance(spot) > own_m - slack_m)
     }
 
+    /// Whether no rival is farther from the nearest of some spots, beyond `slack_m`.
     pub(super) fn is_farthest(
         &self,
         object: usize,
@@ -221,6 +235,7 @@ impl TargetListener<'_> {
         towards.map_or(0.0, |towards| self.arrival.heading.turn_to(towards))
     }
 
+    /// Whether an object is in view from the end of the walk.
     pub(super) fn is_in_view(&self, object: usize) -> bool {
         self.scene.objects[object].seen_from.contains(&self.arrival.at)
     }
@@ -234,11 +249,11 @@ impl TargetListener<'_> {
 
     /// The objects on a side. "On the left" may mean the leftmost of several.
     pub(super) fn on_side(&self, objects: &BTreeSet<usize>, side: ArrivalSide) -> BTreeSet<usize> {
-        let on = |object: &usize| {
+        let is_on_side = |object: &usize| {
             let turn = self.turn_to_object(*object) * if side.is_left { -1.0 } else { 1.0 };
             self.is_in_view(*object) && (AHEAD_RAD..PI - AHEAD_RAD).contains(&turn)
         };
-        let there: BTreeSet<usize> = objects.iter().copied().filter(on).collect();
+        let there: BTreeSet<usize> = objects.iter().copied().filter(is_on_side).collect();
         if side.is_yours || there.len() == 1 {
             return there;
         }
@@ -254,6 +269,7 @@ impl TargetListener<'_> {
         let bearing = |object: usize| middle.turn_to(self.heading_to(object));
         let range_m = |object: usize| (self.scene.objects[object].position - self.arrival.eye).length();
         let height_m = |object: usize| self.scene.objects[object].position.z;
+        // Whether the object has the least value among the others.
         let first = |value: &dyn Fn(usize) -> f64, slack: f64| {
             among.iter().filter(|other| **other != object).all(|other| value(*other) > value(object) - slack)
         };
@@ -282,19 +298,22 @@ impl TargetListener<'_> {
         }
     }
 
+    /// The direction of an object from the end of the walk.
     pub(super) fn heading_to(&self, object: usize) -> Heading {
         Heading::towards(self.arrival.eye, self.scene.objects[object].position).unwrap_or(self.arrival.heading)
     }
 
     /// The direction of the middle of some objects.
     pub(super) fn middle_heading(&self, objects: &BTreeSet<usize>) -> Heading {
-        let sum =
-            objects.iter().map(|object| self.heading_to(*object).unit_vector()).fold(DVec3::ZERO, |sum, one| sum + one);
+        let sum = objects
+            .iter()
+            .map(|object| self.heading_to(*object).unit_vector())
+            .fold(DVec3::ZERO, |sum, unit| sum + unit);
         Heading::towards(DVec3::ZERO, sum).unwrap_or(self.arrival.heading)
     }
 }
 
-/// Whether a place lies near the line between two spots, and between them.
+/// Whether a place lies at most `off_m` from the line between two spots, and between them.
 pub(super) fn is_between(place: DVec3, a: DVec3, b: DVec3, off_m: f64) -> bool {
     let along = b - a;
     let share = (place - a).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);

@@ -24,7 +24,9 @@ use wayword_world::path_of;
 /// The listener's result for one text.
 #[derive(Debug, Clone, Default, Serialize)]
 pub(super) struct ListenerResult {
+    /// The id of the item.
     pub(super) item: String,
+    /// The text.
     pub(super) text: String,
     /// Whether the text names the target.
     is_named: bool,
@@ -55,6 +57,7 @@ impl ListenerResult {
         self.denied.is_some() || self.pins_another()
     }
 
+    /// Whether the text names the target, but only another object fits.
     fn pins_another(&self) -> bool {
         self.is_named && !self.fits_target && self.fitting == 1
     }
@@ -97,9 +100,9 @@ pub(super) fn hear_episodes(
             let start_level = path.frames.first().and_then(|frame| frame.level);
             let arrival =
                 ListenerArrival { at, eye: last.pose.position, heading: last.pose.heading, start_level, top_level };
-            let of =
+            let hear =
                 |text: &String| ListenerResult { item: episode.id.clone(), ..hear_text(&known, arrival, target, text) };
-            heard.extend(episode.instructions.iter().map(of));
+            heard.extend(episode.instructions.iter().map(hear));
         }
     }
     Ok(heard)
@@ -131,10 +134,11 @@ fn hear_text(scene: &ListenerScene, arrival: ListenerArrival, target: usize, tex
     heard
 }
 
+/// The rows of the table about targets.
 pub(super) fn listener_rows(heard: &[ListenerResult]) -> Vec<TextFigureRow> {
-    let of_all = |name: &str, is: &dyn Fn(&ListenerResult) -> bool| share_row(name, heard.iter().map(is));
-    let with_namesake = |name: &str, is: &dyn Fn(&ListenerResult) -> bool| {
-        share_row(name, heard.iter().filter(|heard| heard.has_namesake).map(is))
+    let of_all = |name: &str, counts: &dyn Fn(&ListenerResult) -> bool| share_row(name, heard.iter().map(counts));
+    let with_namesake = |name: &str, counts: &dyn Fn(&ListenerResult) -> bool| {
+        share_row(name, heard.iter().filter(|heard| heard.has_namesake).map(counts))
     };
     vec![
         of_all("the target is named", &|heard| heard.is_named),

@@ -14,8 +14,8 @@ use wayword_language::lexicon::is_plural;
 const MAX_GAP_WORDS: usize = 5;
 
 impl ListenerText {
-    /// Adds the ranks and looks in the words before the target's name.
-    pub(super) fn read_before(&self, target: usize, [from, _]: [usize; 2], said: &mut TargetDescription) {
+    /// Adds the ranks and looks in the words before the target's name, back to its article, at most six words.
+    pub(super) fn read_before(&self, target: usize, [from, _]: [usize; 2], description: &mut TargetDescription) {
         let name = &self.names[target];
         let first = name.start.saturating_sub(6).max(from);
         let mut at = name.start;
@@ -27,15 +27,15 @@ impl ListenerText {
         for at in at..name.start {
             let word = self.words[at].as_str();
             // An ordinal that counts ("the second picture from the left") is a rank and no look.
-            said.has_look |= LOOK_WORDS.contains(&word) && !self.is_ordinal_from(target, at);
+            description.has_look |= LOOK_WORDS.contains(&word) && !self.is_ordinal_from(target, at);
             let rank = RANK_WORDS.iter().find(|(other, _)| *other == word).map(|(_, rank)| *rank);
             // "The far left picture" is the leftmost.
             let is_far_side = word == "far" && matches!(self.words[at + 1].as_str(), "left" | "right");
-            said.ranks.extend(rank.filter(|_| !is_far_side));
+            description.ranks.extend(rank.filter(|_| !is_far_side));
             if let (Some(number), Some(from_left)) =
-                (ORDINAL_WORDS.iter().position(|one| *one == word), self.counts_from(target))
+                (ORDINAL_WORDS.iter().position(|ordinal| *ordinal == word), self.counts_from(target))
             {
-                said.ranks.push(if from_left {
+                description.ranks.push(if from_left {
                     NamesakeRank::FromLeft(number)
                 } else {
                     NamesakeRank::FromRight(number)
@@ -44,6 +44,7 @@ impl ListenerText {
         }
     }
 
+    /// Whether a word is an ordinal that counts from a side: "the second picture from the left".
     pub(super) fn is_ordinal_from(&self, target: usize, at: usize) -> bool {
         ORDINAL_WORDS.contains(&self.words[at].as_str()) && self.counts_from(target).is_some()
     }
@@ -58,22 +59,23 @@ impl ListenerText {
     }
 
     /// Adds the sides, ranks and relations in the words after the target's name, up to the end of its clause.
-    pub(super) fn read_after(&self, target: usize, [_, to]: [usize; 2], said: &mut TargetDescription) {
+    pub(super) fn read_after(&self, target: usize, [_, to]: [usize; 2], description: &mut TargetDescription) {
         let mut at = self.names[target].end;
+        // After "in the kitchen", sides, ranks and relations belong to the room.
         let mut holder_is_room = false;
         while at < to {
             if let Some((length, side)) = self.side_at(at, to).filter(|_| !holder_is_room) {
-                said.side = Some(side);
+                description.side = Some(side);
                 at += length;
                 continue;
             }
             let rank = self.rank_at(at, to).filter(|_| !holder_is_room);
             if let Some(rank) = rank {
-                said.ranks.push(rank);
+                description.ranks.push(rank);
                 at += 2;
                 continue;
             }
-            said.has_look |= !holder_is_room
+            description.has_look |= !holder_is_room
                 && at < self.names[target].end + 4
                 && LOOK_WORDS.contains(&self.words[at].as_str())
                 && !self.is_ordinal_from(target, at);
@@ -89,19 +91,20 @@ impl ListenerText {
             };
             let in_room = matches!(how, RelationKind::On) && landmarks[0].is_room;
             if !holder_is_room && !in_room && !landmarks.is_empty() {
-                said.relations.push(TargetRelation { how: *how, to: landmarks.clone() });
+                description.relations.push(TargetRelation { how: *how, to: landmarks.clone() });
             }
             holder_is_room = holder_is_room || in_room;
             at = end;
         }
     }
 
+    /// Whether a phrase is at a word, before the word `to`.
     pub(super) fn stands_at(&self, phrase: &str, at: usize, to: usize) -> bool {
         let length = phrase.split(' ').count();
         at + length <= to && phrase.split(' ').eq(self.words[at..at + length].iter().map(String::as_str))
     }
 
-    /// "On your left", "on the right side".
+    /// The side that words name ("on your left", "on the right side"), and how many words that takes.
     pub(super) fn side_at(&self, at: usize, to: usize) -> Option<(usize, ArrivalSide)> {
         let [first, second, side] =
             [0, 1, 2].map(|next| self.words.get(at + next).filter(|_| at + next < to).map_or("", String::as_str));
@@ -115,7 +118,7 @@ impl ListenerText {
         is_side.then_some((3, ArrivalSide { is_left, is_yours: second == "your" }))
     }
 
-    /// "Closest to you", "in the middle", "on top".
+    /// The rank that words name: "closest to you", "in the middle".
     pub(super) fn rank_at(&self, at: usize, to: usize) -> Option<NamesakeRank> {
         let phrases = [
             ("closest to you", NamesakeRank::Nearest),
@@ -134,7 +137,7 @@ impl ListenerText {
         (!is_of).then_some(found.1)
     }
 
-    /// The things that follow a relation.
+    /// The things that follow a relation, two for "between", and the index of the word after them.
     pub(super) fn read_landmarks(
         &self,
         from: usize,
@@ -196,16 +199,16 @@ impl ListenerText {
     }
 
     /// Adds the things and the neighbouring rooms that describe a room ("the bathroom with two sinks").
-    pub(super) fn of_room(&self, room: usize, to: usize, target: Option<usize>, said: &mut InRoom) {
+    pub(super) fn of_room(&self, room: usize, to: usize, target: Option<usize>, described: &mut InRoom) {
         let mut end = self.names[room].end;
         for (at, name) in self.names.iter().enumerate().skip(room + 1) {
             let between = &self.words[end..name.start.max(end)];
             let run = format!(" {} ", between.join(" "));
-            let is_told = OF_ROOMS.iter().any(|phrase| run.contains(&format!(" {phrase} ")));
+            let is_introduced = OF_ROOMS.iter().any(|phrase| run.contains(&format!(" {phrase} ")));
             if name.end > to
                 || Some(at) == target
                 || between.len() > MAX_GAP_WORDS
-                || !(is_told || run.contains(" and "))
+                || !(is_introduced || run.contains(" and "))
             {
                 break;
             }
@@ -213,9 +216,9 @@ impl ListenerText {
                 continue;
             }
             if name.is_room && !name.is_thing {
-                said.beside.push(name.room_word());
+                described.beside.push(name.room_word());
             } else if name.is_thing {
-                said.things.push(name.name.clone());
+                described.things.push(name.name.clone());
             }
             end = name.end;
         }
@@ -224,8 +227,9 @@ impl ListenerText {
     /// The level that the text ends on.
     pub(super) fn read_level(&self) -> Option<LevelMention> {
         let number = |word: &str| {
-            let written =
-                [&ORDINAL_WORDS, &NUMBER_WORDS].into_iter().find_map(|list| list.iter().position(|one| *one == word));
+            let written = [&ORDINAL_WORDS, &NUMBER_WORDS]
+                .into_iter()
+                .find_map(|list| list.iter().position(|number| *number == word));
             let digits = word.trim_end_matches(char::is_alphabetic);
             written.map(|at| at as u32 + 1).or_else(|| digits.parse().ok())
         };

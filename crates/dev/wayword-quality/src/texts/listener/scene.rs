@@ -16,31 +16,40 @@ const CROSSING_ROUNDS: usize = 60;
 
 /// A building with its objects and rooms.
 pub(super) struct ListenerScene {
+    /// Its objects, each once.
     pub(super) objects: Vec<ListenerObject>,
+    /// Its rooms.
     pub(super) rooms: Vec<ListenerRoom>,
+    /// The positions of its viewpoints.
     pub(super) viewpoints: Vec<DVec3>,
     /// The room of each viewpoint.
     room_of: Vec<usize>,
     /// The names of the objects, in normal spelling.
     pub(super) names: BTreeSet<String>,
+    /// The index of each viewpoint by its id.
     places: BTreeMap<String, usize>,
 }
 
 /// An object.
 pub(super) struct ListenerObject {
     pub(super) id: ObjectId,
+    /// The kinds of thing that its name means, the most specific first.
     pub(super) kinds: Vec<String>,
+    /// The listed position, or else an estimate from the directions in which it is seen.
     pub(super) position: DVec3,
     /// The viewpoints that show it.
     pub(super) seen_from: BTreeSet<usize>,
     /// The rooms that it may lie in.
     pub(super) rooms: BTreeSet<usize>,
+    /// The storey of the nearest viewpoint that shows it.
     pub(super) level: Option<u32>,
 }
 
 /// A room: viewpoints of one storey that are joined and have the same name for it.
 pub(super) struct ListenerRoom {
+    /// The name; empty where the survey has none.
     pub(super) name: String,
+    /// The indices of its viewpoints.
     pub(super) viewpoints: Vec<usize>,
     /// The neighbouring rooms.
     pub(super) beside: BTreeSet<usize>,
@@ -64,8 +73,8 @@ impl ListenerScene {
         }
         let object = |(id, (name, position, rays)): (&ObjectId, (&str, Option<DVec3>, Vec<SightingRay>))| {
             let position = position.unwrap_or_else(|| crossing_point(&viewpoints, &rays));
-            let far = |(at, _): &SightingRay| (viewpoints[*at].distance(position), *at);
-            let mut near: Vec<(f64, usize)> = rays.iter().map(far).collect();
+            let with_distance = |(at, _): &SightingRay| (viewpoints[*at].distance(position), *at);
+            let mut near: Vec<(f64, usize)> = rays.iter().map(with_distance).collect();
             near.sort_by(|a, b| a.0.total_cmp(&b.0));
             let as_near = near.iter().take_while(|(far_m, _)| *far_m <= near[0].0 + AS_NEAR_M);
             ListenerObject {
@@ -78,7 +87,8 @@ impl ListenerScene {
             }
         };
         let names = rays.values().map(|(name, ..)| normalise_name(name)).collect();
-        let places = survey.viewpoints().iter().enumerate().map(|(at, one)| (one.id.to_string(), at)).collect();
+        let places =
+            survey.viewpoints().iter().enumerate().map(|(at, viewpoint)| (viewpoint.id.to_string(), at)).collect();
         Self { objects: rays.into_iter().map(object).collect(), rooms, viewpoints, room_of, names, places }
     }
 
@@ -159,6 +169,7 @@ fn crossing_point(eyes: &[DVec3], rays: &[SightingRay]) -> DVec3 {
     let mean = |points: &mut dyn Iterator<Item = DVec3>| points.fold(DVec3::ZERO, |sum, point| sum + point) / count;
     let mut point = mean(&mut rays.iter().map(|(at, ray)| eyes[*at] + *ray * GUESS_M));
     for _ in 0..CROSSING_ROUNDS {
+        // The object is at least 0.3 m ahead of each eye.
         let onto = |(at, ray): &SightingRay| eyes[*at] + *ray * (point - eyes[*at]).dot(*ray).max(0.3);
         point = mean(&mut rays.iter().map(onto));
     }

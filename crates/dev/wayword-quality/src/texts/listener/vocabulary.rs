@@ -1,6 +1,6 @@
 //! The vocabulary of the listener. It is independent of the reader's lexicon.
 
-/// What sets a thing apart from its namesakes by its place among them.
+/// The place of a thing among its namesakes, which are the things of the same name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NamesakeRank {
     Leftmost,
@@ -10,14 +10,18 @@ pub(super) enum NamesakeRank {
     Highest,
     Lowest,
     Middle,
+    /// So many places from the leftmost, which has 0.
     FromLeft(usize),
+    /// So many places from the rightmost, which has 0.
     FromRight(usize),
 }
 
 /// How a thing lies to another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum RelationKind {
+    /// Nearer to the other thing than any namesake.
     Closest,
+    /// Farther from the other thing than any namesake.
     Farthest,
     Near,
     Above,
@@ -129,6 +133,7 @@ pub(super) const NO_VERBS: &[&str] = &[
     "the", "a", "an", "two", "three", "one", "other", "some", "its", "your", "is", "has", "with", "white", "black",
     "right", "left", "which", "that", "on", "in", "of", "next", "above", "below", "under", "by", "wood", "wooden",
 ];
+/// Words for a rank before a name.
 pub(super) const RANK_WORDS: &[(&str, NamesakeRank)] = &[
     ("leftmost", NamesakeRank::Leftmost),
     ("left", NamesakeRank::Leftmost),
@@ -150,7 +155,9 @@ pub(super) const RANK_WORDS: &[(&str, NamesakeRank)] = &[
     ("center", NamesakeRank::Middle),
     ("centre", NamesakeRank::Middle),
 ];
+/// Ordinals, from 1 on.
 pub(super) const ORDINAL_WORDS: [&str; 5] = ["first", "second", "third", "fourth", "fifth"];
+/// Numbers, from 1 on.
 pub(super) const NUMBER_WORDS: [&str; 5] = ["one", "two", "three", "four", "five"];
 /// Words for how something looks.
 pub(super) const LOOK_WORDS: &[&str] = &[

@@ -63,22 +63,23 @@ impl StepRelation {
     /// The relation of a place. `words` are those of its step before it; `earlier` is the place before it in the step, by
     /// its first word, and that place's relation.
     pub(super) fn from_place(place: &PlaceMention, words: &[TextToken], earlier: Option<(usize, Self)>) -> Self {
-        let said = Self::from_words(words, earlier);
+        let by_words = Self::from_words(words, earlier);
         match place.going {
-            None => said,
+            None => by_words,
             Some(PlaceMotion::Leaving) => Self::OutOf,
             Some(PlaceMotion::Entering) => Self::Into,
             Some(PlaceMotion::Through) => Self::Through,
             Some(PlaceMotion::Along | PlaceMotion::Around) => Self::Along,
             Some(PlaceMotion::Past) => Self::Past,
-            Some(PlaceMotion::Towards | PlaceMotion::Until) => match said {
-                Self::At | Self::Near | Self::Before | Self::In => said,
+            Some(PlaceMotion::Towards | PlaceMotion::Until) => match by_words {
+                Self::At | Self::Near | Self::Before | Self::In => by_words,
                 _ => Self::To,
             },
         }
     }
 
-    /// The relation by the last word before a place that expresses one.
+    /// The relation by the last word before a place that expresses one. In "past the sofa and the table" the table has the
+    /// relation of the sofa.
     fn from_words(words: &[TextToken], earlier: Option<(usize, Self)>) -> Self {
         let from = earlier.map_or(0, |(at, _)| at + 1).max(words.len().saturating_sub(RELATION_REACH_WORDS));
         let mut is_joined = false;
@@ -92,6 +93,7 @@ impl StepRelation {
         earlier.filter(|_| is_joined).map_or(Self::Plain, |(_, relation)| relation)
     }
 
+    /// The relation that a word expresses, given the word before it.
     fn of_word(word: &str, before: &str) -> Option<Self> {
         Some(match (word, before) {
             ("of", "out") => Self::OutOf,

@@ -3,12 +3,13 @@
 use crate::reading::{numbers::cardinal_number, tokens::TokenSlice, vocabulary as v};
 use wayword_core::Side;
 
-/// The side of the turn that ends at a token, its verb and its last token. `from` is the first of the words that may
-/// come between the verb and the token.
+/// The side of the turn that a token means, its verb and its last token. `from` is the first of the words that may come
+/// between the verb and the token.
 pub(super) fn clock_turn(tokens: TokenSlice<'_>, from: usize, at: usize) -> Option<(Side, Option<usize>, usize)> {
     let spins = |verb: &usize| v::SPINNING.contains(&tokens.word_at(*verb));
     let (side, last) = match tokens.word_at(at) {
         word @ ("clockwise" | "counterclockwise" | "anticlockwise") => {
+            // "Counter clockwise" in two words.
             let split = matches!(tokens.word_before(at), "counter" | "anti");
             let first = at - usize::from(split);
             let from = if split { first - gap_words(tokens, first) } else { from };
@@ -32,15 +33,15 @@ pub(super) fn clock_turn(tokens: TokenSlice<'_>, from: usize, at: usize) -> Opti
 fn gap_words(tokens: TokenSlice<'_>, at: usize) -> usize {
     const MAX_GAP_WORDS: usize = 4;
     let is_number = |word: &str| word.parse::<f64>().is_ok();
-    let may = |word: &str| {
+    let can_come_between = |word: &str| {
         v::BEFORE_SIDE.contains(&word) || v::BEFORE_SIDE_OF_TURN.contains(&word) || word == "at" || is_number(word)
     };
-    (0..at).rev().take(MAX_GAP_WORDS).take_while(|at| may(tokens.word_at(*at))).count()
+    (0..at).rev().take(MAX_GAP_WORDS).take_while(|at| can_come_between(tokens.word_at(*at))).count()
 }
 
 /// The side on which one looks after a turn of that many degrees; `None` after a full one.
-fn side_after_turn(degrees: f64, against: bool) -> Option<Side> {
-    match (degrees, against) {
+fn side_after_turn(degrees: f64, is_counterclockwise: bool) -> Option<Side> {
+    match (degrees, is_counterclockwise) {
         (150.0..210.0, _) => Some(Side::Behind),
         (330.0.., _) => None,
         (..180.0, false) | (180.0.., true) => Some(Side::Right),
@@ -48,6 +49,7 @@ fn side_after_turn(degrees: f64, against: bool) -> Option<Side> {
     }
 }
 
+/// The side of an hour on a clock that the walker faces: 3 is to the right. `None` for 11, 12 and 1, which are ahead.
 fn by_hour(word: &str) -> Option<Side> {
     match cardinal_number(word)? {
         2..=4 => Some(Side::Right),

@@ -17,28 +17,28 @@ use wayword_core::Side;
 pub(super) fn read_turns(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<TextEvent> {
     let text = TurnText::from_tokens(tokens);
     let mut turns: Vec<TextEvent> = Vec::new();
-    let mut told_in_sentence = false;
-    let mut verb_of_about = None;
+    let mut has_turn_in_sentence = false;
+    let mut turn_around_verb = None;
     for (at, clause) in clauses.iter().enumerate() {
         if tokens.get(at).is_some_and(TextToken::ends_sentence) {
-            (told_in_sentence, verb_of_about) = (false, None);
+            (has_turn_in_sentence, turn_around_verb) = (false, None);
         }
-        let found = match text.turn_around_at(at) {
+        let turn = match text.turn_around_at(at) {
             Some(about) => Some((Side::Behind, about.verb, about.last)),
             None => text
-                .turn_side_at(at, told_in_sentence)
+                .turn_side_at(at, has_turn_in_sentence)
                 .map(|(side, verb)| (side, verb, at))
                 .or_else(|| clock::clock_turn(tokens, text.before_side_of_turn[at], at)),
         };
-        let Some((side, verb, last)) = found else { continue };
+        let Some((side, verb, last)) = turn else { continue };
         // "Turn 180 degrees to the right" is one turn.
-        if verb.is_some() && verb == verb_of_about {
+        if verb.is_some() && verb == turn_around_verb {
             continue;
         }
         if side == Side::Behind {
-            verb_of_about = verb;
+            turn_around_verb = verb;
         }
-        told_in_sentence = true;
+        has_turn_in_sentence = true;
         let event = |first, last| TextEvent {
             what: EventContent::Turn(side),
             span: tokens.span_of(first, last),
@@ -46,12 +46,13 @@ pub(super) fn read_turns(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<TextE
             denied: false,
         };
         turns.push(event(at, last));
-        let (more, told_at) = repeated_turns::more_turns(tokens, at, last);
-        turns.extend((0..more).map(|_| event(told_at.0, told_at.1)));
+        let (more, (number_first, number_last)) = repeated_turns::more_turns(tokens, at, last);
+        turns.extend((0..more).map(|_| event(number_first, number_last)));
     }
     turns
 }
 
+/// The side that a word names, whether or not it is a turn.
 fn side_word(word: &str) -> Option<Side> {
     match word {
         "left" | "leftward" | "leftwards" | "lefts" => Some(Side::Left),
@@ -69,21 +70,24 @@ struct TurnAround {
 /// A text, and for each of its tokens the start of the run of words before it that may come between a verb and a turn.
 struct TurnText<'a> {
     tokens: TokenSlice<'a>,
+    /// For a turn around: "turn all the way around".
     before_about: Vec<usize>,
+    /// For a side behind any verb: "go to your left".
     before_side: Vec<usize>,
+    /// For a side behind a verb of turning, with more words between: "take the second left".
     before_side_of_turn: Vec<usize>,
 }
 
 impl<'a> TurnText<'a> {
     fn from_tokens(tokens: TokenSlice<'a>) -> Self {
         let is_number = |word: &str| word.chars().all(|c| c.is_ascii_digit() || c == '.');
-        let may_of_turn =
+        let can_follow_turning =
             |word: &str| v::BEFORE_SIDE.contains(&word) || v::BEFORE_SIDE_OF_TURN.contains(&word) || is_number(word);
         Self {
             tokens,
             before_about: tokens.runs_before(|word| v::BEFORE_ABOUT.contains(&word)),
             before_side: tokens.runs_before(|word| v::BEFORE_SIDE.contains(&word)),
-            before_side_of_turn: tokens.runs_before(may_of_turn),
+            before_side_of_turn: tokens.runs_before(can_follow_turning),
         }
     }
 
@@ -129,7 +133,7 @@ impl<'a> TurnText<'a> {
     }
 
     /// The side of the turn that a token means, and its verb, where it has one.
-    fn turn_side_at(&self, at: usize, told_before: bool) -> Option<(Side, Option<usize>)> {
+    fn turn_side_at(&self, at: usize, has_earlier_turn: bool) -> Option<(Side, Option<usize>)> {
         let side = side_word(self.word_at(at))?;
         let after = self.word_at(at + 1);
         let is_counted = repeated_turns::is_count(self.word_before(at));
@@ -143,12 +147,12 @@ impl<'a> TurnText<'a> {
         // The starts of the runs of words that may come between a verb and the side.
         let (from, far) = (self.before_side[at], self.before_side_of_turn[at]);
         let turning = far.checked_sub(1).filter(|verb| self.is_turning(*verb, far..at));
-        if self.tells_a_place(at, turning) || (side == Side::Right && self.is_adverb(at, turning, told_before)) {
+        if self.tells_a_place(at, turning) || (side == Side::Right && self.is_adverb(at, turning, has_earlier_turn)) {
             return None;
         }
         let is_turn = turning.is_some()
             || self.goes_there(from, at)
-            || self.stands_alone(from, at, told_before)
+            || self.stands_alone(from, at, has_earlier_turn)
             || self.follows_a_way(at);
         is_turn.then_some((side, turning))
     }
@@ -160,7 +164,7 @@ impl<'a> TurnText<'a> {
             || (matches!(word, "round" | "rounding") && between.any(|at| self.word_at(at) == "corner"))
     }
 
-    /// "The left wall", "left of the sofa": the side distinguishes a thing, or locates one.
+    /// Whether the side distinguishes or locates a thing: "the left wall", "left of the sofa".
     fn tells_a_place(&self, at: usize, turning: Option<usize>) -> bool {
         let after = self.word_at(at + 1);
         if matches!(after, "of" | "side" | "hand" | "wall" | "corner" | "most") {
@@ -185,18 +189,19 @@ impl<'a> TurnText<'a> {
         of_a_noun || unknown_noun
     }
 
-    /// "Right before the sofa", "walk right up to the table": not a side.
-    fn is_adverb(&self, at: usize, turning: Option<usize>, told_before: bool) -> bool {
+    /// Whether "right" is an adverb and no side: "right before the sofa", "walk right up to the table".
+    fn is_adverb(&self, at: usize, turning: Option<usize>, has_earlier_turn: bool) -> bool {
         let after = self.word_at(at + 1);
         let before = self.tokens.word_before(at);
         // In "left, then right past the sofa" a second turn follows; in "stop, then right after the sofa" none does.
-        let directly = !v::BEFORE_SIDE.contains(&before) || (matches!(before, "and" | "then") && !told_before);
+        let directly = !v::BEFORE_SIDE.contains(&before) || (matches!(before, "and" | "then") && !has_earlier_turn);
         matches!(after, "away" | "now")
             || (after == "around" && turning.is_some())
             || (turning.is_none() && directly && v::AFTER_ADVERB_RIGHT.contains(&after))
     }
 
-    /// "Go left", "head to your right": a verb of going before the side, with the words between them from `from` on.
+    /// Whether the walk goes to the side: "go left", "head to your right". The words between the verb of going and the side
+    /// begin at `from`.
     fn goes_there(&self, from: usize, at: usize) -> bool {
         let verb = from.checked_sub(1).map_or("", |verb| self.word_at(verb));
         let mut skipped = (from..at).map(|at| self.word_at(at));
@@ -209,8 +214,8 @@ impl<'a> TurnText<'a> {
                 || skipped.all(|word| matches!(word, "immediately" | "slightly" | "slight" | "then" | "back")))
     }
 
-    /// ", then left", "and left.", "Left at the sofa": a side that is a clause by itself.
-    fn stands_alone(&self, from: usize, at: usize, told_before: bool) -> bool {
+    /// Whether the side is a clause by itself: ", then left", "and left.", "Left at the sofa".
+    fn stands_alone(&self, from: usize, at: usize, has_earlier_turn: bool) -> bool {
         let skipped: Vec<&str> = (from..at).map(|at| self.word_at(at)).collect();
         let joined = skipped.iter().any(|word| matches!(*word, "and" | "then" | "but"));
         let again = skipped.iter().any(|word| matches!(*word, "another" | "again"));
@@ -219,14 +224,14 @@ impl<'a> TurnText<'a> {
         let ends = self.tokens.get(at + 1).is_none_or(|token| !token.is_word() && token.word != ")")
             || v::AFTER_SIDE.contains(&self.word_at(at + 1));
         // "On your left and right": not a turn where the side before was not one.
-        let lists_sides = joined && !told_before && from > 0 && side_word(self.word_at(from - 1)).is_some();
+        let lists_sides = joined && !has_earlier_turn && from > 0 && side_word(self.word_at(from - 1)).is_some();
         if lists_sides {
             return false;
         }
-        told_before && (again || (joined && !to) || (begins && !to)) || (ends && (joined || (begins && !to)))
+        has_earlier_turn && (again || (joined && !to) || (begins && !to)) || (ends && (joined || (begins && !to)))
     }
 
-    /// "Take the hallway left": a side after a way that is taken.
+    /// Whether the side follows a way that is taken: "take the hallway left".
     fn follows_a_way(&self, at: usize) -> bool {
         let ends = self.tokens.get(at + 1).is_none_or(|token| !token.is_word())
             || v::AFTER_SIDE.contains(&self.word_at(at + 1));

@@ -5,24 +5,25 @@ use crate::reading::{numbers::cardinal_number, tokens::TokenSlice, vocabulary as
 /// Most turns that one word means. More of them would lead in circles.
 const MAX_TURNS_PER_WORD: usize = 4;
 
-/// How many further turns the words give, and the tokens with their number. The turn's own tokens are `first` to
-/// `last`.
+/// How many further turns the words give, and the first and the last token of their number ("twice"). The turn's own
+/// tokens are `first` to `last`.
 pub(super) fn more_turns(tokens: TokenSlice<'_>, first: usize, last: usize) -> (usize, (usize, usize)) {
     let next = last + 1 + usize::from(matches!(tokens.word_at(last + 1), "turn" | "turns"));
-    let (times, told) = match (tokens.word_at(next), tokens.word_at(next + 1)) {
+    let (times, number_tokens) = match (tokens.word_at(next), tokens.word_at(next + 1)) {
         ("twice", _) => (2, (next, next)),
         ("thrice", _) => (3, (next, next)),
         (number, "times") => (number_of(number), (next, next + 1)),
         _ => (number_before(tokens, first, last), (first, last)),
     };
-    (times.clamp(1, MAX_TURNS_PER_WORD) - 1, told)
+    (times.clamp(1, MAX_TURNS_PER_WORD) - 1, number_tokens)
 }
 
+/// The number that a word counts; 1 where it counts nothing.
 fn number_of(word: &str) -> usize {
     cardinal_number(word).map_or(1, |number| number as usize)
 }
 
-/// "Two left turns", "two quick lefts", but not "two left doors".
+/// The number before a turn: "two left turns", "two quick lefts", but not "two left doors".
 fn number_before(tokens: TokenSlice<'_>, first: usize, last: usize) -> usize {
     let several = matches!(tokens.word_at(first), "lefts" | "rights") || tokens.word_at(last + 1) == "turns";
     let before = (first.saturating_sub(2)..first).rev().map(|at| tokens.word_at(at));

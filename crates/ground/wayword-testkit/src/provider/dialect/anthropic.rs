@@ -7,22 +7,23 @@ use serde_json::{Value, json};
 use wayword_core::MessageRole;
 
 pub(super) fn read_request(body: &Value) -> Result<ScriptRequest, &'static str> {
-    let mut heard = ScriptRequest { model: request_parts::text_field(body, "model")?, ..ScriptRequest::default() };
+    let mut request = ScriptRequest { model: request_parts::text_field(body, "model")?, ..ScriptRequest::default() };
     if let Some(system) = body.get("system") {
-        let text = read_content(system, &mut heard.pictures)?;
-        heard.messages.push((MessageRole::System, text));
+        let text = read_content(system, &mut request.pictures)?;
+        request.messages.push((MessageRole::System, text));
     }
     for message in request_parts::list_field(body, "messages")? {
         let role = request_parts::message_role(message)?;
-        let text = read_content(message.get("content").unwrap_or(&Value::Null), &mut heard.pictures)?;
-        heard.messages.push((role, text));
+        let text = read_content(message.get("content").unwrap_or(&Value::Null), &mut request.pictures)?;
+        request.messages.push((role, text));
     }
-    request_parts::read_sampling(&mut heard, body, &["max_tokens"]);
+    request_parts::read_sampling(&mut request, body, &["max_tokens"]);
     // The service refuses a request without it.
-    heard.max_tokens.ok_or("max_tokens: Field required")?;
-    Ok(heard)
+    request.max_tokens.ok_or("max_tokens: Field required")?;
+    Ok(request)
 }
 
+/// The text of a message, the parts joined by line ends. Its pictures are added to `pictures`.
 fn read_content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'static str> {
     let parts = match content {
         Value::String(text) => return Ok(text.clone()),
@@ -43,20 +44,20 @@ fn read_content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, 
     Ok(texts.join("\n"))
 }
 
-pub(super) fn reply_body(said: &ScriptReply) -> Value {
-    let (content, reason) = match said.end {
-        ReplyEnding::Stop if !said.calls.is_empty() => {
+pub(super) fn reply_body(reply: &ScriptReply) -> Value {
+    let (content, reason) = match reply.end {
+        ReplyEnding::Stop if !reply.calls.is_empty() => {
             let call = |(at, (name, input)): (usize, &(String, Value))| json!({ "type": "tool_use", "id": format!("toolu_{at}"), "name": name, "input": input });
-            (said.calls.iter().enumerate().map(call).collect(), "tool_use")
+            (reply.calls.iter().enumerate().map(call).collect(), "tool_use")
         }
-        ReplyEnding::Stop => (json!([{ "type": "text", "text": said.text }]), "end_turn"),
-        ReplyEnding::Length => (json!([{ "type": "text", "text": said.text }]), "max_tokens"),
+        ReplyEnding::Stop => (json!([{ "type": "text", "text": reply.text }]), "end_turn"),
+        ReplyEnding::Length => (json!([{ "type": "text", "text": reply.text }]), "max_tokens"),
         ReplyEnding::Filtered | ReplyEnding::Refused => (json!([]), "refusal"),
     };
     json!({
-        "id": "msg_test", "type": "message", "role": "assistant", "model": said.model, "content": content,
+        "id": "msg_test", "type": "message", "role": "assistant", "model": reply.model, "content": content,
         "stop_reason": reason, "stop_sequence": null,
-        "usage": { "input_tokens": said.tokens_in, "output_tokens": said.tokens_out },
+        "usage": { "input_tokens": reply.tokens_in, "output_tokens": reply.tokens_out },
     })
 }
 
@@ -78,8 +79,8 @@ pub(super) fn reset_headers(at: Timestamp) -> Vec<(&'static str, String)> {
     ]
 }
 
-pub(super) fn error_body(wrong: ServiceErrorKind, message: &str, details: Option<Value>) -> Value {
-    let kind = match wrong {
+pub(super) fn error_body(error_kind: ServiceErrorKind, message: &str, details: Option<Value>) -> Value {
+    let kind = match error_kind {
         ServiceErrorKind::Request | ServiceErrorKind::Quota => "invalid_request_error",
         ServiceErrorKind::Key => "authentication_error",
         ServiceErrorKind::Model => "not_found_error",

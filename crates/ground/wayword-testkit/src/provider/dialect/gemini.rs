@@ -6,26 +6,27 @@ use serde_json::{Value, json};
 use wayword_core::MessageRole;
 
 pub(super) fn read_request(body: &Value, model: &str) -> Result<ScriptRequest, &'static str> {
-    let mut heard = ScriptRequest { model: model.to_owned(), ..ScriptRequest::default() };
+    let mut request = ScriptRequest { model: model.to_owned(), ..ScriptRequest::default() };
     if let Some(system) = body.get("systemInstruction").or_else(|| body.get("system_instruction")) {
-        let text = read_content(system, &mut heard.pictures)?;
-        heard.messages.push((MessageRole::System, text));
+        let text = read_content(system, &mut request.pictures)?;
+        request.messages.push((MessageRole::System, text));
     }
     for message in request_parts::list_field(body, "contents")? {
         // A single content may lack its role.
         let role =
             if message.get("role").is_some() { request_parts::message_role(message)? } else { MessageRole::User };
-        let text = read_content(message, &mut heard.pictures)?;
-        heard.messages.push((role, text));
+        let text = read_content(message, &mut request.pictures)?;
+        request.messages.push((role, text));
     }
     request_parts::read_sampling(
-        &mut heard,
+        &mut request,
         body.get("generationConfig").unwrap_or(&Value::Null),
         &["maxOutputTokens"],
     );
-    Ok(heard)
+    Ok(request)
 }
 
+/// The text of a content, the parts joined by line ends. Its pictures are added to `pictures`.
 fn read_content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'static str> {
     let mut texts = Vec::new();
     for part in request_parts::list_field(content, "parts")? {
@@ -39,12 +40,12 @@ fn read_content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, 
     Ok(texts.join("\n"))
 }
 
-pub(super) fn reply_body(said: &ScriptReply) -> Value {
+pub(super) fn reply_body(reply: &ScriptReply) -> Value {
     let call = |(name, args): &(String, Value)| json!({ "functionCall": { "name": name, "args": args } });
-    let words = [json!({ "text": said.text })];
-    let parts: Vec<Value> = words.into_iter().chain(said.calls.iter().map(call)).collect();
+    let words = [json!({ "text": reply.text })];
+    let parts: Vec<Value> = words.into_iter().chain(reply.calls.iter().map(call)).collect();
     let content = json!({ "role": "model", "parts": parts });
-    let candidate = match said.end {
+    let candidate = match reply.end {
         ReplyEnding::Stop => json!({ "content": content, "finishReason": "STOP", "index": 0 }),
         ReplyEnding::Length => json!({ "content": content, "finishReason": "MAX_TOKENS", "index": 0 }),
         ReplyEnding::Filtered => json!({ "finishReason": "SAFETY", "index": 0 }),
@@ -53,10 +54,10 @@ pub(super) fn reply_body(said: &ScriptReply) -> Value {
     json!({
         "candidates": [candidate],
         "usageMetadata": {
-            "promptTokenCount": said.tokens_in, "candidatesTokenCount": said.tokens_out,
-            "totalTokenCount": said.tokens_in + said.tokens_out,
+            "promptTokenCount": reply.tokens_in, "candidatesTokenCount": reply.tokens_out,
+            "totalTokenCount": reply.tokens_in + reply.tokens_out,
         },
-        "modelVersion": said.model,
+        "modelVersion": reply.model,
     })
 }
 
@@ -69,8 +70,8 @@ pub(super) fn model_list(names: &[&str]) -> Value {
     json!({ "models": names.iter().map(model).collect::<Vec<_>>() })
 }
 
-pub(super) fn error_body(wrong: ServiceErrorKind, message: &str, details: Option<Value>, code: u16) -> Value {
-    let status = match wrong {
+pub(super) fn error_body(kind: ServiceErrorKind, message: &str, details: Option<Value>, code: u16) -> Value {
+    let status = match kind {
         ServiceErrorKind::Request => "INVALID_ARGUMENT",
         ServiceErrorKind::Key => "UNAUTHENTICATED",
         ServiceErrorKind::Model => "NOT_FOUND",
@@ -78,7 +79,7 @@ pub(super) fn error_body(wrong: ServiceErrorKind, message: &str, details: Option
         ServiceErrorKind::Server => "INTERNAL",
         ServiceErrorKind::Unavailable | ServiceErrorKind::Overloaded => "UNAVAILABLE",
     };
-    let details = if wrong == ServiceErrorKind::Quota { Some(day_is_over()) } else { details };
+    let details = if kind == ServiceErrorKind::Quota { Some(day_is_over()) } else { details };
     let mut error = json!({ "code": code, "message": message, "status": status });
     if let (Some(details), Some(error)) = (details, error.as_object_mut()) {
         error.insert("details".to_owned(), details);

@@ -33,10 +33,13 @@ pub enum ProviderDialect {
 /// A script's reply before it is written in a dialect.
 #[derive(Debug, Clone)]
 pub(super) struct ScriptReply {
+    /// The name of the model.
     pub(super) model: String,
+    /// The words of the reply.
     pub(super) text: String,
     /// Calls of tools: name and arguments. They are not in the text.
     pub(super) calls: Vec<(String, Value)>,
+    /// Why the reply ends.
     pub(super) end: ReplyEnding,
     /// Tokens of the request that are billed: one for four bytes of text, and a fixed number for each picture.
     pub(super) tokens_in: u64,
@@ -47,22 +50,34 @@ pub(super) struct ScriptReply {
 /// Why a reply ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ReplyEnding {
+    /// It is complete.
     Stop,
+    /// It reached the limit of tokens and was cut off.
     Length,
+    /// The service's filter withholds it.
     Filtered,
+    /// The model refuses to answer.
     Refused,
 }
 
 /// The kinds of errors that a service reports, about a request or about itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ServiceErrorKind {
+    /// The request is malformed.
     Request,
+    /// The key is missing or wrong.
     Key,
+    /// There is no such model.
     Model,
+    /// The account is empty.
     Quota,
+    /// Too many requests came for the rate.
     TooMany,
+    /// The service has an internal error.
     Server,
+    /// The service is not ready.
     Unavailable,
+    /// The service has too much to do.
     Overloaded,
 }
 
@@ -101,6 +116,7 @@ impl ProviderDialect {
         }
     }
 
+    /// The path before all addresses of the API.
     pub(super) fn base_path(self) -> &'static str {
         match self {
             Self::OpenAi | Self::Completions | Self::Anthropic => "/v1",
@@ -118,6 +134,7 @@ impl ProviderDialect {
         }
     }
 
+    /// Reads the body of a request, or returns the message of the error. `model` is the model's name if the address contains it.
     pub(super) fn read_request(self, body: &Value, model: Option<&str>) -> Result<ScriptRequest, &'static str> {
         match self {
             Self::OpenAi => openai::read_request(body),
@@ -128,13 +145,14 @@ impl ProviderDialect {
         }
     }
 
-    pub(super) fn reply_body(self, said: &ScriptReply) -> Value {
+    /// The body of a response with a reply.
+    pub(super) fn reply_body(self, reply: &ScriptReply) -> Value {
         match self {
-            Self::OpenAi => openai::reply_body(said),
-            Self::Completions => completions::reply_body(said),
-            Self::Anthropic => anthropic::reply_body(said),
-            Self::Gemini => gemini::reply_body(said),
-            Self::Ollama => ollama::reply_body(said),
+            Self::OpenAi => openai::reply_body(reply),
+            Self::Completions => completions::reply_body(reply),
+            Self::Anthropic => anthropic::reply_body(reply),
+            Self::Gemini => gemini::reply_body(reply),
+            Self::Ollama => ollama::reply_body(reply),
         }
     }
 
@@ -148,6 +166,7 @@ impl ProviderDialect {
         }
     }
 
+    /// The body of a response with the list of models.
     pub(super) fn model_list(self, names: &[&str]) -> Value {
         match self {
             Self::OpenAi | Self::Completions => openai::model_list(names),
@@ -157,18 +176,19 @@ impl ProviderDialect {
         }
     }
 
-    pub(super) fn error_body(self, wrong: ServiceErrorKind, message: &str, details: Option<Value>) -> Value {
+    /// The body of a response with an error. `details` are added where the dialect has a field for them.
+    pub(super) fn error_body(self, kind: ServiceErrorKind, message: &str, details: Option<Value>) -> Value {
         match self {
-            Self::OpenAi | Self::Completions => openai::error_body(wrong, message, details),
-            Self::Anthropic => anthropic::error_body(wrong, message, details),
-            Self::Gemini => gemini::error_body(wrong, message, details, self.status_code(wrong)),
+            Self::OpenAi | Self::Completions => openai::error_body(kind, message, details),
+            Self::Anthropic => anthropic::error_body(kind, message, details),
+            Self::Gemini => gemini::error_body(kind, message, details, self.status_code(kind)),
             Self::Ollama => ollama::error_body(message),
         }
     }
 
     /// An error as a response with its HTTP status.
-    pub(super) fn error_response(self, wrong: ServiceErrorKind, message: &str) -> Response {
-        self.error_response_with(wrong, message, Vec::new(), None)
+    pub(super) fn error_response(self, kind: ServiceErrorKind, message: &str) -> Response {
+        self.error_response_with(kind, message, Vec::new(), None)
     }
 
     /// A 429 that announces the wait in the given form.
@@ -183,13 +203,13 @@ impl ProviderDialect {
 
     fn error_response_with(
         self,
-        wrong: ServiceErrorKind,
+        kind: ServiceErrorKind,
         message: &str,
         headers: Vec<(&'static str, String)>,
         details: Option<Value>,
     ) -> Response {
-        let status = StatusCode::from_u16(self.status_code(wrong)).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
-        let body = self.error_body(wrong, message, details).to_string();
+        let status = StatusCode::from_u16(self.status_code(kind)).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
+        let body = self.error_body(kind, message, details).to_string();
         let mut response = (status, [(header::CONTENT_TYPE, "application/json")], body).into_response();
         for (name, value) in headers {
             if let Ok(value) = HeaderValue::from_str(&value) {
@@ -199,8 +219,8 @@ impl ProviderDialect {
         response
     }
 
-    fn status_code(self, wrong: ServiceErrorKind) -> u16 {
-        match wrong {
+    fn status_code(self, kind: ServiceErrorKind) -> u16 {
+        match kind {
             ServiceErrorKind::Request => 400,
             ServiceErrorKind::Key => 401,
             ServiceErrorKind::Model => 404,

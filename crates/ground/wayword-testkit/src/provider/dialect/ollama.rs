@@ -8,34 +8,34 @@ pub(super) fn read_request(body: &Value) -> Result<ScriptRequest, &'static str> 
     if body.get("stream") != Some(&Value::Bool(false)) {
         return Err("Only whole answers are given here: set stream to false.");
     }
-    let mut heard = ScriptRequest { model: request_parts::text_field(body, "model")?, ..ScriptRequest::default() };
+    let mut request = ScriptRequest { model: request_parts::text_field(body, "model")?, ..ScriptRequest::default() };
     for message in request_parts::list_field(body, "messages")? {
-        heard.messages.push((request_parts::message_role(message)?, request_parts::text_field(message, "content")?));
+        request.messages.push((request_parts::message_role(message)?, request_parts::text_field(message, "content")?));
         for image in message.get("images").and_then(Value::as_array).into_iter().flatten() {
-            heard.pictures.push(request_parts::decode_picture(image.as_str().ok_or("An image is not a text.")?)?);
+            request.pictures.push(request_parts::decode_picture(image.as_str().ok_or("An image is not a text.")?)?);
         }
     }
-    request_parts::read_sampling(&mut heard, body.get("options").unwrap_or(&Value::Null), &["num_predict"]);
-    Ok(heard)
+    request_parts::read_sampling(&mut request, body.get("options").unwrap_or(&Value::Null), &["num_predict"]);
+    Ok(request)
 }
 
-pub(super) fn reply_body(said: &ScriptReply) -> Value {
+pub(super) fn reply_body(reply: &ScriptReply) -> Value {
     // Ollama has no filter and no field for refusals: a model refuses in its text.
-    let (text, reason) = match said.end {
-        ReplyEnding::Stop => (said.text.as_str(), "stop"),
-        ReplyEnding::Length => (said.text.as_str(), "length"),
+    let (text, reason) = match reply.end {
+        ReplyEnding::Stop => (reply.text.as_str(), "stop"),
+        ReplyEnding::Length => (reply.text.as_str(), "length"),
         ReplyEnding::Filtered | ReplyEnding::Refused => (super::REFUSAL_TEXT, "stop"),
     };
     let mut message = json!({ "role": "assistant", "content": text });
-    if !said.calls.is_empty() {
+    if !reply.calls.is_empty() {
         let call =
             |(name, arguments): &(String, Value)| json!({ "function": { "name": name, "arguments": arguments } });
-        message["tool_calls"] = said.calls.iter().map(call).collect();
+        message["tool_calls"] = reply.calls.iter().map(call).collect();
     }
     json!({
-        "model": said.model, "created_at": "2026-01-01T00:00:00Z", "message": message,
+        "model": reply.model, "created_at": "2026-01-01T00:00:00Z", "message": message,
         "done": true, "done_reason": reason, "total_duration": 1_000_000, "load_duration": 0,
-        "prompt_eval_count": said.tokens_in, "prompt_eval_duration": 0, "eval_count": said.tokens_out, "eval_duration": 0,
+        "prompt_eval_count": reply.tokens_in, "prompt_eval_duration": 0, "eval_count": reply.tokens_out, "eval_duration": 0,
     })
 }
 

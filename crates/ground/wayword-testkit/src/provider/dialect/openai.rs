@@ -5,16 +5,17 @@ use crate::provider::ScriptRequest;
 use serde_json::{Value, json};
 
 pub(super) fn read_request(body: &Value) -> Result<ScriptRequest, &'static str> {
-    let mut heard = ScriptRequest { model: request_parts::text_field(body, "model")?, ..ScriptRequest::default() };
+    let mut request = ScriptRequest { model: request_parts::text_field(body, "model")?, ..ScriptRequest::default() };
     for message in request_parts::list_field(body, "messages")? {
         let role = request_parts::message_role(message)?;
-        let text = read_content(message.get("content").unwrap_or(&Value::Null), &mut heard.pictures)?;
-        heard.messages.push((role, text));
+        let text = read_content(message.get("content").unwrap_or(&Value::Null), &mut request.pictures)?;
+        request.messages.push((role, text));
     }
-    request_parts::read_sampling(&mut heard, body, &["max_completion_tokens", "max_tokens"]);
-    Ok(heard)
+    request_parts::read_sampling(&mut request, body, &["max_completion_tokens", "max_tokens"]);
+    Ok(request)
 }
 
+/// The text of a message, the parts joined by line ends. Its pictures are added to `pictures`.
 fn read_content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'static str> {
     let parts = match content {
         Value::String(text) => return Ok(text.clone()),
@@ -37,27 +38,28 @@ fn read_content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, 
     Ok(texts.join("\n"))
 }
 
-pub(super) fn reply_body(said: &ScriptReply) -> Value {
-    let message = match said.end {
-        ReplyEnding::Stop if !said.calls.is_empty() => {
+pub(super) fn reply_body(reply: &ScriptReply) -> Value {
+    let message = match reply.end {
+        ReplyEnding::Stop if !reply.calls.is_empty() => {
             let call = |(at, (name, arguments)): (usize, &(String, Value))| {
                 // The arguments are JSON within a text.
                 let function = json!({ "name": name, "arguments": arguments.to_string() });
                 json!({ "id": format!("call_{at}"), "type": "function", "function": function })
             };
-            let calls: Vec<Value> = said.calls.iter().enumerate().map(call).collect();
-            json!({ "role": "assistant", "content": said.text, "refusal": null, "tool_calls": calls })
+            let calls: Vec<Value> = reply.calls.iter().enumerate().map(call).collect();
+            json!({ "role": "assistant", "content": reply.text, "refusal": null, "tool_calls": calls })
         }
         ReplyEnding::Stop | ReplyEnding::Length => {
-            json!({ "role": "assistant", "content": said.text, "refusal": null })
+            json!({ "role": "assistant", "content": reply.text, "refusal": null })
         }
         ReplyEnding::Filtered => json!({ "role": "assistant", "content": "", "refusal": null }),
         ReplyEnding::Refused => json!({ "role": "assistant", "content": null, "refusal": super::REFUSAL_TEXT }),
     };
-    let choice = json!({ "index": 0, "message": message, "logprobs": null, "finish_reason": finish_reason(said.end) });
-    wrap_choice(said, "chat.completion", &choice)
+    let choice = json!({ "index": 0, "message": message, "logprobs": null, "finish_reason": finish_reason(reply.end) });
+    wrap_choice(reply, "chat.completion", &choice)
 }
 
+/// The service's word for why a reply ends.
 pub(super) fn finish_reason(end: ReplyEnding) -> &'static str {
     match end {
         ReplyEnding::Stop | ReplyEnding::Refused => "stop",
@@ -66,14 +68,14 @@ pub(super) fn finish_reason(end: ReplyEnding) -> &'static str {
     }
 }
 
-/// A choice within a whole reply.
-pub(super) fn wrap_choice(said: &ScriptReply, object: &str, choice: &Value) -> Value {
+/// The body of a reply with one choice. `object` is the service's name for the kind of reply.
+pub(super) fn wrap_choice(reply: &ScriptReply, object: &str, choice: &Value) -> Value {
     json!({
-        "id": "chatcmpl-test", "object": object, "created": 1_767_225_600, "model": said.model,
+        "id": "chatcmpl-test", "object": object, "created": 1_767_225_600, "model": reply.model,
         "choices": [choice],
         "usage": {
-            "prompt_tokens": said.tokens_in, "completion_tokens": said.tokens_out,
-            "total_tokens": said.tokens_in + said.tokens_out,
+            "prompt_tokens": reply.tokens_in, "completion_tokens": reply.tokens_out,
+            "total_tokens": reply.tokens_in + reply.tokens_out,
         },
     })
 }
@@ -87,8 +89,8 @@ pub(super) fn model_list(names: &[&str]) -> Value {
     json!({ "object": "list", "data": names.iter().map(model).collect::<Vec<_>>() })
 }
 
-pub(super) fn error_body(wrong: ServiceErrorKind, message: &str, details: Option<Value>) -> Value {
-    let (kind, code) = match wrong {
+pub(super) fn error_body(error_kind: ServiceErrorKind, message: &str, details: Option<Value>) -> Value {
+    let (kind, code) = match error_kind {
         ServiceErrorKind::Request => ("invalid_request_error", Value::Null),
         ServiceErrorKind::Key => ("invalid_request_error", "invalid_api_key".into()),
         ServiceErrorKind::Model => ("invalid_request_error", "model_not_found".into()),

@@ -17,12 +17,13 @@ pub struct ScriptedAuthor {
 /// A frame of the prompt: its caption, and the move that follows.
 struct PromptFrame<'a> {
     caption: &'a str,
+    /// The words of the move to the next frame, as "turns left"; `None` for the last frame.
     then: Option<&'a str>,
 }
 
 impl ModelScript for ScriptedAuthor {
-    fn reply(&self, heard: &ScriptRequest) -> String {
-        let prompt = heard.prompt();
+    fn reply(&self, request: &ScriptRequest) -> String {
+        let prompt = request.prompt();
         let frames = read_frames(prompt);
         let mut rng = rng_for_text(self.seed, prompt);
         let share = if prompt.contains("was refused because") { self.carelessness / 2.0 } else { self.carelessness };
@@ -44,6 +45,7 @@ impl ModelScript for ScriptedAuthor {
     }
 }
 
+/// The frames that a prompt lists.
 fn read_frames(prompt: &str) -> Vec<PromptFrame<'_>> {
     let mut frames: Vec<PromptFrame<'_>> = Vec::new();
     for line in prompt.lines() {
@@ -61,6 +63,7 @@ fn first_landmark(caption: &str) -> Option<String> {
     named_things(caption).into_iter().find(|name| !name.ends_with("room") && !name.ends_with("way") && name != "place")
 }
 
+/// One sentence about the end of the path, as in REVERIE.
 fn coarse_text(frames: &[PromptFrame<'_>], target: Option<&str>, careless: bool) -> String {
     let last = frames.last().and_then(|frame| first_landmark(frame.caption));
     let object = target.map(str::to_owned).or(last).unwrap_or_else(|| "door".to_owned());
@@ -68,6 +71,7 @@ fn coarse_text(frames: &[PromptFrame<'_>], target: Option<&str>, careless: bool)
     format!("Go on until you see the {object} and clean the {object}.")
 }
 
+/// A sentence for each move, as in R2R.
 fn fine_text(frames: &[PromptFrame<'_>], target: Option<&str>, careless: bool, rng: &mut impl Rng) -> String {
     let wrong = careless.then(|| rng.random_range(0..frames.len().max(1)));
     let absent = ["treadmill", "piano"].choose(rng).copied().unwrap_or("piano");

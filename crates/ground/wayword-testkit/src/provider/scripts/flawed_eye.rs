@@ -71,15 +71,15 @@ const HALLUCINATED_NAMES: [&str; 16] = [
     "sofa",
     "chandelier",
 ];
-/// Most objects that a description names.
+/// How many true objects a description names at most. Further ones are left out.
 const MOST_NAMED: usize = 9;
 
 impl ModelScript for FlawedEye {
-    fn reply(&self, heard: &ScriptRequest) -> String {
-        let Some(picture) = heard.pictures.first() else { return "I see no picture.".to_owned() };
+    fn reply(&self, request: &ScriptRequest) -> String {
+        let Some(picture) = request.pictures.first() else { return "I see no picture.".to_owned() };
         let known = barcode::read_number(picture).and_then(|id| Some((id, self.gallery.find_scenery(id)?)));
         let (id, scenery) = known.unwrap_or_else(|| invent_scenery(picture));
-        let text = heard.prompt();
+        let text = request.prompt();
         if text.contains("as JSON") {
             let again = text.contains("could not be read");
             return PictureLook { eye: self, id, scenery: &scenery }.structured_reply(again);
@@ -110,11 +110,13 @@ fn invent_scenery(picture: &[u8]) -> (u64, PictureScenery) {
 /// One picture with its contents, as one eye looks at it.
 struct PictureLook<'a> {
     eye: &'a FlawedEye,
+    /// The number of the picture, which all draws depend on.
     id: u64,
     scenery: &'a PictureScenery,
 }
 
 impl PictureLook<'_> {
+    /// A generator for draws about this picture. Equal purposes draw the same.
     fn rng_for_purpose(&self, about: &str) -> ChaCha8Rng {
         let mut hash = Sha256::new();
         hash.update(self.eye.seed.to_le_bytes());
@@ -123,6 +125,7 @@ impl PictureLook<'_> {
         ChaCha8Rng::from_seed(hash.finalize().into())
     }
 
+    /// A draw that is true with probability `share`.
     fn draw_chance(&self, share: f64, about: &str) -> bool {
         self.rng_for_purpose(about).random_bool(share.clamp(0.0, 1.0))
     }
@@ -144,8 +147,11 @@ impl PictureLook<'_> {
     /// The objects that it hallucinates in this picture, with the third that it places them in.
     fn hallucinated_things(&self) -> Vec<(&'static str, u8)> {
         let is_there = |object: &str| {
-            let last = object.rsplit(' ').next().unwrap_or(object);
-            self.scenery.things.iter().any(|thing| thing.name.contains(last) || object.contains(thing.name.as_str()))
+            let last_word = object.rsplit(' ').next().unwrap_or(object);
+            self.scenery
+                .things
+                .iter()
+                .any(|thing| thing.name.contains(last_word) || object.contains(thing.name.as_str()))
         };
         let mut rng = self.rng_for_purpose("ghosts");
         let share = self.eye.hallucinated_share.clamp(0.0, 0.9);
@@ -157,6 +163,7 @@ impl PictureLook<'_> {
         candidates.into_iter().take(count).map(|object| (object, rng.random_range(0..3))).collect()
     }
 
+    /// The answer to a question in lower case. The words of the question decide its kind.
     fn answer_question(&self, question: &str) -> String {
         let starts = |leads: &[&str]| leads.iter().any(|lead| question.starts_with(lead));
         if starts(&["is there", "are there", "do you see", "can you see", "is the", "are the", "does the"]) {
@@ -179,6 +186,7 @@ impl PictureLook<'_> {
         }
     }
 
+    /// A sentence that lists true and hallucinated objects, in random order.
     fn describe_picture(&self) -> String {
         let mut named: Vec<(&str, u8)> = self.noticed_things();
         named.extend(self.hallucinated_things());
@@ -201,6 +209,7 @@ impl PictureLook<'_> {
         let side = |third: u8| ["left", "middle", "right"][usize::from(third.min(2))];
         let colour = |name: &str| self.scenery.things.iter().find(|thing| thing.name == name)?.colour.clone();
         let item = |name: &str, third: u8, guessed: bool| {
+            // 30 % of the uncertain things come as two alternatives.
             let name = if guessed && self.draw_chance(0.3, &format!("or {name}")) {
                 format!("{name} or cabinet")
             } else {
@@ -211,39 +220,41 @@ impl PictureLook<'_> {
                 "side": side(third), "distance": "near", "sure": if guessed { "perhaps" } else { "sure" },
             })
         };
-        let seen = self.noticed_things();
-        let real = seen
+        let noticed = self.noticed_things();
+        let real = noticed
             .iter()
             .map(|(name, third)| item(name, *third, self.draw_chance(self.eye.hedge_share, &format!("hedge {name}"))));
-        let dreamt = self.hallucinated_things();
-        let dreamt = dreamt
+        let hallucinated = self.hallucinated_things();
+        let hallucinated = hallucinated
             .iter()
             .map(|(name, third)| item(name, *third, self.draw_chance(self.eye.doubt_share, &format!("doubt {name}"))));
-        let mut things: Vec<Value> = real.chain(dreamt).collect();
+        let mut things: Vec<Value> = real.chain(hallucinated).collect();
         things.shuffle(&mut self.rng_for_purpose("order"));
-        let ways: Vec<Value> = seen
+        let ways: Vec<Value> = noticed
             .iter()
             .filter(|(name, _)| name.contains("door"))
             .map(|(name, third)| json!({ "kind": name, "side": side(*third), "leads_to": "unknown" }))
             .collect();
-        let stands_out: Vec<&str> = seen.first().map(|(name, _)| *name).into_iter().collect();
+        let stands_out: Vec<&str> = noticed.first().map(|(name, _)| *name).into_iter().collect();
         let room = self.scenery.room.as_deref().unwrap_or("unknown");
         let answer =
             json!({ "room": room, "room_sure": "sure", "ways_out": ways, "things": things, "stands_out": stands_out });
-        // Models put JSON into a fence now and then.
+        // Models put JSON into a fence now and then; here a fifth of the answers.
         if self.draw_chance(0.2, "fence") { format!("```json\n{answer}\n```") } else { answer.to_string() }
     }
 
+    /// A sentence about the objects in a third of the picture.
     fn describe_third(&self, third: u8, lead: &str) -> String {
         let all = self.noticed_things().into_iter().chain(self.hallucinated_things());
         let there: Vec<String> = all.filter(|(_, at)| *at == third).map(|(name, _)| with_article(name)).collect();
         if there.is_empty() { "I am not sure.".to_owned() } else { format!("{lead} there is {}.", there.join(" and ")) }
     }
 
+    /// The answer to whether an object is there.
     fn answer_presence(&self, question: &str) -> String {
         let real = self.scenery.things.iter().find(|thing| mentions_name(question, &thing.name));
         let object = self.hallucinated_things().into_iter().find(|(name, _)| mentions_name(question, name));
-        let (seen, third) = match (real, object) {
+        let (affirms, third) = match (real, object) {
             (Some(GalleryThing { name, third, .. }), _) => {
                 (!self.draw_chance(self.eye.blindness_share, &format!("blind {name}")), *third)
             }
@@ -252,7 +263,7 @@ impl PictureLook<'_> {
             }
             (None, None) => (false, 0),
         };
-        match (seen, self.rng_for_purpose(question).random_range(0..3)) {
+        match (affirms, self.rng_for_purpose(question).random_range(0..3)) {
             (true, 0) => format!("Yes, it is {}.", place_phrase(third)),
             (true, _) => "Yes.".to_owned(),
             (false, 0) => "No.".to_owned(),
@@ -261,6 +272,7 @@ impl PictureLook<'_> {
         }
     }
 
+    /// The answer to a question about the colour of a thing.
     fn answer_colour(&self, question: &str) -> String {
         let thing = self.scenery.things.iter().find(|thing| mentions_name(question, &thing.name));
         match thing {
@@ -270,6 +282,7 @@ impl PictureLook<'_> {
     }
 }
 
+/// Whether a question contains the words of a name, in singular or plural.
 fn mentions_name(question: &str, name: &str) -> bool {
     let words = |text: &str| {
         let words = text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
@@ -279,10 +292,12 @@ fn mentions_name(question: &str, name: &str) -> bool {
     !name.is_empty() && question.windows(name.len()).any(|window| window == name)
 }
 
+/// A name with its article.
 fn with_article(name: &str) -> String {
     if name.starts_with(['a', 'e', 'i', 'o', 'u']) { format!("an {name}") } else { format!("a {name}") }
 }
 
+/// The words for a third of a picture: 0 left, 1 middle, 2 right.
 fn place_phrase(third: u8) -> &'static str {
     match third {
         0 => "on the left",

@@ -49,16 +49,16 @@ impl ScriptedCast {
 }
 
 impl ModelScript for ScriptedCast {
-    fn reply(&self, heard: &ScriptRequest) -> String {
-        let prompt = heard.prompt();
+    fn reply(&self, request: &ScriptRequest) -> String {
+        let prompt = request.prompt();
         if prompt.contains("Frame 0:") {
-            self.author.reply(heard)
-        } else if !heard.pictures.is_empty() {
-            self.eye.reply(heard)
+            self.author.reply(request)
+        } else if !request.pictures.is_empty() {
+            self.eye.reply(request)
         } else if prompt.contains("Ask one new question") {
-            self.questioner.reply(heard)
+            self.questioner.reply(request)
         } else if prompt.contains("Sum up") {
-            self.summariser.reply(heard)
+            self.summariser.reply(request)
         } else if prompt.contains("Describe the place in one sentence") {
             prompt_reading::condense_panorama(prompt)
         } else {
@@ -68,8 +68,8 @@ impl ModelScript for ScriptedCast {
 }
 
 impl<F: Fn(&ScriptRequest) -> String + Send + Sync> ModelScript for F {
-    fn reply(&self, heard: &ScriptRequest) -> String {
-        self(heard)
+    fn reply(&self, request: &ScriptRequest) -> String {
+        self(request)
     }
 }
 

@@ -23,17 +23,17 @@ pub(super) fn named_things(text: &str) -> Vec<String> {
     let mut things: Vec<String> = Vec::new();
     let mut at = 0;
     while at < words.len() {
-        let article = matches!(words[at].to_lowercase().as_str(), "a" | "an");
+        let is_article = matches!(words[at].to_lowercase().as_str(), "a" | "an");
         at += 1;
-        if !article {
+        if !is_article {
             continue;
         }
         let mut name: Vec<&str> = Vec::new();
         while at < words.len() && !NAME_END_WORDS.contains(&words[at]) && name.len() < 4 {
-            let ends = words[at].ends_with([',', '.']);
+            let is_last_word = words[at].ends_with([',', '.']);
             name.push(words[at].trim_end_matches([',', '.']));
             at += 1;
-            if ends {
+            if is_last_word {
                 break;
             }
         }
@@ -62,7 +62,7 @@ pub(super) fn with_article(name: &str) -> String {
     if name.starts_with(['a', 'e', 'i', 'o', 'u']) { format!("an {name}") } else { format!("a {name}") }
 }
 
-/// "a, b and c".
+/// Joins items as in "a, b and c".
 pub(super) fn join_with_and(items: &[String]) -> String {
     match items {
         [] => String::new(),
@@ -73,9 +73,9 @@ pub(super) fn join_with_and(items: &[String]) -> String {
 
 /// Summarises the views of a panorama in one sentence that names its first four things.
 pub(super) fn condense_panorama(prompt: &str) -> String {
-    let seen =
+    let sightings =
         prompt.split("It sees:").nth(1).and_then(|rest| rest.split("Describe the place").next()).unwrap_or_default();
-    let items: Vec<String> = named_things(seen).iter().take(4).map(|name| with_article(name)).collect();
+    let items: Vec<String> = named_things(sightings).iter().take(4).map(|name| with_article(name)).collect();
     if items.is_empty() { "A place.".to_owned() } else { format!("A place with {}.", join_with_and(&items)) }
 }
 

@@ -18,8 +18,8 @@ pub struct ScriptedQuestioner {
 }
 
 impl ModelScript for ScriptedQuestioner {
-    fn reply(&self, heard: &ScriptRequest) -> String {
-        let prompt = heard.prompt();
+    fn reply(&self, request: &ScriptRequest) -> String {
+        let prompt = request.prompt();
         let question = next_question(prompt);
         let mut rng = rng_for_text(self.seed, prompt);
         if !rng.random_bool(self.chatter) {
@@ -33,10 +33,11 @@ impl ModelScript for ScriptedQuestioner {
     }
 }
 
+/// The first question of the list that the dialogue does not have yet.
 fn next_question(prompt: &str) -> String {
-    let told = read_exchanges(prompt);
-    let asked = |question: &String| !told.iter().any(|(before, _)| before == question);
-    let named = told.first().map_or_else(Vec::new, |(_, answer)| named_things(answer));
+    let exchanges = read_exchanges(prompt);
+    let is_new = |question: &String| !exchanges.iter().any(|(before, _)| before == question);
+    let named = exchanges.first().map_or_else(Vec::new, |(_, answer)| named_things(answer));
     let doubts = named.iter().enumerate().map(|(at, name)| match at % 3 {
         0 => format!("Is there really {}?", with_article(name)),
         1 => format!("Is the {name} you mentioned really there?"),
@@ -44,5 +45,5 @@ fn next_question(prompt: &str) -> String {
     });
     let first = ["What kind of room is this?".to_owned()].into_iter();
     let last = ["What is on the left?", "What is on the right?", "What is the floor made of?"].map(str::to_owned);
-    first.chain(doubts).chain(last).find(asked).unwrap_or_else(|| "What else can you see?".to_owned())
+    first.chain(doubts).chain(last).find(is_new).unwrap_or_else(|| "What else can you see?".to_owned())
 }

@@ -18,14 +18,18 @@ pub struct ScriptedSummariser {
 }
 
 impl ModelScript for ScriptedSummariser {
-    fn reply(&self, heard: &ScriptRequest) -> String {
-        let prompt = heard.prompt();
-        let told = read_exchanges(prompt);
-        let named: Vec<String> =
-            told.iter().filter(|(_, answer)| !is_denial(answer)).flat_map(|(_, answer)| named_things(answer)).collect();
-        let room = named_room(&told);
-        let is_denied =
-            |name: &String| told.iter().any(|(question, answer)| is_denial(answer) && question.contains(name.as_str()));
+    fn reply(&self, request: &ScriptRequest) -> String {
+        let prompt = request.prompt();
+        let exchanges = read_exchanges(prompt);
+        let named: Vec<String> = exchanges
+            .iter()
+            .filter(|(_, answer)| !is_denial(answer))
+            .flat_map(|(_, answer)| named_things(answer))
+            .collect();
+        let room = named_room(&exchanges);
+        let is_denied = |name: &String| {
+            exchanges.iter().any(|(question, answer)| is_denial(answer) && question.contains(name.as_str()))
+        };
         let careless =
             !prompt.contains("was refused") && rng_for_text(self.seed, prompt).random_bool(self.carelessness);
         let mut kept: Vec<String> = Vec::new();

@@ -11,6 +11,7 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub struct TroubledScript {
     script: Arc<dyn ModelScript>,
+    /// The share of useless answers, 0 to 1.
     share: f64,
     seed: u64,
 }
@@ -24,12 +25,12 @@ impl TroubledScript {
 }
 
 impl ModelScript for TroubledScript {
-    fn reply(&self, heard: &ScriptRequest) -> String {
-        let prompt = heard.prompt();
-        let pictures: String = heard.pictures.iter().map(|bytes| String::from_utf8_lossy(bytes)).collect();
+    fn reply(&self, request: &ScriptRequest) -> String {
+        let prompt = request.prompt();
+        let pictures: String = request.pictures.iter().map(|bytes| String::from_utf8_lossy(bytes)).collect();
         let mut rng = rng_for_text(self.seed, &format!("trouble {prompt} {pictures}"));
         if !rng.random_bool(self.share) {
-            return self.script.reply(heard);
+            return self.script.reply(request);
         }
         match rng.random_range(0..4) {
             0 => String::new(),

@@ -26,11 +26,11 @@ const ROUNDED_M: f64 = 0.2;
 pub struct ScriptedWalker {
     gait: WalkerGait,
     seed: u64,
-    /// By instruction.
+    /// The route of each instruction, by its text.
     routes: BTreeMap<String, ScriptedRoute>,
 }
 
-/// The places of a route relative to its start, metres: to the right, ahead and up, as seen by the walker at the start.
+/// The places of a route relative to its start, metres: to the right, ahead and up of the walker as it looks at the start.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScriptedRoute(Vec<DVec3>);
 
@@ -74,15 +74,16 @@ impl ScriptedWalker {
     /// Takes the way that ends nearest to the next place of the route. The walker's progress along the route is the number of its
     /// hops, as long as that place matches its position; positions alone are ambiguous, because the map is rounded and places
     /// can lie close together.
-    fn along_route(&self, seen: &WalkPrompt<'_>) -> String {
-        let Some(ScriptedRoute(route)) = self.routes.get(seen.text) else {
+    fn along_route(&self, state: &WalkPrompt<'_>) -> String {
+        let Some(ScriptedRoute(route)) = self.routes.get(state.text) else {
             return "I do not know this one.".to_owned();
         };
-        let is_at = |place: &usize| route.get(*place).is_some_and(|place| place.distance(seen.here) < ROUNDED_M);
-        let strayed = || (0..route.len()).rev().find(is_at).unwrap_or_else(|| nearest_place(route, seen.here));
-        let here = Some(seen.hops).filter(is_at).unwrap_or_else(strayed);
+        let is_at = |place: &usize| route.get(*place).is_some_and(|place| place.distance(state.here) < ROUNDED_M);
+        let place_by_position =
+            || (0..route.len()).rev().find(is_at).unwrap_or_else(|| nearest_place(route, state.here));
+        let here = Some(state.hops).filter(is_at).unwrap_or_else(place_by_position);
         let Some(next) = route.get(here + 1) else { return format_call("stop", None, "the route ends here") };
-        let way = nearest_place(&seen.way_ends(), *next) + 1;
+        let way = nearest_place(&state.way_ends(), *next) + 1;
         format!(
             "{}\n{}",
             format_call("step", Some(way), "the route leads there"),
@@ -90,15 +91,17 @@ impl ScriptedWalker {
         )
     }
 
-    fn at_random(&self, seen: &WalkPrompt<'_>, prompt: &str, hops: usize) -> String {
-        if seen.hops >= hops || seen.ways.is_empty() {
+    /// Takes a random way, until `hops` hops were made.
+    fn at_random(&self, state: &WalkPrompt<'_>, prompt: &str, hops: usize) -> String {
+        if state.hops >= hops || state.ways.is_empty() {
             return format_call("stop", None, "enough");
         }
-        let way = rng_for_text(self.seed, prompt).random_range(1..=seen.ways.len());
+        let way = rng_for_text(self.seed, prompt).random_range(1..=state.ways.len());
         format_call("step", Some(way), "why not")
     }
 }
 
+/// A call of a tool as a script writes it, as `step {"way": 1, "why": "..."}`.
 fn format_call(tool: &str, way: Option<usize>, why: &str) -> String {
     let mut line = format!("{tool} {{");
     if let Some(way) = way {
@@ -110,19 +113,19 @@ fn format_call(tool: &str, way: Option<usize>, why: &str) -> String {
 
 /// The place nearest to another, by its number from 0.
 fn nearest_place(places: &[DVec3], to: DVec3) -> usize {
-    let far = |at: &usize| places[*at].distance(to);
-    (0..places.len()).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or_default()
+    let distance = |at: &usize| places[*at].distance(to);
+    (0..places.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or_default()
 }
 
 impl ModelScript for ScriptedWalker {
-    fn reply(&self, heard: &ScriptRequest) -> String {
-        let prompt = heard.prompt();
-        let Some(seen) = WalkPrompt::from_prompt(prompt) else { return "I was asked something else.".to_owned() };
+    fn reply(&self, request: &ScriptRequest) -> String {
+        let prompt = request.prompt();
+        let Some(state) = WalkPrompt::from_prompt(prompt) else { return "I was asked something else.".to_owned() };
         match self.gait {
-            WalkerGait::Route => self.along_route(&seen),
-            WalkerGait::Random(hops) => self.at_random(&seen, prompt, hops),
+            WalkerGait::Route => self.along_route(&state),
+            WalkerGait::Random(hops) => self.at_random(&state, prompt, hops),
             WalkerGait::Broken => {
-                let kind = rng_for_text(self.seed, seen.text).random_range(0..BROKEN_REPLIES.len());
+                let kind = rng_for_text(self.seed, state.text).random_range(0..BROKEN_REPLIES.len());
                 BROKEN_REPLIES[kind].to_owned()
             }
         }
@@ -131,7 +134,9 @@ impl ModelScript for ScriptedWalker {
 
 /// The state of the walk, as parsed from a prompt.
 struct WalkPrompt<'a> {
+    /// The instruction.
     text: &'a str,
+    /// The walker's place on the map of the prompt, metres: to the right, ahead and up of the start.
     here: DVec3,
     /// The direction in which the walker looks, radians to the right of how it looked at the start.
     heading_rad: f64,
@@ -142,6 +147,7 @@ struct WalkPrompt<'a> {
 }
 
 impl<'a> WalkPrompt<'a> {
+    /// Parses a prompt; `None` if it is not one for a step of a walk.
     fn from_prompt(prompt: &'a str) -> Option<Self> {
         let text = prompt.split("<instruction>\n").nth(1)?.split("\n</instruction>").next()?;
         let places: BTreeMap<usize, DVec3> = prompt.lines().filter_map(parse_place).collect();

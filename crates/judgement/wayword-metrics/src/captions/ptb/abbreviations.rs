@@ -1,7 +1,7 @@
 //! Abbreviations: words that keep the full stop after them. The lists were made by giving the reference tokenizer every word of up to
 //! four letters, and a list of longer ones.
 
-/// In small or capital letters.
+/// Abbreviations in small or capital letters, as `dr.` and `Dr.`.
 const ABBREVIATIONS_IN_ANY_CASE: &str = "\
 al cf co ct dr ft ga jr ky lt md mo mr ms mt ph rd rt sq sr st va vs vt wm \
 adj adm adv ala apr aug ave bhd cie col cos cpl dak dec det drs ens esq est etc ext feb fla fri gen gov hon inc ind \
@@ -11,10 +11,10 @@ alex ariz assn asst atty bldg blvd brig bros capt cmdr colo conn corp dept elec 
 mlle mont msgr natl okla penn pres prof reps sens sept supt tenn tues univ wisc \
 assoc attys calif comdr lieut messrs profs supts thurs treas";
 
-/// Only with a capital, because the words also mean something else.
+/// Abbreviations only with a capital, because the words also mean something else, as `Miss.` and `miss.`
 const CAPITALISED_ABBREVIATIONS: &str = "Az La Pa Ark Del Ill Ore Tex Mass Miss Wash";
 
-/// Not in capitals throughout.
+/// Abbreviations unless all letters are capitals.
 const NOT_IN_CAPITALS: &str = "mfg mtg pte pty ppte ppty ptes ptys";
 
 /// Abbreviations that often end a sentence. They keep the full stop even if a letter follows it directly.
@@ -24,14 +24,14 @@ kan ltd mar mon neb nev nov oct plc sep seq sys tel thu tue wed wis wyo ariz ass
 kans mich minn mont okla penn sept tenn tues univ wisc calif thurs az la pa ark del ill ore tex mass miss wash \
 pte pty ppte ppty ptes ptys";
 
-/// Only before a number, in small or capital letters.
+/// Abbreviations only before a number, in small or capital letters, as in `No. 5`.
 const BEFORE_A_NUMBER: &str = "ca no op pp art fig nos figs prop";
 
 fn list_contains(list: &str, word: &str) -> bool {
-    list.split(' ').any(|one| one.eq_ignore_ascii_case(word))
+    list.split(' ').any(|entry| entry.eq_ignore_ascii_case(word))
 }
 
-/// Whether a word keeps its full stop anywhere.
+/// Whether a word is an abbreviation that keeps its full stop in every place.
 pub(super) fn is_one(word: &str) -> bool {
     let is_capitalised = word.starts_with(|c: char| c.is_ascii_uppercase());
     let is_in_capitals = !word.contains(|c: char| c.is_ascii_lowercase());
@@ -40,12 +40,12 @@ pub(super) fn is_one(word: &str) -> bool {
         || !is_in_capitals && list_contains(NOT_IN_CAPITALS, word)
 }
 
-/// Whether a word keeps its full stop before one more letter.
+/// Whether a word is an abbreviation that keeps its full stop even if a letter follows directly, as in `etc.a`.
 pub(super) fn often_ends(word: &str) -> bool {
     is_one(word) && list_contains(SENTENCE_ENDING_ABBREVIATIONS, word)
 }
 
-/// Whether a word keeps its full stop before a number.
+/// Whether a word is an abbreviation that keeps its full stop before a number.
 pub(super) fn is_one_before_a_number(word: &str) -> bool {
     list_contains(BEFORE_A_NUMBER, word)
 }

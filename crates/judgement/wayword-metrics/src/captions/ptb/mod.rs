@@ -12,12 +12,14 @@ use shape::{SOFT_HYPHEN, TokenShapes};
 use shape_table::{SHAPE_ROWS, TokenExtent};
 use std::sync::LazyLock;
 
+/// The patterns of all rows of the table, as one automaton.
 static TOKEN_SHAPES: LazyLock<TokenShapes> = LazyLock::new(|| TokenShapes::new(SHAPE_ROWS.iter().map(|row| row.shape)));
 
 /// The reference writes a blank within a token as this no-break space.
 const NO_BREAK: char = '\u{a0}';
 
-/// Splits a text into tokens. White space is collapsed first ([`super::collapse_white_space`]), because the reference reads texts line by line.
+/// Splits a text into tokens. White space is collapsed first ([`super::collapse_white_space`]), because the reference reads texts
+/// line by line.
 #[must_use]
 pub fn ptb_tokens(text: &str) -> Vec<String> {
     let text: Vec<char> = super::collapse_white_space(text).chars().collect();
@@ -38,8 +40,8 @@ pub fn ptb_tokens(text: &str) -> Vec<String> {
 
 /// Finds the token at the beginning of a text: how much of the match becomes the token, and the token's length in characters.
 fn first_token(text: &[char]) -> (TokenExtent, usize) {
-    let found = TOKEN_SHAPES.longest_match(text, |row, length| length_of(row, text, length) > 0);
-    match found.and_then(|(row, length)| Some((SHAPE_ROWS.get(row)?.taken, length_of(row, text, length)))) {
+    let longest = TOKEN_SHAPES.longest_match(text, |row, length| length_of(row, text, length) > 0);
+    match longest.and_then(|(row, length)| Some((SHAPE_ROWS.get(row)?.taken, length_of(row, text, length)))) {
         Some((taken, length)) => (taken, length.clamp(1, text.len())),
         None => (TokenExtent::All, 1),
     }
@@ -74,9 +76,9 @@ const LEFT_OUT: [&str; 14] = ["", "''", "'", "``", "`", ".", "?", "!", ",", ":",
 
 /// A token as the reference writes it; `None` if the reference drops it.
 fn write_token(taken: TokenExtent, token: &[char]) -> Option<String> {
-    if let [one] = token {
-        return sign_replacement(*one)
-            .map_or_else(|| Some(one.to_lowercase().collect()), |sign| sign.map(str::to_owned));
+    if let [single] = token {
+        return sign_replacement(*single)
+            .map_or_else(|| Some(single.to_lowercase().collect()), |sign| sign.map(str::to_owned));
     }
     let text: String = token.iter().collect();
     if let Some(sign) = entity_sign(&text.to_ascii_lowercase()) {
@@ -99,6 +101,7 @@ fn is_run(token: &[char], sign: char) -> bool {
     token.iter().all(|c| *c == sign || *c == ' ')
 }
 
+/// Writes a token character by character: lower case, with round brackets and blanks as the reference writes them.
 fn of_characters(taken: TokenExtent, token: &str) -> String {
     let is_ending = has_curly_apostrophe(token);
     let mut text = String::with_capacity(token.len());
@@ -115,7 +118,8 @@ fn of_characters(taken: TokenExtent, token: &str) -> String {
     text
 }
 
-/// Whether a token is one of the endings 's, 'm, 'd, 're, 've, 'll and n't: only there a curly apostrophe becomes a straight one.
+/// Whether a token is one of the endings 's, 'm, 'd, 're, 've, 'll and n't with a curly apostrophe. Only there the apostrophe becomes
+/// a straight one.
 fn has_curly_apostrophe(token: &str) -> bool {
     ["’s", "’m", "’d", "’re", "’ve", "’ll", "n’t"]
         .iter()

@@ -18,7 +18,7 @@ use std::{collections::BTreeMap, iter::Peekable, str::Chars};
 enum CharacterClass {
     /// This character; a small letter also matches the capital.
     Same(char),
-    /// Those in the ranges, or those in none of them.
+    /// The characters in the ranges (first and last) or, if `is_without`, those in none of them.
     Set { ranges: Vec<(char, char)>, is_without: bool },
     /// A letter of any script, with other characters that Unicode counts as alphabetic.
     Letter,
@@ -42,6 +42,7 @@ enum CharacterClass {
 pub(super) const SOFT_HYPHEN: char = '\u{ad}';
 
 impl CharacterClass {
+    /// The class of a name in curly brackets. Any other name is an apostrophe.
     fn from_name(name: &str) -> Self {
         match name {
             "letter" => Self::Letter,
@@ -91,19 +92,25 @@ fn is_digit(c: char) -> bool {
         || (!c.is_ascii() && !c.is_alphabetic() && c.is_numeric() && c.to_digit(36).is_none() && is_decimal(c))
 }
 
-/// Digits of other scripts, which come in runs of ten.
+/// Whether a character is a decimal digit of another script: Arabic, Persian, Devanagari, Thai or full width.
 fn is_decimal(c: char) -> bool {
     matches!(c, '\u{660}'..='\u{669}' | '\u{6f0}'..='\u{6f9}' | '\u{966}'..='\u{96f}' | '\u{e50}'..='\u{e59}' | '\u{ff10}'..='\u{ff19}')
 }
 
+/// A parsed pattern, as a tree.
 #[derive(Debug, Clone)]
 enum PatternPart {
+    /// One character of a class.
     One(CharacterClass),
+    /// Parts one after the other.
     Row(Vec<PatternPart>),
+    /// One of several parts: `(a|b)`.
     Either(Vec<PatternPart>),
+    /// A repeated part: at least once if `is_needed` (`+`), and more than once if `is_many` (`*` and `+`).
     Repeat { part: Box<PatternPart>, is_needed: bool, is_many: bool },
 }
 
+/// Parses parts with `|` between them.
 fn parse_alternatives(chars: &mut Peekable<Chars<'_>>) -> PatternPart {
     let mut ways = vec![parse_sequence(chars)];
     while chars.next_if_eq(&'|').is_some() {
@@ -112,6 +119,7 @@ fn parse_alternatives(chars: &mut Peekable<Chars<'_>>) -> PatternPart {
     if ways.len() == 1 { ways.remove(0) } else { PatternPart::Either(ways) }
 }
 
+/// Parses parts one after the other, up to `|`, `)` or the end.
 fn parse_sequence(chars: &mut Peekable<Chars<'_>>) -> PatternPart {
     let mut parts = Vec::new();
     while let Some(c) = chars.next_if(|c| !matches!(c, '|' | ')')) {
@@ -133,6 +141,7 @@ fn parse_sequence(chars: &mut Peekable<Chars<'_>>) -> PatternPart {
     PatternPart::Row(parts)
 }
 
+/// Parses the sign of a repetition after a part, if there is one.
 fn parse_repetition(part: PatternPart, chars: &mut Peekable<Chars<'_>>) -> PatternPart {
     match chars.next_if(|c| matches!(c, '?' | '*' | '+')) {
         Some(sign) => PatternPart::Repeat { part: Box::new(part), is_needed: sign == '+', is_many: sign != '?' },
@@ -140,6 +149,7 @@ fn parse_repetition(part: PatternPart, chars: &mut Peekable<Chars<'_>>) -> Patte
     }
 }
 
+/// Parses a set of characters after its `[`.
 fn parse_set(chars: &mut Peekable<Chars<'_>>) -> CharacterClass {
     let is_without = chars.next_if_eq(&'^').is_some();
     let mut ranges = Vec::new();
@@ -159,6 +169,7 @@ fn parse_set(chars: &mut Peekable<Chars<'_>>) -> CharacterClass {
 #[derive(Debug)]
 struct PatternPosition {
     class: CharacterClass,
+    /// The numbers of the positions that may follow.
     next: Vec<usize>,
     /// The number of the pattern that is complete here.
     ends: Option<usize>,
@@ -170,6 +181,7 @@ pub(super) struct TokenShapes {
     places: Vec<PatternPosition>,
     /// The positions at which a match may begin, by its first character, for ASCII.
     starts: BTreeMap<char, Vec<usize>>,
+    /// The positions at which a match may begin with a character beyond ASCII.
     other_starts: Vec<usize>,
 }
 
@@ -193,8 +205,8 @@ impl TokenShapes {
             starts.extend(ends.first);
         }
         for c in (0..128u8).map(char::from) {
-            let of_c = starts.iter().copied().filter(|at| shapes.places[*at].class.matches_char(c)).collect();
-            shapes.starts.insert(c, of_c);
+            let matching = starts.iter().copied().filter(|at| shapes.places[*at].class.matches_char(c)).collect();
+            shapes.starts.insert(c, matching);
         }
         shapes.other_starts = starts;
         shapes
@@ -234,20 +246,22 @@ impl TokenShapes {
         }
     }
 
+    /// Adds a part that follows the parts `before`.
     fn append_part(&mut self, mut before: PartEnds, part: &PatternPart) -> PartEnds {
         let after = self.add_part(part);
         self.join_positions(&before.last, &after.first);
         if before.may_be_empty {
             before.first.extend(&after.first);
         }
-        let kept = if after.may_be_empty { before.last } else { Vec::new() };
+        let earlier_ends = if after.may_be_empty { before.last } else { Vec::new() };
         PartEnds {
             first: before.first,
-            last: [after.last, kept].concat(),
+            last: [after.last, earlier_ends].concat(),
             may_be_empty: before.may_be_empty && after.may_be_empty,
         }
     }
 
+    /// Lets each position of `to` follow each of `from`.
     fn join_positions(&mut self, from: &[usize], to: &[usize]) {
         for at in from {
             let next = &mut self.places[*at].next;
@@ -266,8 +280,9 @@ impl TokenShapes {
         text: &[char],
         mut holds: impl FnMut(usize, usize) -> bool,
     ) -> Option<(usize, usize)> {
-        let mut found = None;
-        let mut now: Vec<usize> = Vec::new();
+        let mut longest = None;
+        // The positions that have accepted the last character, and those that accept the next.
+        let mut active: Vec<usize> = Vec::new();
         let mut next: Vec<usize> = Vec::new();
         for (at, c) in text.iter().enumerate() {
             next.clear();
@@ -281,16 +296,16 @@ impl TokenShapes {
             if at == 0 {
                 enter(self.starts.get(c).unwrap_or(&self.other_starts));
             } else {
-                now.iter().for_each(|from| enter(&self.places[*from].next));
+                active.iter().for_each(|from| enter(&self.places[*from].next));
             }
             if next.is_empty() {
                 break;
             }
             let ending = next.iter().filter_map(|at| self.places[*at].ends).filter(|shape| holds(*shape, at + 1)).min();
-            found = ending.map(|shape| (shape, at + 1)).or(found);
-            std::mem::swap(&mut now, &mut next);
+            longest = ending.map(|shape| (shape, at + 1)).or(longest);
+            std::mem::swap(&mut active, &mut next);
         }
-        found
+        longest
     }
 }
 

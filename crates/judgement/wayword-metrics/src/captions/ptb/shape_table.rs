@@ -6,29 +6,29 @@
 /// How much of a match becomes the token, and under which condition. Reading goes on after the token, within the match.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum TokenExtent {
-    /// All.
+    /// The whole match.
     All,
-    /// All, unchanged: soft hyphens are kept.
+    /// The whole match, unchanged: soft hyphens are kept.
     Address,
-    /// The first characters.
+    /// This many characters from the beginning: `cannot` gives `can`.
     First(usize),
-    /// All but the last characters, which only have to be there.
+    /// The match without this many characters at its end: `don't` gives `do`.
     AllBut(usize),
-    /// All, where it is a known abbreviation with its full stop.
+    /// The whole match, if it is a known abbreviation with its full stop.
     Abbreviation,
-    /// All, where a blank or the end comes after it.
+    /// The whole match, if a blank or the end of the text comes after it.
     BeforeBlank,
-    /// The first character, where a blank or the end comes after it all.
+    /// The first character, if a blank or the end of the text comes after the match: `a. Then` gives `a`.
     BeforeSentence,
-    /// All, where a blank, a comma, the end of a sentence or of the text comes after it.
+    /// The whole match, if a blank, a comma, the end of a sentence or of the text comes after it.
     File,
-    /// All, where no letter comes after it.
+    /// The whole match, if no letter comes after it.
     NotBeforeLetter,
-    /// All, where no letter or digit comes after it.
+    /// The whole match, if no letter or digit comes after it.
     NotInWord,
-    /// All but the letter after it, where it is an abbreviation that often ends a sentence.
+    /// The match up to its full stop, if it is an abbreviation that often ends a sentence: `etc.a` gives `etc.`.
     BeforeLetter,
-    /// All, where it is an abbreviation before a number. The number and the blank before it are left.
+    /// The match up to its full stop, if it is an abbreviation before numbers: `No. 5` gives `No.`.
     BeforeNumber,
 }
 

@@ -6,15 +6,16 @@ use super::NoStrength;
 use super::fit::{ChoiceOutcome, SystemPair};
 use std::fmt::Display;
 
+/// Reports why the choices determine no finite strengths, if that is so. `systems` are the names of the systems by number.
 pub(super) fn check_connected<S: Display>(pairs: &[SystemPair], systems: &[&S]) -> Result<(), NoStrength> {
-    let names = |of: &dyn Fn(usize) -> bool| -> Vec<String> {
-        systems.iter().enumerate().filter(|(at, _)| of(*at)).map(|(_, system)| system.to_string()).collect()
+    let names = |is_named: &dyn Fn(usize) -> bool| -> Vec<String> {
+        systems.iter().enumerate().filter(|(at, _)| is_named(*at)).map(|(_, system)| system.to_string()).collect()
     };
     if pairs.is_empty() {
         return Err(NoStrength::NoChoices);
     }
     let groups = connected_groups(pairs, systems.len());
-    let count = groups.iter().max().map_or(0, |most| most + 1);
+    let count = groups.iter().max().map_or(0, |highest| highest + 1);
     if count > 1 {
         let groups = (0..count).map(|group| names(&|at| groups[at] == group)).collect();
         return Err(NoStrength::Unconnected { groups });
@@ -36,7 +37,7 @@ pub(super) fn check_connected<S: Display>(pairs: &[SystemPair], systems: &[&S]) 
     Ok(())
 }
 
-/// The number of the group of each system.
+/// The number of the group of each system. Systems are in one group if a chain of choices connects them, however they ended.
 fn connected_groups(pairs: &[SystemPair], systems: usize) -> Vec<usize> {
     let mut groups = vec![usize::MAX; systems];
     let mut count = 0;
@@ -68,10 +69,10 @@ fn reachable_systems(
         }
     }
     let mut reached = vec![false; systems];
-    let mut open = vec![from];
-    while let Some(at) = open.pop() {
+    let mut frontier = vec![from];
+    while let Some(at) = frontier.pop() {
         if !std::mem::replace(&mut reached[at], true) {
-            open.extend(&next[at]);
+            frontier.extend(&next[at]);
         }
     }
     reached

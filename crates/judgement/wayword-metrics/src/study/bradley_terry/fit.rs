@@ -10,8 +10,11 @@ use std::collections::BTreeMap;
 /// The outcome of a choice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum ChoiceOutcome {
+    /// The system that was shown first was preferred.
     First,
+    /// The system that was shown second was preferred.
     Second,
+    /// Neither was preferred.
     Tie,
 }
 
@@ -25,6 +28,7 @@ pub(super) struct SystemPair {
 
 /// Newton's method ends when no parameter moves by more than this.
 const STEP_PRECISION: f64 = 1e-12;
+/// Newton steps at most. Fits that have a maximum need far fewer; after this many there is taken to be none.
 const MOST_STEPS: usize = 100;
 /// A likelihood that falls by less than this share has only lost digits by rounding; the step is accepted.
 const LIKELIHOOD_ROUNDING_SHARE: f64 = 1e-12;
@@ -42,6 +46,7 @@ pub(super) struct StrengthFit {
 }
 
 impl StrengthFit {
+    /// Fits the parameters to choices between `systems` systems.
     pub(super) fn from_pairs(pairs: &[SystemPair], systems: usize) -> Result<Self, NoStrength> {
         let has_ties = pairs.iter().any(|pair| pair.outcome == ChoiceOutcome::Tie);
         let mut counts: BTreeMap<SystemPair, f64> = BTreeMap::new();
@@ -53,6 +58,7 @@ impl StrengthFit {
             let singular = if step == 0 { NoStrength::Sides } else { NoStrength::Endless };
             let information = CholeskyFactor::from_matrix(information).ok_or(singular)?;
             let mut step = information.solve(&gradient);
+            // A step that would lower the likelihood is halved until it no longer does.
             while model.likelihood_at(&vector_sum(&parameters, &step)).likelihood
                 < likelihood - LIKELIHOOD_ROUNDING_SHARE * likelihood.abs()
             {
@@ -69,7 +75,7 @@ impl StrengthFit {
         Err(NoStrength::Endless)
     }
 
-    /// The weights that sum the parameters to a system's strength relative to the mean of all.
+    /// The weight of each parameter in a system's strength relative to the mean of all. Such a vector is called a direction.
     pub(super) fn strength_direction(&self, system: usize) -> Vec<f64> {
         let mut direction = vec![0.0; self.parameters.len()];
         let mean = 1.0 / self.systems as f64;
@@ -80,18 +86,22 @@ impl StrengthFit {
         direction
     }
 
+    /// The direction of the advantage of the side that is shown first.
     pub(super) fn side_direction(&self) -> Vec<f64> {
         self.unit_direction(self.systems - 1)
     }
 
+    /// The direction of the parameter of ties; `None` where there are none.
     pub(super) fn tie_direction(&self) -> Option<Vec<f64>> {
         self.has_ties.then(|| self.unit_direction(self.systems))
     }
 
+    /// The direction of a single parameter.
     fn unit_direction(&self, at: usize) -> Vec<f64> {
         (0..self.parameters.len()).map(|other| f64::from(u8::from(other == at))).collect()
     }
 
+    /// The fitted value of the sum of parameters that is weighted by `direction`.
     pub(super) fn value_along(&self, direction: &[f64]) -> f64 {
         dot_product(&self.parameters, direction)
     }
@@ -123,33 +133,34 @@ impl ChoiceModel {
         self.systems + usize::from(self.has_ties)
     }
 
+    /// The log-likelihood and its derivatives at some parameters.
     fn likelihood_at(&self, parameters: &[f64]) -> LikelihoodPoint {
         let size = self.parameter_count();
-        let none = || vec![0.0; size];
-        let mut top = LikelihoodPoint {
+        let zeros = || vec![0.0; size];
+        let mut point = LikelihoodPoint {
             likelihood: 0.0,
-            gradient: none(),
+            gradient: zeros(),
             scores: BTreeMap::new(),
-            information: vec![none(); size],
+            information: vec![zeros(); size],
         };
         for (pair, count) in &self.counts {
             let utilities = self.outcome_utilities(pair);
             let utilities = &utilities[..if self.has_ties { 3 } else { 2 }];
             let logs = chances_ln(utilities, parameters);
-            let mut mean = none();
+            let mut mean = zeros();
             utilities.iter().zip(&logs).for_each(|(utility, ln)| add_scaled(&mut mean, ln.exp(), utility));
             let happened = pair.outcome as usize;
             let score = vector_difference(&utilities[happened], &mean);
-            top.likelihood += count * logs[happened];
-            add_scaled(&mut top.gradient, *count, &score);
-            top.scores.insert(*pair, score);
+            point.likelihood += count * logs[happened];
+            add_scaled(&mut point.gradient, *count, &score);
+            point.scores.insert(*pair, score);
             for (utility, ln) in utilities.iter().zip(&logs) {
-                let apart = vector_difference(utility, &mean);
-                let rows = top.information.iter_mut().zip(&apart);
-                rows.for_each(|(row, part)| add_scaled(row, count * ln.exp() * part, &apart));
+                let deviation = vector_difference(utility, &mean);
+                let rows = point.information.iter_mut().zip(&deviation);
+                rows.for_each(|(row, part)| add_scaled(row, count * ln.exp() * part, &deviation));
             }
         }
-        top
+        point
     }
 
     /// The weight of each parameter in the utilities of the three outcomes: first, second, tie.
@@ -184,12 +195,13 @@ impl CholeskyFactor {
         for row in 0..size {
             for column in 0..=row {
                 let known: f64 = (0..column).map(|k| matrix[row][k] * matrix[column][k]).sum();
-                let left = matrix[row][column] - known;
+                let remainder = matrix[row][column] - known;
                 if row != column {
-                    matrix[row][column] = left / matrix[column][column];
-                } else if left > 1e-11 * greatest {
-                    matrix[row][row] = left.sqrt();
+                    matrix[row][column] = remainder / matrix[column][column];
+                } else if remainder > 1e-11 * greatest {
+                    matrix[row][row] = remainder.sqrt();
                 } else {
+                    // A remainder this small is zero up to rounding, so the matrix is singular.
                     return None;
                 }
             }
@@ -197,6 +209,7 @@ impl CholeskyFactor {
         Some(Self(matrix))
     }
 
+    /// Solves the linear system of the matrix with the right-hand side `right`.
     fn solve(&self, right: &[f64]) -> Vec<f64> {
         let Self(lower) = self;
         let mut solved = right.to_vec();
@@ -215,17 +228,18 @@ impl CholeskyFactor {
 /// The logarithms of the probabilities of outcomes with these utilities (a softmax).
 fn chances_ln(utilities: &[Vec<f64>], parameters: &[f64]) -> Vec<f64> {
     let values: Vec<f64> = utilities.iter().map(|utility| dot_product(utility, parameters)).collect();
-    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let all: f64 = values.iter().map(|value| (value - most).exp()).sum();
-    values.iter().map(|value| value - most - all.ln()).collect()
+    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let sum: f64 = values.iter().map(|value| (value - highest).exp()).sum();
+    values.iter().map(|value| value - highest - sum.ln()).collect()
 }
 
 fn dot_product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-fn add_scaled(to: &mut [f64], times: f64, what: &[f64]) {
-    to.iter_mut().zip(what).for_each(|(to, what)| *to += times * what);
+/// Adds `vector` times `factor` to `sum`.
+fn add_scaled(sum: &mut [f64], factor: f64, vector: &[f64]) {
+    sum.iter_mut().zip(vector).for_each(|(sum, part)| *sum += factor * part);
 }
 
 fn vector_sum(a: &[f64], b: &[f64]) -> Vec<f64> {

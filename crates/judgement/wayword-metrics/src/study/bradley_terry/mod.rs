@@ -103,15 +103,16 @@ pub fn bradley_terry<P: Ord, I: Ord, S: Ord + Clone + Display>(
     comparisons: &[SystemComparison<P, I, S>],
     level: f64,
 ) -> Result<BradleyTerry<S>, NoStrength> {
-    if comparisons.iter().any(|one| one.first == one.second) {
+    if comparisons.iter().any(|comparison| comparison.first == comparison.second) {
         return Err(NoStrength::Itself);
     }
-    let systems: BTreeSet<&S> = comparisons.iter().flat_map(|one| [&one.first, &one.second]).collect();
+    let systems: BTreeSet<&S> =
+        comparisons.iter().flat_map(|comparison| [&comparison.first, &comparison.second]).collect();
     let systems: Vec<&S> = systems.into_iter().collect();
-    let pairs: Vec<SystemPair> = comparisons.iter().map(|one| numbered_pair(one, &systems)).collect();
+    let pairs: Vec<SystemPair> = comparisons.iter().map(|comparison| numbered_pair(comparison, &systems)).collect();
     connectedness::check_connected(&pairs, &systems)?;
     let fit = StrengthFit::from_pairs(&pairs, systems.len())?;
-    let groups = AnswerGroups::from_pairs(comparisons.iter().map(|one| (&one.person, &one.item)));
+    let groups = AnswerGroups::from_pairs(comparisons.iter().map(|comparison| (&comparison.person, &comparison.item)));
     let errors = FitErrors { fit: &fit, pairs: &pairs, groups, level };
     let mut strengths = Vec::with_capacity(systems.len());
     for (at, system) in systems.iter().enumerate() {
@@ -129,31 +130,35 @@ pub fn bradley_terry<P: Ord, I: Ord, S: Ord + Clone + Display>(
     })
 }
 
-fn numbered_pair<P, I, S: Ord>(of: &SystemComparison<P, I, S>, systems: &[&S]) -> SystemPair {
-    let place = |system: &S| systems.partition_point(|one| *one < system);
-    let outcome = match of.preference {
+/// A choice with its systems by number. `systems` are in order.
+fn numbered_pair<P, I, S: Ord>(comparison: &SystemComparison<P, I, S>, systems: &[&S]) -> SystemPair {
+    let number = |system: &S| systems.partition_point(|other| *other < system);
+    let outcome = match comparison.preference {
         PairPreference::First => ChoiceOutcome::First,
         PairPreference::Second => ChoiceOutcome::Second,
         PairPreference::Tie | PairPreference::BothBad => ChoiceOutcome::Tie,
     };
-    SystemPair { first: place(&of.first), second: place(&of.second), outcome }
+    SystemPair { first: number(&comparison.first), second: number(&comparison.second), outcome }
 }
 
+/// A system with its strength, and how its choices ended.
 fn count_choices<P, I, S: Ord + Clone>(
     comparisons: &[SystemComparison<P, I, S>],
     system: &S,
     term: FittedTerm,
 ) -> SystemStrength<S> {
     let mut strength = SystemStrength { system: system.clone(), wins: 0, losses: 0, ties: 0, both_bad: 0, term };
-    for one in comparisons.iter().filter(|one| one.first == *system || one.second == *system) {
-        match one.preference {
+    let is_about =
+        |comparison: &&SystemComparison<P, I, S>| comparison.first == *system || comparison.second == *system;
+    for comparison in comparisons.iter().filter(is_about) {
+        match comparison.preference {
             PairPreference::Tie => strength.ties += 1,
             PairPreference::BothBad => {
                 strength.ties += 1;
                 strength.both_bad += 1;
             }
             PairPreference::First | PairPreference::Second => {
-                let is_won = (one.preference == PairPreference::First) == (one.first == *system);
+                let is_won = (comparison.preference == PairPreference::First) == (comparison.first == *system);
                 strength.wins += usize::from(is_won);
                 strength.losses += usize::from(!is_won);
             }
@@ -177,6 +182,7 @@ impl FitErrors<'_> {
         self.groups.variance_parts(&self.fit.choice_influences(direction, self.pairs), direction.len())
     }
 
+    /// The sum of parameters weighted by `direction`, with its standard error and interval.
     fn fitted_term(&self, direction: &[f64]) -> Result<FittedTerm, NoStrength> {
         let parts = self.variance_parts(direction);
         let quantile = quantile::student_quantile(0.5 + self.level / 2.0, parts.fewest_groups() - 1);

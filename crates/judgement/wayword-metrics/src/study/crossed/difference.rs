@@ -63,6 +63,7 @@ pub fn mean_difference<P: Ord, I: Ord>(
 /// Two conditions together.
 struct ConditionPair {
     figures: [StudyFigure; 2],
+    /// The standard error of the difference, where it is above 0.
     se: Option<f64>,
     /// The correlation of the two figures.
     correlation: f64,
@@ -81,18 +82,19 @@ impl ConditionPair {
         let groups = AnswerGroups::from_pairs(first.iter().chain(second).map(|answer| (&answer.person, &answer.item)));
         let mut all = error_contributions(first, figures[0].value);
         all.extend(error_contributions(second, figures[1].value).into_iter().map(|error| -error));
-        let [persons, items] = [
+        let [(shares_persons, person_count), (shares_items, item_count)] = [
             in_both(first, second, &figures, |answer| &answer.person, |figure| figure.persons),
             in_both(first, second, &figures, |answer| &answer.item, |figure| figure.items),
         ];
-        let is_apart = !persons.0 && !items.0;
-        let several = [persons.1, items.1].into_iter().filter(|count| *count > 1);
+        let is_apart = !shares_persons && !shares_items;
+        let several = [person_count, item_count].into_iter().filter(|count| *count > 1);
         let fewest = several.min().unwrap_or(1);
         let squares = figures.each_ref().map(|figure| figure.se.map_or(0.0, |se| se * se));
-        let apart = squares[0] + squares[1];
-        let variance = if is_apart { apart } else { groups.variance_parts(&all, 2).variance() };
+        let independent_variance = squares[0] + squares[1];
+        let variance = if is_apart { independent_variance } else { groups.variance_parts(&all, 2).variance() };
         let product = 2.0 * (squares[0] * squares[1]).sqrt();
-        let correlation = if product > 0.0 { ((apart - variance) / product).clamp(-1.0, 1.0) } else { 0.0 };
+        let correlation =
+            if product > 0.0 { ((independent_variance - variance) / product).clamp(-1.0, 1.0) } else { 0.0 };
         Self { figures, se: Some(variance.sqrt()).filter(|se| *se > 0.0), correlation, is_apart, fewest }
     }
 
@@ -100,6 +102,7 @@ impl ConditionPair {
         self.figures[0].value - self.figures[1].value
     }
 
+    /// Student's interval, as for a single mean.
     fn linear_interval(&self, level: f64) -> Option<ConfidenceInterval> {
         let half = self.se? * quantile::student_quantile(0.5 + level / 2.0, self.fewest - 1)?;
         Some(symmetric_interval(self.value(), half))
@@ -108,10 +111,10 @@ impl ConditionPair {
     /// The hybrid interval: combines the distances of the two figures from the ends of their intervals like correlated errors.
     fn hybrid_interval(&self) -> Option<ConfidenceInterval> {
         let [first, second] = &self.figures;
-        let (of, other) = (first.interval?, second.interval?);
+        let (first_ends, second_ends) = (first.interval?, second.interval?);
         let together = |a: f64, b: f64| (a * a + b * b - 2.0 * self.correlation * a * b).max(0.0).sqrt();
-        let low = self.value() - together(first.value - of.low, other.high - second.value);
-        let high = self.value() + together(of.high - first.value, second.value - other.low);
+        let low = self.value() - together(first.value - first_ends.low, second_ends.high - second.value);
+        let high = self.value() + together(first_ends.high - first.value, second.value - second_ends.low);
         Some(ConfidenceInterval { low: low.max(-1.0), high: high.min(1.0) })
     }
 
@@ -138,11 +141,11 @@ fn in_both<'a, P, I, T: Ord + 'a>(
     first: &'a [StudyAnswer<P, I>],
     second: &'a [StudyAnswer<P, I>],
     figures: &[StudyFigure; 2],
-    of: impl Fn(&'a StudyAnswer<P, I>) -> &'a T,
+    id: impl Fn(&'a StudyAnswer<P, I>) -> &'a T,
     count: impl Fn(&StudyFigure) -> usize,
 ) -> (bool, usize) {
-    let all: BTreeSet<&T> = first.iter().chain(second).map(of).collect();
-    let [one, other] = figures.each_ref().map(count);
-    let is_shared = all.len() < one + other;
-    (is_shared, if is_shared { all.len() } else { one.min(other) })
+    let all: BTreeSet<&T> = first.iter().chain(second).map(id).collect();
+    let [first_count, second_count] = figures.each_ref().map(count);
+    let is_shared = all.len() < first_count + second_count;
+    (is_shared, if is_shared { all.len() } else { first_count.min(second_count) })
 }

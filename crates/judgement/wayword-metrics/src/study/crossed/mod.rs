@@ -98,6 +98,7 @@ impl AnswerSample {
         is_level(level).then_some(Self { mean, answers: answers.len(), parts })
     }
 
+    /// The mean as a share, with the interval that suits the sample.
     fn share_figure(&self, level: f64) -> StudyFigure {
         let is_extreme = self.mean == 0.0 || self.mean == 1.0;
         let (method, interval) = if self.parts.is_independent() {
@@ -118,6 +119,7 @@ impl AnswerSample {
         Some(ConfidenceInterval { low: logit_normal::expit(centre - half), high: logit_normal::expit(centre + half) })
     }
 
+    /// The mean as a number, with Student's interval.
     fn mean_figure(&self, level: f64) -> StudyFigure {
         let method = if self.parts.is_independent() { IntervalMethod::Student } else { IntervalMethod::Clustered };
         self.to_figure(method, self.half_width(level).map(|half| symmetric_interval(self.mean, half)))

@@ -19,26 +19,28 @@ pub(in crate::study) struct AnswerGroups {
 }
 
 impl AnswerGroups {
+    /// The groups of answers, given by the person and the item of each.
     pub(in crate::study) fn from_pairs<'a, P: Ord + 'a, I: Ord + 'a>(
-        places: impl Iterator<Item = (&'a P, &'a I)>,
+        pairs: impl Iterator<Item = (&'a P, &'a I)>,
     ) -> Self {
-        let (persons, items): (Vec<&P>, Vec<&I>) = places.unzip();
+        let (persons, items): (Vec<&P>, Vec<&I>) = pairs.unzip();
         let (persons, items) = (number_distinct(&persons), number_distinct(&items));
         let both: Vec<(usize, usize)> = persons.iter().copied().zip(items.iter().copied()).collect();
         let cells = number_distinct(&both);
-        let counts = [&persons, &items, &cells].map(|of| of.iter().max().map_or(0, |most| most + 1));
+        let counts = [&persons, &items, &cells].map(|numbers| numbers.iter().max().map_or(0, |highest| highest + 1));
         Self { persons, items, cells, counts }
     }
 
     /// The parts of the variance of a sum of errors, where `estimated` parameters were estimated from the same answers.
     pub(in crate::study) fn variance_parts(&self, errors: &[f64], estimated: usize) -> VarianceParts {
         let answers = errors.len();
-        let small = (answers.saturating_sub(1)) as f64 / (answers.saturating_sub(estimated)).max(1) as f64;
-        let part = |of: &[usize], count: usize| {
+        // (n - 1) / (n - k), the correction for few answers.
+        let correction = (answers.saturating_sub(1)) as f64 / (answers.saturating_sub(estimated)).max(1) as f64;
+        let part = |groups: &[usize], count: usize| {
             let mut sums = vec![0.0; count];
-            of.iter().zip(errors).for_each(|(group, error)| sums[*group] += error);
+            groups.iter().zip(errors).for_each(|(group, error)| sums[*group] += error);
             let square: f64 = sums.iter().map(|sum| sum * sum).sum();
-            if count > 1 { small * square * count as f64 / (count - 1) as f64 } else { 0.0 }
+            if count > 1 { correction * square * count as f64 / (count - 1) as f64 } else { 0.0 }
         };
         let [persons, items, cells] = self.counts;
         VarianceParts {
@@ -54,16 +56,19 @@ impl AnswerGroups {
 
 /// Numbers the distinct values from 0, in their order; equal values get equal numbers.
 fn number_distinct<T: Ord>(all: &[T]) -> Vec<usize> {
-    let mut numbers: BTreeMap<&T, usize> = all.iter().map(|one| (one, 0)).collect();
+    let mut numbers: BTreeMap<&T, usize> = all.iter().map(|value| (value, 0)).collect();
     numbers.values_mut().zip(0..).for_each(|(number, at)| *number = at);
-    all.iter().map(|one| numbers[one]).collect()
+    all.iter().map(|value| numbers[value]).collect()
 }
 
 /// The three parts of a two-way clustered variance, and how many answers, persons and items they come from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::study) struct VarianceParts {
+    /// `V_person`, from the sums of errors within each person.
     pub(in crate::study) person: f64,
+    /// `V_item`, from the sums of errors within each item.
     pub(in crate::study) item: f64,
+    /// `V_cell`, from the sums of errors within each pair of a person and an item.
     pub(in crate::study) cell: f64,
     pub(in crate::study) answers: usize,
     pub(in crate::study) persons: usize,

@@ -18,7 +18,7 @@ pub struct ToolWalkLimits {
     pub memory: usize,
 }
 
-/// People's walks in R2R have 4 to 6 hops; the reader goes 24 at most.
+/// People's walks in R2R have 4 to 6 hops; the agent that reads goes 24 at most.
 impl Default for ToolWalkLimits {
     fn default() -> Self {
         Self { max_hops: 24, max_calls: 60, max_usd: None, memory: 6 }

@@ -7,12 +7,13 @@ use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use wayword_core::{DVec3, Heading, ViewpointId};
 
-/// Most places of the map in a prompt, and most characters of all of them. Other places are only counted.
+/// Most places of the map in a prompt. Other places are only counted.
 const MOST_PLACES: usize = 16;
+/// Most characters of all places of the map in a prompt; two places are listed even if they are longer.
 const MOST_MAP_CHARS: usize = 2_500;
-/// Most ways that are listed for a place on the map.
+/// Most ways that are listed for a place on the map. Other ways are only counted.
 const MOST_WAYS: usize = 8;
-/// Longest reason of a step in a later prompt, characters.
+/// Longest reason of a step in a later prompt, characters; a longer one is cut.
 const MOST_REASON_CHARS: usize = 120;
 
 /// The agent's memory of one walk.
@@ -21,18 +22,24 @@ pub(super) struct ToolWalkMemory {
     origin: (DVec3, Heading),
     /// The visited places, in the order of the first visits. A place's number is its index plus 1.
     places: Vec<RememberedPlace>,
+    /// The number of each visited place.
     numbers: BTreeMap<ViewpointId, usize>,
     /// The numbers of the places along the walk; the last is the current place.
     trail: Vec<usize>,
+    /// The last steps, at most `keep` of them, the oldest first.
     last: VecDeque<RememberedHop>,
     keep: usize,
+    /// Number of all steps so far.
     hops: usize,
+    /// The note that the model last wrote for its next calls.
     pub(super) note: Option<String>,
 }
 
 /// A visited place.
 struct RememberedPlace {
+    /// Its position, metres, world frame.
     at: DVec3,
+    /// A summary of the things there; `None` if the agent did not look around.
     seen: Option<String>,
     /// The nodes that its ways lead to, and their positions. The agent could derive both from the lengths and angles of the hops.
     ways: Vec<(ViewpointId, DVec3)>,
@@ -41,9 +48,12 @@ struct RememberedPlace {
 /// A step of the walk, as prompts repeat it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub(super) struct RememberedHop {
+    /// The step's number in the walk, from 1.
     number: usize,
+    /// The numbers of the places from and to which it leads.
     from: usize,
     to: usize,
+    /// The model's reason; may be empty.
     why: String,
 }
 
@@ -99,21 +109,21 @@ impl ToolWalkMemory {
     /// The map: a line for each place, and how many places are left out. The current place and the start come first, then the
     /// places that were visited last; lines are in the order of the places' numbers.
     pub(super) fn map_lines(&self) -> (Vec<String>, usize) {
-        let mut told: BTreeMap<usize, String> = BTreeMap::new();
+        let mut lines: BTreeMap<usize, String> = BTreeMap::new();
         let mut chars = 0;
-        let mut been = BTreeSet::new();
+        let mut seen = BTreeSet::new();
         let here = self.trail.last().copied();
         for number in here.into_iter().chain([1]).chain(self.trail.iter().rev().copied()) {
-            let Some(place) = self.places.get(number - 1).filter(|_| been.insert(number)) else { continue };
+            let Some(place) = self.places.get(number - 1).filter(|_| seen.insert(number)) else { continue };
             let line = self.describe_place(number, place);
             chars += line.chars().count();
-            if told.len() == MOST_PLACES || (chars > MOST_MAP_CHARS && told.len() >= 2) {
+            if lines.len() == MOST_PLACES || (chars > MOST_MAP_CHARS && lines.len() >= 2) {
                 break;
             }
-            told.insert(number, line);
+            lines.insert(number, line);
         }
-        let left_out = self.places.len() - told.len();
-        (told.into_values().collect(), left_out)
+        let left_out = self.places.len() - lines.len();
+        (lines.into_values().collect(), left_out)
     }
 
     /// The line of a place on the map: its position relative to the start, a summary of the things there, and where its ways lead.

@@ -43,14 +43,17 @@ pub(super) struct ObservedScene {
     pub(super) undescribed: usize,
 }
 
-/// Most things of a place in a prompt, and most characters of all of them.
+/// Most things of a place in a prompt; the farthest are left out.
 const MOST_THINGS: usize = 40;
+/// Most characters of all things of a place in a prompt; the farthest things are left out.
 const MOST_CHARS: usize = 2_000;
-/// Longest name, and longest caption of a view, characters.
+/// Longest name of a thing or a room, characters; a longer one is cut.
 const MOST_NAME_CHARS: usize = 40;
+/// Longest caption of a view, characters; a longer one is cut.
 const MOST_CAPTION_CHARS: usize = 450;
-/// Most names in the summary of a place, and characters of each caption in it.
+/// Most names of things in the summary of a place for the map.
 const KEPT_NAMES: usize = 6;
+/// Longest caption in the summary of a place for the map, characters; a longer one is cut.
 const KEPT_CAPTION_CHARS: usize = 40;
 /// Sectors of 45 degrees, clockwise from ahead.
 const SECTOR_NAMES: [&str; 8] =
@@ -90,11 +93,12 @@ fn scene_from_labels(
     // The nearest come first, so far things are left out.
     let mut chars = 0;
     let fits = |label: &ObjectLabel| {
+        // 22 characters are room for the number and the distance around a name, as in "[12] sofa (1.2 m)".
         chars += label.name.chars().count().min(MOST_NAME_CHARS) + 22;
         chars <= MOST_CHARS
     };
-    let told = labels.iter().map(fits).take(MOST_THINGS).take_while(|fits| *fits).count();
-    labels.truncate(told);
+    let listed = labels.iter().map(fits).take(MOST_THINGS).take_while(|fits| *fits).count();
+    labels.truncate(listed);
     let named: Vec<(ObjectLabel, String)> = labels
         .into_iter()
         .map(|label| {
@@ -129,30 +133,37 @@ fn near_m(label: &ObjectLabel) -> f64 {
 
 /// The line of a sector, as "left: sofa (1.2 m), chair x2"; `None` if it has no things. Things with equal names are counted, and the
 /// distance is that of the nearest. With numbers, each thing is listed by itself.
-fn sector_line(of: usize, named: &[(ObjectLabel, String)], heading: Heading, numbers_objects: bool) -> Option<String> {
-    let mut told: Vec<(&str, String, usize)> = Vec::new();
-    let here = named.iter().enumerate().filter(|(_, (label, _))| sector_for_turn(heading.turn_to(label.heading)) == of);
-    for (at, (label, name)) in here {
+fn sector_line(
+    sector: usize,
+    named: &[(ObjectLabel, String)],
+    heading: Heading,
+    numbers_objects: bool,
+) -> Option<String> {
+    // The name of each thing, its words, and how many things have that name.
+    let mut listed: Vec<(&str, String, usize)> = Vec::new();
+    let in_sector =
+        named.iter().enumerate().filter(|(_, (label, _))| sector_for_turn(heading.turn_to(label.heading)) == sector);
+    for (at, (label, name)) in in_sector {
         let far = label.distance_m.map_or(String::new(), |far_m| format!(" ({far_m:.1} m)"));
         let number = if numbers_objects { format!("[{}] ", at + 1) } else { String::new() };
-        match told.iter_mut().find(|(other, ..)| !numbers_objects && other == name) {
+        match listed.iter_mut().find(|(other, ..)| !numbers_objects && other == name) {
             Some((.., count)) => *count += 1,
-            None => told.push((name, format!("{number}{name}{far}"), 1)),
+            None => listed.push((name, format!("{number}{name}{far}"), 1)),
         }
     }
     let words = |(_, words, count)| if count > 1 { format!("{words} x{count}") } else { words };
-    let told: Vec<String> = told.into_iter().map(words).collect();
-    (!told.is_empty()).then(|| format!("{}: {}", SECTOR_NAMES[of], told.join(", ")))
+    let things: Vec<String> = listed.into_iter().map(words).collect();
+    (!things.is_empty()).then(|| format!("{}: {}", SECTOR_NAMES[sector], things.join(", ")))
 }
 
-/// The views by their turn from ahead, the one nearest to ahead first, then clockwise.
+/// The views with their turns from ahead (radians, positive right): the view nearest to ahead first, then clockwise.
 fn from_ahead(views: &[View; 4], heading: Heading) -> Vec<(f64, &View)> {
     let mut turned: Vec<(f64, &View)> = views.iter().map(|view| (heading.turn_to(view.pose.heading), view)).collect();
     turned.sort_by(|a, b| clockwise_turn(a.0).total_cmp(&clockwise_turn(b.0)));
     turned
 }
 
-/// A turn, counted clockwise from 45 degrees to the left, so that what lies ahead comes first.
+/// A turn in radians, counted clockwise from 45 degrees to the left, so that things ahead sort first.
 pub(super) fn clockwise_turn(turn_rad: f64) -> f64 {
     (turn_rad + std::f64::consts::FRAC_PI_4).rem_euclid(std::f64::consts::TAU)
 }
@@ -172,7 +183,7 @@ fn scene_from_captions(
     by: &dyn ViewDescriber,
 ) -> Result<ObservedScene, WalkError> {
     let mut scene = ObservedScene::default();
-    let mut kept = Vec::new();
+    let mut summaries = Vec::new();
     for (turn_rad, view) in from_ahead(views, heading) {
         let caption = match by.describe_view(view) {
             Ok(caption) => shorten_line(&caption, MOST_CAPTION_CHARS),
@@ -183,14 +194,14 @@ fn scene_from_captions(
             }
             Err(error) => return Err(error.into()),
         };
-        kept.push(shorten_line(&caption, KEPT_CAPTION_CHARS));
+        summaries.push(shorten_line(&caption, KEPT_CAPTION_CHARS));
         scene.lines.push(format!("{}: {caption}", describe_turn(turn_rad)));
     }
-    scene.brief = kept.join(" / ");
+    scene.brief = summaries.join(" / ");
     Ok(scene)
 }
 
-/// A turn from ahead in words and degrees.
+/// A turn from ahead (radians, positive right) in words and degrees, as "right, 80 degrees right".
 pub(super) fn describe_turn(turn_rad: f64) -> String {
     let (words, deg) = (SECTOR_NAMES[sector_for_turn(turn_rad)], turn_rad.to_degrees().round());
     match deg {

@@ -15,9 +15,9 @@ use wayword_follower::online::WalkerHop;
 
 const SYSTEM: &str = include_str!("system.j2");
 const STATE: &str = include_str!("state.j2");
-/// Longest instruction in a prompt, characters. People's texts have up to about 2,000.
+/// Longest instruction in a prompt, characters; a longer one is cut. People's texts have up to about 2,000.
 pub const MOST_TEXT_CHARS: usize = 2_000;
-/// Most ways out in a prompt.
+/// Most ways out in a prompt. Other ways are only counted.
 const MOST_WAYS: usize = 24;
 /// Most tokens of a reply, thinking included.
 const REPLY_TOKENS: u32 = 600;
@@ -44,7 +44,9 @@ const STOP_AT: ModelTool = ModelTool {
     does: "End the walk where you stand, and name the object that the instruction means.",
     arguments: r#"{"type": "object", "properties": {"object": {"type": "string", "description": "the number of the object in the list, or its name"}, "why": {"type": "string", "description": "the reason, in one sentence"}}, "required": ["object", "why"]}"#,
 };
+/// The tools of a walk that ends without naming an object.
 static TOOLS: [ModelTool; 3] = [OBSERVE_TOOL, STEP_TOOL, STOP_TOOL];
+/// The tools of a walk in which the model also names the object that the instruction means.
 static TOOLS_FOR_OBJECTS: [ModelTool; 3] = [OBSERVE_TOOL, STEP_TOOL, STOP_AT];
 
 /// All texts of the prompts. A comparison stores them, so that it does not continue walks that were made with other prompts.
@@ -64,8 +66,10 @@ pub(super) enum PromptSightKind {
 
 /// Everything that the prompt of one call depends on.
 pub(super) struct PromptState<'a> {
+    /// The instruction.
     pub(super) text: &'a str,
     pub(super) sees: PromptSightKind,
+    /// Whether the model is to name an object when it stops.
     pub(super) names_object: bool,
     pub(super) memory: &'a ToolWalkMemory,
     /// The number of the current place, and the heading.
@@ -74,6 +78,7 @@ pub(super) struct PromptState<'a> {
     /// The scene at the current place, if the agent has looked around.
     pub(super) scene: Option<&'a ObservedScene>,
     pub(super) limits: &'a ToolWalkLimits,
+    /// Calls of the model so far, and hops so far.
     pub(super) calls: usize,
     pub(super) hops: usize,
     /// The problem of the last reply, if it was useless.
@@ -112,7 +117,7 @@ pub(super) fn build_request(state: &PromptState<'_>) -> Result<ModelRequest, Wal
         deg if deg > 0.0 => format!("{deg} degrees to the right of how you looked at the start"),
         deg => format!("{} degrees to the left of how you looked at the start", -deg),
     };
-    let told = context! {
+    let values = context! {
         text => shorten_line(state.text, MOST_TEXT_CHARS),
         ways => &ways[..ways.len().min(MOST_WAYS)],
         ways_left_out => ways.len().saturating_sub(MOST_WAYS),
@@ -129,7 +134,7 @@ pub(super) fn build_request(state: &PromptState<'_>) -> Result<ModelRequest, Wal
     Ok(ModelRequest {
         messages: vec![
             ChatMessage { role: MessageRole::System, text: system, images: Vec::new() },
-            ChatMessage::about_images(render_template(STATE, told)?, images),
+            ChatMessage::about_images(render_template(STATE, values)?, images),
         ],
         sampling: SamplingOptions { temperature: 0.0, max_tokens: REPLY_TOKENS, seed: state.seed },
         replicate: 0,
@@ -138,10 +143,10 @@ pub(super) fn build_request(state: &PromptState<'_>) -> Result<ModelRequest, Wal
     })
 }
 
-fn render_template(template: &str, told: minijinja::Value) -> Result<String, WalkError> {
+fn render_template(template: &str, values: minijinja::Value) -> Result<String, WalkError> {
     let failed = |error: minijinja::Error| ModelError::Failed { model: "tools".to_owned(), reason: error.to_string() };
     let mut environment = Environment::new();
     environment.set_trim_blocks(true);
     environment.set_lstrip_blocks(true);
-    Ok(environment.render_str(template, told).map_err(failed)?)
+    Ok(environment.render_str(template, values).map_err(failed)?)
 }

@@ -40,6 +40,7 @@ pub fn rehearse_route(
     Ok(requests)
 }
 
+/// A reason and a note of usual length, so that the rehearsed prompts are as long as those of real walks.
 const TYPICAL_REASON: &str = "The instruction says to go past the table, and this way leads past it.";
 const TYPICAL_NOTE: &str = "Out of the bedroom and past the table; next: turn left into the kitchen.";
 

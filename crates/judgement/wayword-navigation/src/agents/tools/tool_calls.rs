@@ -39,9 +39,9 @@ pub(super) enum ObjectChoice {
 
 /// Most bytes of a reply that are read.
 const MOST_BYTES: usize = 8_000;
-/// Most calls of a reply.
+/// Most calls of a reply; later ones are ignored.
 const MOST_CALLS: usize = 4;
-/// Longest reason and note, characters.
+/// Longest reason, note and words for an object, characters; longer ones are cut.
 const MOST_CHARS: usize = 300;
 const TOOL_NAMES: [&str; 3] = ["observe", "step", "stop"];
 
@@ -77,15 +77,16 @@ fn tool_name(line: &str) -> Option<(&'static str, &str)> {
     Some((name, line[name.len()..].trim_start_matches([' ', ':', '(', '\t'])))
 }
 
-/// Reads a call with JSON that begins at a byte of the text; returns it with the position after it, bytes.
+/// Reads the JSON of a call that begins at byte `from` of the text; returns the call and the byte after its JSON. If no tool's
+/// `name` precedes the JSON, the JSON object must name the tool itself.
 fn read_object_call(text: &str, from: usize, name: Option<&str>) -> (Option<AgentToolCall>, usize) {
     let mut values = serde_json::Deserializer::from_str(&text[from..]).into_iter::<Value>();
     let Some(Ok(value)) = values.next() else { return (None, from) };
     let after = from + values.byte_offset();
-    let own = ["tool", "name", "action"].into_iter().find_map(|field| value.get(field)?.as_str());
-    let inner = ["arguments", "input", "parameters"].into_iter().find_map(|field| value.get(field));
-    let inner = inner.filter(|_| name.is_none()).and_then(read_arguments);
-    (name.or(own).and_then(|name| call_from_arguments(name, inner.as_ref().unwrap_or(&value))), after)
+    let name_in_json = ["tool", "name", "action"].into_iter().find_map(|field| value.get(field)?.as_str());
+    let nested = ["arguments", "input", "parameters"].into_iter().find_map(|field| value.get(field));
+    let nested = nested.filter(|_| name.is_none()).and_then(read_arguments);
+    (name.or(name_in_json).and_then(|name| call_from_arguments(name, nested.as_ref().unwrap_or(&value))), after)
 }
 
 /// The arguments of a call: an object, or a string that contains one as JSON.
@@ -111,6 +112,7 @@ fn read_bare_call(reply: &str) -> Option<AgentToolCall> {
     Some(AgentToolCall { act, why: String::new(), note: None })
 }
 
+/// The call of the tool `name` with its arguments, a JSON object; `None` if there is no such tool.
 fn call_from_arguments(name: &str, arguments: &Value) -> Option<AgentToolCall> {
     let act = match name.to_ascii_lowercase().as_str() {
         "observe" => AgentToolAction::Observe,
@@ -134,6 +136,7 @@ fn read_number(value: &Value) -> Option<usize> {
     }
 }
 
+/// Reads the argument `object` of `stop`: a number in the prompt's list, or words.
 fn read_object_choice(value: &Value) -> Option<ObjectChoice> {
     let words = || value.as_str().map(|words| shorten_line(words, MOST_CHARS)).filter(|words| !words.is_empty());
     read_number(value).map(ObjectChoice::Number).or_else(|| words().map(ObjectChoice::Words))

@@ -18,16 +18,19 @@ use wayword_core::{Heading, ModelError, ModelReply, ModelRequest, ObjectId, View
 use wayword_follower::online::WalkerHop;
 use wayword_language::lexicon::{names_agree, normalise_name};
 
-/// So many useless replies in a row end a walk.
+/// A walk ends after this number of useless replies in a row.
 const MOST_USELESS: usize = 3;
-/// How often a walk may take one hop in one direction.
+/// Most times that a walk takes one hop in one direction; the next time ends it as [`WalkEnd::Circles`].
 const MOST_TIMES_A_HOP: usize = 3;
-/// Characters of a useless reply that are recorded.
+/// Most characters of a useless reply that are recorded; a longer one is cut.
 const KEPT_CHARS: usize = 200;
 
+/// A walk of the agent with a language model, in progress.
 pub(super) struct ToolWalker<'a> {
     agent_view: &'a AgentView<'a>,
+    /// The instruction.
     text: &'a str,
+    /// Whether the model is to name an object when it stops.
     names_object: bool,
     by: ModelWalker<'a>,
     memory: ToolWalkMemory,
@@ -38,14 +41,16 @@ pub(super) struct ToolWalker<'a> {
     /// The scene at the current place, if the agent has looked around.
     scene: Option<ObservedScene>,
     steps: Vec<AgentStep>,
+    /// How often the walk has taken each hop, by the nodes at its ends.
     hopped: BTreeMap<(ViewpointId, ViewpointId), usize>,
     pub(super) effort: WalkEffort,
-    /// The problem of the last reply; and in `useless` how many replies in a row had one.
+    /// The problem of the last reply, if it was useless.
     trouble: Option<String>,
+    /// How many replies in a row were useless, up to the last.
     useless: usize,
     /// The last error of the service.
     failure: Option<ModelError>,
-    /// Of the call of `stop`: the reason, and the object.
+    /// The reason and the object from the model's call of `stop`.
     stop: (Option<String>, Option<ObjectId>),
 }
 
@@ -141,9 +146,9 @@ impl<'a> ToolWalker<'a> {
 
     /// Calls the model and reads its tool calls. `None` if the reply is useless.
     pub(super) fn ask_model(&mut self) -> Result<Option<Vec<AgentToolCall>>, WalkError> {
-        let asked = self.next_request()?;
+        let request = self.next_request()?;
         self.effort.calls += 1;
-        let reply = match self.by.model.complete_requests(&[asked]).pop() {
+        let reply = match self.by.model.complete_requests(&[request]).pop() {
             Some(Ok(reply)) => reply,
             // The service answered this prompt with an unusable reply. The next prompt may get a better one.
             Some(Err(error @ ModelError::Failed { .. })) => {
@@ -165,10 +170,12 @@ impl<'a> ToolWalker<'a> {
         Ok(Some(calls))
     }
 
+    /// The error for a model that gives no result at all for a request.
     fn gave_none(&self) -> ModelError {
         ModelError::Failed { model: self.by.model.name().to_owned(), reason: "it gave no reply".to_owned() }
     }
 
+    /// Adds the tokens, the cost and the time of a reply. The cost of the walk is not known if that of one reply is not.
     fn count_usage(&mut self, reply: &ModelReply) {
         let Some(usage) = reply.usage else {
             self.effort.usd = None;
@@ -183,9 +190,9 @@ impl<'a> ToolWalker<'a> {
         effort.seconds += usage.seconds;
     }
 
-    /// Records a useless reply and its problem. `said` is the reply, or the error if there was none.
-    fn note_useless_reply(&mut self, trouble: String, said: &str) {
-        self.effort.last_useless = Some(format!("{trouble}: {}", shorten_line(said, KEPT_CHARS)));
+    /// Records a useless reply and its problem. `reply` is its text, or the error if the service gave none.
+    fn note_useless_reply(&mut self, trouble: String, reply: &str) {
+        self.effort.last_useless = Some(format!("{trouble}: {}", shorten_line(reply, KEPT_CHARS)));
         self.trouble = Some(trouble);
         self.useless += 1;
     }
@@ -195,18 +202,18 @@ impl<'a> ToolWalker<'a> {
     pub(super) fn carry_out(&mut self, calls: Vec<AgentToolCall>) -> Result<Option<WalkEnd>, WalkError> {
         // Numbers of objects refer to the list in the prompt, even if an earlier call of this reply looks around anew.
         let shown = self.scene.as_ref().map(|scene| scene.objects.clone()).unwrap_or_default();
-        let (mut has_done, mut has_stepped) = (false, false);
+        let (mut is_useful, mut has_stepped) = (false, false);
         for AgentToolCall { act, why, note } in calls {
             self.memory.note = note.or(self.memory.note.take());
             match act {
                 AgentToolAction::Observe if self.scene.is_none() => {
                     self.observe_here()?;
-                    has_done = true;
+                    is_useful = true;
                 }
                 AgentToolAction::Observe => {}
                 AgentToolAction::Step(_) if has_stepped => {}
                 AgentToolAction::Step(way) => match self.take_step(way, &why) {
-                    Ok(None) => (has_done, has_stepped) = (true, true),
+                    Ok(None) => (is_useful, has_stepped) = (true, true),
                     Ok(end) => return Ok(end),
                     Err(trouble) => {
                         self.effort.useless.no_way += 1;
@@ -222,7 +229,7 @@ impl<'a> ToolWalker<'a> {
                 }
             }
         }
-        if has_done {
+        if is_useful {
             (self.trouble, self.useless) = (None, 0);
         } else {
             self.effort.useless.idle += 1;
@@ -231,6 +238,7 @@ impl<'a> ToolWalker<'a> {
         Ok(None)
     }
 
+    /// Looks around at the current place, and keeps the scene for the prompts.
     fn observe_here(&mut self) -> Result<(), WalkError> {
         let at = (&self.here, self.heading);
         let scene = observe_scene(self.agent_view, at, self.by.looks, self.names_object)?;
@@ -269,14 +277,14 @@ impl<'a> ToolWalker<'a> {
     /// Records the decision at the current place as a step of the walk.
     fn record_step(&mut self, choice: StepChoice, reason: Option<String>) {
         let scene = self.scene.as_ref();
-        let told = SurroundingsSummary {
+        let surroundings = SurroundingsSummary {
             room: scene.and_then(|scene| scene.room.clone()),
             ways: self.ways_out().len(),
             things: scene.map_or(0, |scene| scene.things),
         };
         let reason = reason.filter(|reason| !reason.is_empty());
         let step = AgentStep::new(self.here.clone(), self.heading, choice);
-        self.steps.push(AgentStep { told: Some(told), reason, ..step });
+        self.steps.push(AgentStep { told: Some(surroundings), reason, ..step });
     }
 
     /// The object that the model names: one of those in the prompt, or the one around the place that its words fit best.

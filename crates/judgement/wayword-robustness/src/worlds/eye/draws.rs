@@ -3,7 +3,7 @@
 use crate::draws::draw_uniform;
 use wayword_core::{ObjectLabel, SceneId, ViewpointId};
 
-/// Names that the eye gives by mistake.
+/// Names that the eye gives to things by mistake.
 const WRONG_NAMES: [&str; 12] =
     ["chair", "table", "lamp", "bed", "sofa", "cabinet", "bookshelf", "plant", "mirror", "picture", "rug", "stool"];
 

@@ -27,6 +27,7 @@ pub(super) fn guess_sides(
     Ok(kept.chain(moved.map(|label| axis.mirrored_label(label, width_px))).collect())
 }
 
+/// The labels of a view; none without ground truth.
 fn listed_labels(view: &View) -> impl Iterator<Item = &ObjectLabel> {
     view.ground_truth().into_iter().flat_map(|truth| &truth.labels)
 }
@@ -38,10 +39,12 @@ struct MirrorPlane {
 }
 
 impl MirrorPlane {
+    /// The mirror image of a heading.
     fn mirrored_heading(&self, heading: Heading) -> Heading {
         self.heading.turned_by(-self.heading.turn_to(heading))
     }
 
+    /// Whether a heading points to the right of the plane.
     fn is_right(&self, heading: Heading) -> bool {
         self.heading.turn_to(heading) > 0.0
     }

@@ -11,9 +11,9 @@ pub(super) struct TiltWarp {
     pub(super) level_from_tilted: DMat3,
     /// Tangent of half the horizontal field of view of the level picture.
     pub(super) level_tan: f64,
-    /// The same of the tilted picture.
+    /// Tangent of half the horizontal field of view of the tilted picture.
     pub(super) tilted_tan: f64,
-    /// Width and height of both, pixels.
+    /// Width and height of both pictures, pixels.
     pub(super) size: [f64; 2],
 }
 
@@ -33,7 +33,7 @@ impl TiltWarp {
         self.pixel_of_ray(self.tilted_from_level() * self.ray_through_pixel(level_px, self.level_tan), self.tilted_tan)
     }
 
-    /// Maps a label of the level view, which looks along `ahead`, to the tilted one; `None` if it is not in it.
+    /// Maps a label of the level view, which looks along `ahead`, to the tilted view; `None` if the tilted view lacks it.
     pub(super) fn tilt_label(&self, label: ObjectLabel, ahead: Heading, has_picture: bool) -> Option<ObjectLabel> {
         let (sin, cos) = libm::sincos(ahead.turn_to(label.heading));
         let (up, along) = libm::sincos(label.elevation_rad);

@@ -57,6 +57,7 @@ impl ChunkAppender {
         self.lines.write_and_wait(Vec::new())
     }
 
+    /// The bytes of a line. An entry that would be too long to be read back is an error.
     fn encode_line(&self, entry: &ChunkEntry) -> Result<Vec<u8>, LedgerError> {
         let failed = LedgerError::io_error(&self.path, "write the recording");
         let line = entry.to_line().map_err(|error| failed(error.into()))?;
@@ -67,10 +68,11 @@ impl ChunkAppender {
     }
 }
 
-/// A file, and how many of its bytes are intact.
+/// A file of a chunk, open for appending after its intact lines.
 struct ChunkFileTail {
     file: File,
     place: LedgerLocation,
+    /// How many bytes from the beginning are intact lines.
     sound: u64,
     /// Whether the file may have other bytes behind the intact lines.
     is_torn: bool,

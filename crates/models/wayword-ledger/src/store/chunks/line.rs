@@ -1,9 +1,10 @@
-//! A line of a chunk's file: a JSON object that begins with the checksum of the rest of the line.
+//! A line of a chunk's file: a JSON object that begins with the checksum of the rest of the line, as
+//! `{"sha256":"1f...","ended":{"number":3,"outcome":"lost","reason":"timeout"}}`.
 
 use crate::{CallKey, LedgerEntry, checksum::sha256_text, store::RequestEnd};
 use serde::{Deserialize, Serialize};
 
-/// Version of the lines.
+/// Version of the lines, which the first line of a file contains.
 pub(super) const CHUNK_LINE_FORMAT: u32 = 1;
 
 /// How every line begins.
@@ -19,11 +20,11 @@ const CHECKSUM_SUFFIX: &str = "\",";
 pub(crate) enum ChunkEntry {
     /// The first line of a file.
     Ledger { format: u32 },
-    /// A request is about to be sent.
+    /// Request `number` of the file is about to be sent, for a call of a run. It may cost at most `most_usd` US dollars.
     Sent { number: i64, run: String, key: CallKey, most_usd: Option<f64>, at_unix_s: i64 },
-    /// A request brought no answer.
+    /// Request `number` brought no answer.
     Ended { number: i64, outcome: RequestEnd, reason: String },
-    /// A call was answered.
+    /// A call was answered, by request `number` if it needed one.
     Answered { number: Option<i64>, row: Box<LedgerEntry> },
 }
 
@@ -50,8 +51,8 @@ impl ChunkEntry {
     pub(crate) fn from_line(line: &[u8]) -> Result<Self, String> {
         let line = line.strip_suffix(b"\n").unwrap_or(line);
         let changed = || "its checksum does not match, so the line was changed by hand or damaged".to_owned();
-        let behind = line.strip_prefix(LINE_PREFIX.as_bytes()).ok_or("it is no line of a recording in chunks")?;
-        let (checksum, rest) = behind.split_at_checked(CHECKSUM_DIGITS).ok_or_else(changed)?;
+        let after_prefix = line.strip_prefix(LINE_PREFIX.as_bytes()).ok_or("it is no line of a recording in chunks")?;
+        let (checksum, rest) = after_prefix.split_at_checked(CHECKSUM_DIGITS).ok_or_else(changed)?;
         let rest = rest.strip_prefix(CHECKSUM_SUFFIX.as_bytes()).ok_or_else(changed)?;
         if checksum != sha256_text(rest).as_bytes() {
             return Err(changed());

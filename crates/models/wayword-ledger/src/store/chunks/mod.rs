@@ -68,11 +68,12 @@ impl ChunkStore {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// The chunk that `turn_to` has selected; an error if none was selected yet.
     fn current_chunk(&self) -> Result<Arc<OpenChunk>, LedgerError> {
         self.lock_state().current.clone().ok_or_else(no_chunk_error)
     }
 
-    /// Reserves the money of a request.
+    /// Reserves the money of a request, or refuses it. Returns the entry to write, and the chunk to write it to.
     fn reserve_request(
         &self,
         request: &PendingRequest<'_>,
@@ -93,15 +94,16 @@ impl ChunkStore {
 }
 
 impl ChunkStoreState {
+    /// The sums of all files, the current one last.
     fn all_tallies(&self) -> impl Iterator<Item = &ChunkTally> {
         self.others.values().chain([&self.tally])
     }
 
     fn spent_by_run(&self, run: &str) -> SpentBudget {
-        self.all_tallies().map(|tally| tally.spent_by_run(run)).fold(SpentBudget::default(), |all, one| SpentBudget {
-            usd: all.usd + one.usd,
-            reserved_usd: all.reserved_usd + one.reserved_usd,
-            calls: all.calls.saturating_add(one.calls),
+        self.all_tallies().map(|tally| tally.spent_by_run(run)).fold(SpentBudget::default(), |sum, file| SpentBudget {
+            usd: sum.usd + file.usd,
+            reserved_usd: sum.reserved_usd + file.reserved_usd,
+            calls: sum.calls.saturating_add(file.calls),
         })
     }
 
@@ -134,6 +136,7 @@ pub(crate) fn spent_in(path: &Path) -> Result<RunSpending, LedgerError> {
     Ok(read_tally(path)?.spending_by_run(None))
 }
 
+/// Sums up the entries of a file.
 fn read_tally(path: &Path) -> Result<ChunkTally, LedgerError> {
     let mut tally = ChunkTally::default();
     read::read_entries(path, |entry| tally.count_entry(&entry))?;

@@ -14,16 +14,20 @@ pub(super) struct ChunkTally {
     last: i64,
 }
 
+/// A request without a known end.
 #[derive(Debug)]
 struct OpenRequest {
     run: String,
+    /// The most that it may cost, US dollars.
     most_usd: Option<f64>,
 }
 
+/// The sums of one run.
 #[derive(Debug, Default)]
 struct RunSums {
+    /// The requests with a known end, and what they cost.
     known: RunSpending,
-    /// The amount that counts against the run's limit. An answer without a price counts at its upper bound.
+    /// The amount that counts against the run's limit, US dollars. An answer without a price counts at its upper bound.
     against_usd: f64,
 }
 
@@ -48,6 +52,7 @@ impl ChunkTally {
         }
     }
 
+    /// Counts the end of a request that brought no answer.
     fn count_end(&mut self, number: i64, end: RequestEnd) {
         let Some(open) = self.open.remove(&number) else { return };
         let sums = self.runs.entry(open.run).or_default();
@@ -81,10 +86,10 @@ impl ChunkTally {
 
     /// The spending of a run, or of all runs.
     pub(super) fn spending_by_run(&self, run: Option<&str>) -> RunSpending {
-        let is_of = |name: &str| run.is_none_or(|run| run == name);
-        let runs = self.runs.iter().filter(|(name, _)| is_of(name)).map(|(_, sums)| sums.known);
+        let is_counted = |name: &str| run.is_none_or(|run| run == name);
+        let runs = self.runs.iter().filter(|(name, _)| is_counted(name)).map(|(_, sums)| sums.known);
         let mut all = runs.fold(RunSpending::default(), RunSpending::plus);
-        for open in self.open.values().filter(|open| is_of(&open.run)) {
+        for open in self.open.values().filter(|open| is_counted(&open.run)) {
             all.lost += 1;
             all.maybe_usd += open.most_usd.unwrap_or(0.0);
         }

@@ -3,7 +3,7 @@
 /// Billionths in a dollar.
 const NANOS_PER_USD: f64 = 1e9;
 
-/// Largest amount, so that sums of a few do not overflow.
+/// Largest amount, billionths of a dollar: a billion dollars. Larger ones are cut to it, so that sums of a few fit into 64 bits.
 const MAX_NANOS: f64 = 1e18;
 
 /// An amount that is closer than this to a whole number of billionths is that number: the difference is a rounding error of the
@@ -25,10 +25,11 @@ pub(super) fn usd_from_nanos(nanos: i64) -> f64 {
     nanos as f64 / NANOS_PER_USD
 }
 
-fn round_nanos(usd: f64, to: impl Fn(f64) -> f64) -> i64 {
+/// Billionths of a dollar, rounded by `round` where they are not whole.
+fn round_nanos(usd: f64, round: impl Fn(f64) -> f64) -> i64 {
     let nanos = (usd * NANOS_PER_USD).clamp(-MAX_NANOS, MAX_NANOS);
     let nearest = nanos.round();
-    let whole = if (nanos - nearest).abs() < ROUNDING_TOLERANCE_NANOS { nearest } else { to(nanos) };
+    let whole = if (nanos - nearest).abs() < ROUNDING_TOLERANCE_NANOS { nearest } else { round(nanos) };
     whole as i64
 }
 

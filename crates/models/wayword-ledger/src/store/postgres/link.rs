@@ -47,6 +47,7 @@ written AS (
 SELECT EXISTS (SELECT FROM written) OR EXISTS (SELECT FROM wayword_ledger.sent WHERE program = $1 AND number = $2),
     EXISTS (SELECT FROM wayword_ledger.runs WHERE run = $3)";
 
+/// Makes the row of a new run.
 const NEW_RUN: &str = "INSERT INTO wayword_ledger.runs (run) VALUES ($1) ON CONFLICT DO NOTHING";
 
 /// Ends a request and releases its money, as far as it was not lost. Executed a second time, it has no effect.
@@ -60,6 +61,7 @@ SELECT run, $5, most, CASE $3 WHEN 'lost' THEN most ELSE 0 END, CASE $3 WHEN 'ca
 ON CONFLICT (run, slot) DO UPDATE SET released = s.released + EXCLUDED.released, spent = s.spent + EXCLUDED.spent,
     cancelled = s.cancelled + EXCLUDED.cancelled";
 
+/// Gives back the right of program `$2` to make call `$1`.
 const RELEASE_SQL: &str = "DELETE FROM wayword_ledger.claims WHERE key = $1 AND holder = $2";
 
 /// A program's link to the database.
@@ -72,23 +74,28 @@ pub(super) struct DatabaseLink {
     pub(super) slot: i16,
     /// The number of the next request.
     next: AtomicI64,
+    /// Writes that have failed and have to be made later.
     owed: Mutex<Vec<OwedWrite>>,
 }
 
 /// A write that could not be made, and will be made later.
 #[derive(Debug)]
 enum OwedWrite {
+    /// The end of request `number`, which brought no answer.
     End { number: i64, end: RequestEnd, reason: String },
+    /// The release of a claim.
     Release(CallKey),
 }
 
 /// The result of [`DatabaseLink::reserve_request`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ReserveOutcome {
+    /// The request is reserved and written down.
     Yes,
     /// A limit would be exceeded.
     No,
-    /// The request was changed by another statement at the same time, or its run is new.
+    /// Nothing is decided, so the caller tries again: the run had no row until now, or the same statement is being carried out twice
+    /// after a lost connection.
     Again,
 }
 
@@ -201,14 +208,14 @@ impl DatabaseLink {
     /// Makes the writes that could not be made before.
     pub(super) fn catch_up(&self) -> Result<(), LedgerError> {
         let owed = mem::take(&mut *self.owed.lock().unwrap_or_else(PoisonError::into_inner));
-        let mut failed = Ok(());
-        for one in owed {
+        let mut outcome = Ok(());
+        for write in owed {
             // After a failure the others would fail too, each after a long time.
-            failed = failed.and_then(|()| self.make_write(&one));
-            if failed.is_err() {
-                self.owed.lock().unwrap_or_else(PoisonError::into_inner).push(one);
+            outcome = outcome.and_then(|()| self.make_write(&write));
+            if outcome.is_err() {
+                self.owed.lock().unwrap_or_else(PoisonError::into_inner).push(write);
             }
         }
-        failed
+        outcome
     }
 }

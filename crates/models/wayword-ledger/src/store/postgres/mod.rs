@@ -41,6 +41,8 @@ const ANSWER_SQL: &str = concat!(
     " FROM wayword_ledger.calls WHERE key = $1"
 );
 
+/// Gives call `$1` to program `$2`, unless the call is answered or a program other than `$3` has it. Selects whether the call is
+/// answered, and whether program `$2` has it now.
 const CLAIM_SQL: &str = "
 WITH given AS (
     INSERT INTO wayword_ledger.claims AS c (key, holder)
@@ -49,6 +51,7 @@ WITH given AS (
 )
 SELECT EXISTS (SELECT FROM wayword_ledger.calls WHERE key = $1), EXISTS (SELECT FROM given)";
 
+/// Selects whether a call is answered.
 const IS_ANSWERED: &str = "SELECT EXISTS (SELECT FROM wayword_ledger.calls WHERE key = $1)";
 
 /// Selects the holder of a claim. While the server has been running for less than a lease, no holder counts as gone, because programs
@@ -91,6 +94,7 @@ SELECT EXISTS (SELECT FROM kept)";
 #[derive(Debug)]
 pub(crate) struct PostgresStore {
     link: Arc<DatabaseLink>,
+    /// How often this program gives a sign of life, and when others count as gone.
     pulse: LeaseTiming,
     /// Shows other programs that this one is running, from its first claim on.
     presence: OnceLock<Result<DatabasePresence, LedgerError>>,
@@ -119,7 +123,7 @@ impl CallStore for PostgresStore {
 
     fn find_answer(&self, key: &CallKey, run: &str) -> Result<Option<CallAnswer>, LedgerError> {
         let rows = self.link.query_rows("look for an answer", ANSWER_SQL, &[&key.as_str(), &run])?;
-        rows.first().map(|row| read_checked_entry(row, &self.ledger_location()).map(|kept| kept.answer)).transpose()
+        rows.first().map(|row| read_checked_entry(row, &self.ledger_location()).map(|entry| entry.answer)).transpose()
     }
 
     fn claim_call(&self, key: &CallKey, from: Option<&str>) -> Result<ClaimState, LedgerError> {

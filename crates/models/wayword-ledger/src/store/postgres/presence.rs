@@ -13,7 +13,9 @@ use wayword_database::ConnectionPool;
 /// How often a program gives a sign of life, and after how long without one it counts as gone.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LeaseTiming {
+    /// The time from one sign of life to the next.
     pub(crate) beat: Duration,
+    /// The lease: a program without a sign of life for this long counts as gone.
     pub(crate) gone: Duration,
 }
 
@@ -43,6 +45,7 @@ WITH old AS (
 gone AS (DELETE FROM wayword_ledger.presence AS p USING old WHERE p.program = old.program RETURNING p.program)
 DELETE FROM wayword_ledger.claims USING gone WHERE claims.holder = gone.program";
 
+/// Removes the entry and the claims of a program that ends.
 const LEAVE_SQL: &str = "
 WITH gone AS (DELETE FROM wayword_ledger.presence WHERE program = $1)
 DELETE FROM wayword_ledger.claims WHERE holder = $1";
@@ -65,15 +68,16 @@ impl DatabasePresence {
             connection.query_rows(SWEEP_SQL, &[&gone_s])
         })?;
         let (stop, stopped) = mpsc::channel();
-        let of = Arc::clone(link);
+        let thread_link = Arc::clone(link);
         thread::Builder::new()
             .name("ledger's signs of life".to_owned())
-            .spawn(move || go_on(&pool, &of, pulse.beat, &stopped))
+            .spawn(move || go_on(&pool, &thread_link, pulse.beat, &stopped))
             .map_err(LedgerError::io_error(link.ledger_location(), "start the ledger's thread"))?;
         Ok(Self { link: Arc::clone(link), stop: Some(stop) })
     }
 }
 
+/// The work of the thread: a sign of life after each pause, until the sender of `stopped` is dropped.
 fn go_on(pool: &ConnectionPool, link: &DatabaseLink, pause: Duration, stopped: &mpsc::Receiver<()>) {
     while let Err(mpsc::RecvTimeoutError::Timeout) = stopped.recv_timeout(pause) {
         // If this fails for a while, others take over this program's calls, and the first answer is kept.
@@ -83,6 +87,7 @@ fn go_on(pool: &ConnectionPool, link: &DatabaseLink, pause: Duration, stopped: &
     }
 }
 
+/// Gives one sign of life.
 fn write_beat(pool: &ConnectionPool, program: &str) -> Result<(), LedgerError> {
     Ok(pool
         .with_connection("give a sign of life", |connection| connection.query_rows(BEAT_SQL, &[&program]).map(drop))?)

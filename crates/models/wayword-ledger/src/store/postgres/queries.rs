@@ -12,11 +12,12 @@ use crate::{
 };
 use wayword_database::postgres::{self, types::ToSql};
 
-/// How many rows are fetched, or dropped, at a time.
+/// How many rows one query fetches. The next query goes on after the last of them.
 const PAGE_ROWS: i64 = 500;
+/// How many rows one statement drops. It is repeated until none is left, so that no statement runs into its time limit.
 const MOST_DROPPED: i64 = 5000;
 
-/// The conditions of a filter: model, run, and time.
+/// The conditions of a filter: model (`$1`), run (`$2`), and time (`$3`). Those that are NULL do not restrict.
 macro_rules! filtered {
     () => {
         " FROM wayword_ledger.calls WHERE ($1::text IS NULL OR model = $1)
@@ -25,6 +26,7 @@ macro_rules! filtered {
     };
 }
 
+/// A page of `$5` calls in the order of their keys, after key `$4`.
 const BY_KEY: &str = concat!(
     "SELECT ",
     columns!(),
@@ -32,6 +34,7 @@ const BY_KEY: &str = concat!(
     " AND ($4::text IS NULL OR calls.key > $4) ORDER BY calls.key LIMIT $5"
 );
 
+/// A page of `$5` calls, the latest first, after the call of time `$6` and key `$4`.
 const LATEST_SQL: &str = concat!(
     "SELECT ",
     columns!(),
@@ -39,6 +42,7 @@ const LATEST_SQL: &str = concat!(
     " AND ($6::bigint IS NULL OR at < $6 OR (at = $6 AND calls.key > $4)) ORDER BY at DESC, calls.key LIMIT $5"
 );
 
+/// Drops at most `$4` calls of a filter, with the notes of which runs used them.
 const PRUNE_SQL: &str = concat!(
     "WITH dropped AS (DELETE FROM wayword_ledger.calls WHERE key IN (SELECT calls.key",
     filtered!(),
@@ -47,15 +51,17 @@ const PRUNE_SQL: &str = concat!(
      SELECT count(*) FROM dropped"
 );
 
+/// Drops one call.
 const DROP_SQL: &str = "
 WITH swept AS (DELETE FROM wayword_ledger.uses WHERE key = $1)
 DELETE FROM wayword_ledger.calls WHERE key = $1";
 
+/// Sums of costs, grouped by an expression of SQL.
 macro_rules! costs {
-    ($of:literal) => {
+    ($group:literal) => {
         concat!(
             "SELECT ",
-            $of,
+            $group,
             ", count(*), least(coalesce(sum(tokens_in), 0), 9223372036854775807)::bigint,
              least(coalesce(sum(tokens_out), 0), 9223372036854775807)::bigint, coalesce(sum(usd), 0),
              count(*) FILTER (WHERE usd IS NULL) FROM wayword_ledger.calls GROUP BY 1 ORDER BY 1"
@@ -63,24 +69,28 @@ macro_rules! costs {
     };
 }
 
+/// The reserved and the spent amount of a run (billionths of a dollar), and its requests.
 const SPENT_SQL: &str = "
 SELECT r.reserved - coalesce(sum(s.released), 0)::bigint, coalesce(sum(s.spent), 0)::bigint,
     r.calls - coalesce(sum(s.cancelled), 0)::bigint
 FROM wayword_ledger.runs AS r LEFT JOIN wayword_ledger.settled AS s ON s.run = r.run
 WHERE r.run = $1 GROUP BY r.reserved, r.calls";
 
+/// The columns of a [`RunSpending`], in the order of its fields.
 const SPENDING_SQL: &str = "
 SELECT count(*), count(*) FILTER (WHERE outcome = 'answered'),
     count(*) FILTER (WHERE outcome IS NULL OR outcome = 'lost'), coalesce(sum(usd), 0),
     coalesce(sum(most) FILTER (WHERE outcome IS NULL OR outcome = 'lost'), 0)::bigint
 FROM wayword_ledger.sent WHERE run = $1 AND outcome IS DISTINCT FROM 'cancelled'";
 
+/// How many requests have no known answer.
 const LOST_SQL: &str = "SELECT count(*) FROM wayword_ledger.sent WHERE outcome IS NULL OR outcome = 'lost'";
 
 /// The values of a filter's conditions.
 struct FilterValues<'a> {
     model: Option<&'a str>,
     run: Option<&'a str>,
+    /// Only calls that were answered before this time, seconds since 1970.
     before: Option<i64>,
 }
 
@@ -104,10 +114,10 @@ impl CallQueries for PostgresStore {
     ) -> Result<(), LedgerError> {
         let values = FilterValues::from_filter(filter);
         let limit = filter.limit.filter(|_| order == CallOrder::Latest);
-        let mut left = limit.map_or(i64::MAX, |limit| i64::try_from(limit).unwrap_or(i64::MAX));
+        let mut remaining = limit.map_or(i64::MAX, |limit| i64::try_from(limit).unwrap_or(i64::MAX));
         let (mut key, mut at) = (None::<String>, None::<i64>);
-        while left > 0 {
-            let page = left.min(PAGE_ROWS);
+        while remaining > 0 {
+            let page = remaining.min(PAGE_ROWS);
             let [model, run, before] = values.as_sql_values();
             let rows = match order {
                 CallOrder::Key => self.link.query_rows("list calls", BY_KEY, &[model, run, before, &key, &page])?,
@@ -116,7 +126,7 @@ impl CallQueries for PostgresStore {
                 }
             };
             let is_last = (rows.len() as i64) < page;
-            left -= rows.len() as i64;
+            remaining -= rows.len() as i64;
             for row in &rows {
                 let row = read_checked_entry(row, &self.link.ledger_location())?;
                 (key, at) = (Some(row.key.to_string()), Some(row.at_unix_s));
@@ -227,6 +237,7 @@ impl CallQueries for PostgresStore {
     }
 }
 
+/// A column of a row as a count.
 fn count_column(row: &postgres::Row, at: usize) -> Result<u64, postgres::Error> {
     row.try_get::<_, i64>(at).map(|count| u64::try_from(count).unwrap_or(0))
 }

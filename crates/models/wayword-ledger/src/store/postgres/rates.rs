@@ -8,14 +8,17 @@ use super::link::DatabaseLink;
 use crate::{LedgerError, ProviderRates, store::SendSlot};
 use std::time::{Duration, Instant};
 
-/// Burst: how much may be sent above the rate in any second, in seconds of the rate.
+/// Burst: how much may be sent above the rate in any second, as seconds of the rate. At 0.1, 20 requests a second may be 22.
 const BURST_S: f64 = 0.1;
 
-/// Fewest requests that may be sent above the rate.
+/// Smallest burst, requests: a rate below 10 a second may be exceeded by one request, although a tenth of it is less.
 const LEAST_BURST: f64 = 1.0;
 
-/// Takes a turn. It is not synced to disk: the time of the next request need not survive a crash of the server, because a restart
-/// takes longer than a burst.
+/// Takes a turn at provider `$1`. `$2` and `$3` are the `takes_s` of its requests and tokens, `$4` and `$5` the `early_s`. Selects
+/// how long to wait, seconds; the later of the two rates decides.
+///
+/// It is not synced to disk: the time of the next request need not survive a crash of the server, because a restart takes longer
+/// than a burst.
 const TAKE_TURN_SQL: &str = "
 UPDATE wayword_ledger.rates
 SET requests = greatest(requests, clock_timestamp()) + make_interval(secs => $2),
@@ -26,6 +29,7 @@ RETURNING extract(epoch FROM greatest(
     tokens - make_interval(secs => $3) - make_interval(secs => $5)
 ) - clock_timestamp())::float8";
 
+/// Makes the row of a new provider.
 const NEW_RATE_SQL: &str = "
 INSERT INTO wayword_ledger.rates (provider, requests, tokens) VALUES ($1, clock_timestamp(), clock_timestamp())
 ON CONFLICT DO NOTHING";
@@ -33,7 +37,7 @@ ON CONFLICT DO NOTHING";
 /// The timing of a request under one rate, seconds.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct RateShare {
-    /// Time until the next request is due.
+    /// How far this request moves the time at which the next one is due.
     takes_s: f64,
     /// How much earlier than due it may leave, about half of the burst.
     early_s: f64,
@@ -42,7 +46,8 @@ struct RateShare {
 }
 
 impl RateShare {
-    /// `least` is the smallest burst, in the unit of the rate.
+    /// `per_s` is the rate, `amount` the size of the request, and `least` the smallest burst, all in requests or all in tokens.
+    /// `None` if there is no rate to keep.
     fn from_rate(per_s: Option<f64>, amount: f64, least: f64) -> Option<Self> {
         let per_s = per_s.filter(|per_s| per_s.is_finite() && *per_s > 0.0)?;
         let half = (per_s * BURST_S).max(least) / 2.0;

@@ -23,8 +23,8 @@ pub(super) fn read_checked_entry(row: &postgres::Row, place: &LedgerLocation) ->
         key: text(0).unwrap_or_else(|_| "of an unknown name".to_owned()),
         model: text(1).unwrap_or_else(|_| "an unknown model".to_owned()),
     };
-    let (kept, checksum) = read_entry(row).ok_or_else(changed)?;
-    if checksum == checksum::answer_checksum(&kept.key, &kept.answer) { Ok(kept) } else { Err(changed()) }
+    let (entry, checksum) = read_entry(row).ok_or_else(changed)?;
+    if checksum == checksum::answer_checksum(&entry.key, &entry.answer) { Ok(entry) } else { Err(changed()) }
 }
 
 /// A row and its checksum; `None` if a column has a value that this program never writes.
@@ -34,7 +34,7 @@ fn read_entry(row: &postgres::Row) -> Option<(LedgerEntry, String)> {
     let count = |at: usize| whole(at).and_then(|count| u64::try_from(count).ok());
     let small = |at: usize| whole(at).and_then(|count| u32::try_from(count).ok());
     let request = text(3)?;
-    let kept = LedgerEntry {
+    let entry = LedgerEntry {
         key: CallKey::from_stored(text(0)?),
         call: ModelCall {
             model: text(1)?,
@@ -54,15 +54,15 @@ fn read_entry(row: &postgres::Row) -> Option<(LedgerEntry, String)> {
         at_unix_s: whole(12)?,
         run: text(13)?,
     };
-    Some((kept, text(14)?))
+    Some((entry, text(14)?))
 }
 
-/// A count as the database takes it.
+/// A count as the database takes it, which has no unsigned numbers.
 pub(super) fn count_to_i64(count: u64) -> i64 {
     i64::try_from(count).unwrap_or(i64::MAX)
 }
 
-/// A text as the database takes it: without the character 0.
+/// A text as the database takes it: the character 0, which PostgreSQL refuses, becomes U+FFFD.
 pub(super) fn without_nul(text: &str) -> String {
     text.replace('\0', "\u{fffd}")
 }

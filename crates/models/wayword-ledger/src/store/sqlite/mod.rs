@@ -30,10 +30,12 @@ pub(crate) struct SqliteStore {
     /// Shows other programs that this one is running, from its first claim on. It is dropped after the writer, because
     /// the writer releases the claims.
     presence: OnceLock<Result<PresenceFile, LedgerError>>,
+    /// Whether other programs may have the ledger open: true for a file, false for memory.
     is_shared: bool,
 }
 
 impl SqliteStore {
+    /// Opens the ledger in a file, or makes it.
     pub(crate) fn open(path: &Path) -> Result<Self, LedgerError> {
         // SQLite gives names such as ":memory:" a special meaning. An absolute path is always a file.
         let path = &std::path::absolute(path).map_err(LedgerError::io_error(path, "find the ledger"))?;
@@ -88,8 +90,8 @@ impl SqliteStore {
         }
         let begin = || {
             let presence = PresenceFile::new(&self.path)?;
-            for by in presence::remove_stale_files(&self.path) {
-                self.writer.queue_write(LedgerWrite::Forget { by });
+            for ended_program in presence::remove_stale_files(&self.path) {
+                self.writer.queue_write(LedgerWrite::Forget { by: ended_program });
             }
             Ok(presence)
         };

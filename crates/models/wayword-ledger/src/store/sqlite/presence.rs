@@ -18,6 +18,7 @@ const PRESENCE_FILE_MARK: &str = ".in-use-";
 /// A file that this program keeps locked as long as it uses the ledger.
 #[derive(Debug)]
 pub(super) struct PresenceFile {
+    /// The unique name of this program: its process number, the time and a counter, in hexadecimal digits.
     name: String,
     path: PathBuf,
     /// Open as long as the lock is held.
@@ -81,7 +82,7 @@ pub(super) fn remove_stale_files(ledger: &Path) -> Vec<String> {
     names.filter(|name| is_removed(&presence_path(ledger, name))).collect()
 }
 
-/// Removes a file that no program has locked.
+/// Removes a file if no program has it locked. Returns whether it did.
 fn is_removed(path: &Path) -> bool {
     let Ok(file) = File::open(path) else { return false };
     match file.try_lock() {
@@ -90,6 +91,7 @@ fn is_removed(path: &Path) -> bool {
     }
 }
 
+/// The path of a program's file next to the ledger, as `ledger.db.in-use-1f-2e-0`.
 fn presence_path(ledger: &Path, name: &str) -> PathBuf {
     let mut path = ledger.as_os_str().to_owned();
     path.push(format!("{PRESENCE_FILE_MARK}{name}"));

@@ -15,7 +15,7 @@ use rusqlite::{ToSql, params, params_from_iter};
 /// Removes the uses of dropped calls, and makes the file smaller.
 const SWEEP_SQL: &str = "DELETE FROM uses WHERE key NOT IN (SELECT key FROM calls); VACUUM";
 
-/// A filter as SQL.
+/// A filter as SQL: its conditions, with a number such as `?1` for each value.
 struct FilterSql {
     sql: String,
     values: Vec<Box<dyn ToSql>>,
@@ -41,6 +41,7 @@ impl FilterSql {
     }
 }
 
+/// The order of the calls, and how many, as SQL.
 fn order_sql(filter: &LedgerFilter, order: CallOrder) -> String {
     let limit = || filter.limit.map_or(String::new(), |limit| format!(" LIMIT {limit}"));
     match order {
@@ -111,15 +112,16 @@ impl CallQueries for SqliteStore {
 
     fn sum_costs(&self, by: CostGrouping) -> Result<Vec<CostLine>, LedgerError> {
         let failed = LedgerError::store_error(&self.path, "read");
-        let of = match by {
+        let group = match by {
             CostGrouping::Model => "model",
             CostGrouping::Run => "run",
             CostGrouping::Day => "date(at, 'unixepoch')",
         };
         // SUM fails when integers overflow; TOTAL and CAST stop at the largest integer.
         let tokens = "CAST(TOTAL(tokens_in) AS INTEGER), CAST(TOTAL(tokens_out) AS INTEGER)";
-        let sql =
-            format!("SELECT {of}, COUNT(*), {tokens}, TOTAL(usd), SUM(usd IS NULL) FROM calls GROUP BY 1 ORDER BY 1");
+        let sql = format!(
+            "SELECT {group}, COUNT(*), {tokens}, TOTAL(usd), SUM(usd IS NULL) FROM calls GROUP BY 1 ORDER BY 1"
+        );
         let reader = self.lock_reader();
         let mut statement = reader.prepare(&sql).map_err(&failed)?;
         let lines = statement.query_map([], |row| {
@@ -159,7 +161,7 @@ impl CallQueries for SqliteStore {
                    TOTAL(usd), TOTAL(CASE WHEN outcome IS NULL OR outcome = 'lost' THEN most_usd END)
                    FROM sent WHERE run = ?1 AND outcome IS NOT 'cancelled'";
         let spending = |row: &rusqlite::Row<'_>| {
-            // TOTAL gives a number with a point.
+            // TOTAL gives a floating-point number.
             let whole = |at: usize| row.get::<_, f64>(at).map(|count| count as u64);
             Ok(RunSpending {
                 requests: count_column(row, 0)?,
@@ -173,6 +175,7 @@ impl CallQueries for SqliteStore {
     }
 }
 
+/// A column of a row as a count.
 fn count_column(row: &rusqlite::Row<'_>, at: usize) -> rusqlite::Result<u64> {
     row.get::<_, i64>(at).map(|count| u64::try_from(count).unwrap_or(0))
 }

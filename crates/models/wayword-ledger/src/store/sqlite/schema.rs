@@ -10,7 +10,7 @@ use std::{
 
 /// SQLite's application id of a ledger ("Wway"), which distinguishes it from any other database.
 const APPLICATION_ID: i64 = 0x5777_6179;
-/// Version of the tables.
+/// Version of the tables that this program makes and writes.
 const CURRENT_FORMAT: i64 = 2;
 /// Version of the first ledgers, in which answers have no checksums.
 const FIRST_FORMAT: i64 = 1;
@@ -112,7 +112,7 @@ pub(super) fn read_checked_entry(row: &rusqlite::Row<'_>, path: &Path) -> Result
         key: row.get(0).unwrap_or_else(|_| "of an unknown name".to_owned()),
         model: row.get(1).unwrap_or_else(|_| "an unknown model".to_owned()),
     };
-    let (kept, checksum) = read_entry(row).map_err(|error| match error {
+    let (entry, checksum) = read_entry(row).map_err(|error| match error {
         // A column has a value that this program never writes.
         rusqlite::Error::InvalidColumnType(..)
         | rusqlite::Error::IntegralValueOutOfRange(..)
@@ -121,15 +121,16 @@ pub(super) fn read_checked_entry(row: &rusqlite::Row<'_>, path: &Path) -> Result
         error => LedgerError::store_error(path, "read")(error),
     })?;
     match checksum {
-        Some(checksum) if checksum != checksum::answer_checksum(&kept.key, &kept.answer) => Err(changed()),
-        _ => Ok(kept),
+        Some(checksum) if checksum != checksum::answer_checksum(&entry.key, &entry.answer) => Err(changed()),
+        _ => Ok(entry),
     }
 }
 
+/// A row with [`CALL_COLUMNS`], and its checksum if it has one.
 fn read_entry(row: &rusqlite::Row<'_>) -> rusqlite::Result<(LedgerEntry, Option<String>)> {
     let count = |at: usize| row.get::<_, i64>(at).map(|count| u64::try_from(count).unwrap_or(0));
     let request: String = row.get(3)?;
-    let kept = LedgerEntry {
+    let entry = LedgerEntry {
         key: CallKey::from_stored(row.get(0)?),
         call: ModelCall {
             model: row.get(1)?,
@@ -149,5 +150,5 @@ fn read_entry(row: &rusqlite::Row<'_>) -> rusqlite::Result<(LedgerEntry, Option<
         at_unix_s: row.get(12)?,
         run: row.get(13)?,
     };
-    Ok((kept, row.get(14)?))
+    Ok((entry, row.get(14)?))
 }

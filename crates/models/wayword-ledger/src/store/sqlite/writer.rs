@@ -13,15 +13,15 @@ use std::{
     time::Duration,
 };
 
-/// How long the last checkpoint waits for other programs. They can make the checkpoint too.
+/// How long the last checkpoint, which moves the log into the main file, waits for other programs. They can make it too.
 const LAST_PATIENCE: Duration = Duration::from_secs(1);
 
-/// A change to the ledger.
+/// A change to the ledger. `by` is the name of the program that makes it, which a ledger in memory does not need.
 #[derive(Debug)]
 pub(super) enum LedgerWrite {
     /// A request is about to be sent.
     Sent { run: String, key: String, most_usd: Option<f64>, at: i64, by: Option<String> },
-    /// A request brought no answer. Its outcome is `lost` if it may have been paid.
+    /// The request with the number `sent` brought no answer. Its outcome is `lost` if it may have been paid.
     Ended { sent: i64, outcome: &'static str, reason: String },
     /// A call was answered. The program need not have claimed it.
     Answered { sent: Option<i64>, row: Box<LedgerEntry>, by: Option<String> },
@@ -88,37 +88,38 @@ impl GroupCommit for LedgerCommitter {
     }
 }
 
+/// Makes one write, and returns its number (see [`LedgerWriter`]).
 fn apply_write(transaction: &Transaction<'_>, write: &LedgerWrite) -> rusqlite::Result<i64> {
-    let run = |sql: &str, with: &[&dyn rusqlite::ToSql]| transaction.prepare_cached(sql)?.execute(with);
+    let execute = |sql: &str, values: &[&dyn rusqlite::ToSql]| transaction.prepare_cached(sql)?.execute(values);
     match write {
-        LedgerWrite::Sent { run: for_run, key, most_usd, at, by } => {
-            run("UPDATE claims SET sent = sent + 1 WHERE key = ?1 AND holder = ?2", params![key, by])?;
+        LedgerWrite::Sent { run, key, most_usd, at, by } => {
+            execute("UPDATE claims SET sent = sent + 1 WHERE key = ?1 AND holder = ?2", params![key, by])?;
             let sql = "INSERT INTO sent (run, key, most_usd, at) VALUES (?1, ?2, ?3, ?4)";
-            run(sql, params![for_run, key, most_usd, at])?;
+            execute(sql, params![run, key, most_usd, at])?;
             return Ok(transaction.last_insert_rowid());
         }
         LedgerWrite::Ended { sent, outcome, reason } => {
-            run("UPDATE sent SET outcome = ?2, reason = ?3 WHERE id = ?1", params![sent, outcome, reason])?;
+            execute("UPDATE sent SET outcome = ?2, reason = ?3 WHERE id = ?1", params![sent, outcome, reason])?;
         }
-        LedgerWrite::Used { run: by, key } => {
-            run("INSERT OR IGNORE INTO uses (run, key) VALUES (?1, ?2)", params![by, key])?;
+        LedgerWrite::Used { run, key } => {
+            execute("INSERT OR IGNORE INTO uses (run, key) VALUES (?1, ?2)", params![run, key])?;
         }
         LedgerWrite::Flush => {}
         LedgerWrite::Claim { key, by, from } => {
             return claim_call(transaction, key, by, from.as_deref()).map(|claimed| claimed as i64);
         }
         LedgerWrite::Release { key, by } => {
-            run("DELETE FROM claims WHERE key = ?1 AND holder = ?2", params![key, by])?;
+            execute("DELETE FROM claims WHERE key = ?1 AND holder = ?2", params![key, by])?;
         }
         LedgerWrite::Forget { by } => {
-            run("DELETE FROM claims WHERE holder = ?1", params![by])?;
+            execute("DELETE FROM claims WHERE holder = ?1", params![by])?;
         }
         LedgerWrite::Answered { sent, row, by } => {
             let is_first = insert_answer(transaction, row)?;
-            run("DELETE FROM claims WHERE key = ?1 AND holder = ?2", params![row.key.as_str(), by])?;
-            run("INSERT OR IGNORE INTO uses (run, key) VALUES (?1, ?2)", params![row.run, row.key.as_str()])?;
+            execute("DELETE FROM claims WHERE key = ?1 AND holder = ?2", params![row.key.as_str(), by])?;
+            execute("INSERT OR IGNORE INTO uses (run, key) VALUES (?1, ?2)", params![row.run, row.key.as_str()])?;
             if let Some(sent) = sent {
-                run("UPDATE sent SET outcome = 'answered', usd = ?2 WHERE id = ?1", params![sent, row.answer.usd])?;
+                execute("UPDATE sent SET outcome = 'answered', usd = ?2 WHERE id = ?1", params![sent, row.answer.usd])?;
             }
             return Ok(i64::from(is_first));
         }

@@ -86,7 +86,9 @@ impl<'a> PickleMachine<'a> {
     }
 
     fn take_byte(&mut self) -> Result<u8, String> {
-        Ok(self.take_bytes(1)?[0])
+        let (byte, rest) = self.rest.split_first().ok_or("it is cut off")?;
+        self.rest = rest;
+        Ok(*byte)
     }
 
     /// Reads an unsigned number of up to four bytes, the lowest byte first.
@@ -176,7 +178,7 @@ impl<'a> PickleMachine<'a> {
     /// Pushes a function or type by its name. Names that are not known are an error.
     fn push_known_name(&mut self) -> Result<(), String> {
         let (module, name) = (self.take_line()?, self.take_line()?);
-        let known = match (&module[..], &name[..]) {
+        let known = match (module.as_str(), name.as_str()) {
             ("collections", "OrderedDict") => PickleCallable::OrderedDict,
             ("torch", "FloatStorage") => PickleCallable::Floats,
             ("torch", "LongStorage") => PickleCallable::Longs,
@@ -221,7 +223,7 @@ impl<'a> PickleMachine<'a> {
             PickleValue::Text(key),
             PickleValue::Text(_),
             PickleValue::Whole(count),
-        ] = &parts.values[..]
+        ] = parts.values.as_slice()
         else {
             return Err("a storage is not described as PyTorch does".to_owned());
         };

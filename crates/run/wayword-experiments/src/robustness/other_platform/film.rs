@@ -24,12 +24,12 @@ pub(super) fn recording_name(path: &Path) -> String {
 /// # Errors
 /// When a view has no picture, or a file cannot be written.
 pub(super) fn film_paths(base: &BaseRun, world: &dyn Platform, folder: &FilePath) -> Result<(), CommandError> {
-    let left: Vec<&Path> = base.paths.iter().filter(|path| !folder.join(recording_name(path)).is_dir()).collect();
+    let unfilmed: Vec<&Path> = base.paths.iter().filter(|path| !folder.join(recording_name(path)).is_dir()).collect();
     let filming = |path: &&Path| {
         interrupt::check_interrupt()?;
         film_path(path, world, folder)
     };
-    in_order(&left, core_count(), filming, |_, made| made.map(|()| true))
+    in_order(&unfilmed, core_count(), filming, |_, made| made.map(|()| true))
 }
 
 fn film_path(path: &Path, world: &dyn Platform, folder: &FilePath) -> Result<(), CommandError> {

@@ -53,20 +53,22 @@ impl OtherPlatformScenes {
         if name == "recording" {
             return Self::open_filmed(base, world, &out.join("films"));
         }
-        let made = match data {
+        let saved_houses = match data {
             None if name == "habitat" => Some(save_houses(base, &out.join("houses"))?),
             _ => None,
         };
-        let data = data.map(FilePath::new).or(made.as_deref());
+        let data = data.map(FilePath::new).or(saved_houses.as_deref());
         let platform = platforms::open_named(name, data, at, None)?;
-        let there = platform.list_scenes()?;
+        let scenes_there = platform.list_scenes()?;
         let (mut scene_of, mut base_of) = (BTreeMap::new(), BTreeMap::new());
         for path in &base.paths {
-            let called = scene_names::names_elsewhere(names, path.scene.as_str());
-            let Some(scene) = called.iter().find_map(|name| there.iter().find(|scene| scene.as_str() == *name)) else {
-                let called = called.join(" or ");
+            let names_there = scene_names::names_elsewhere(names, path.scene.as_str());
+            let Some(scene) =
+                names_there.iter().find_map(|name| scenes_there.iter().find(|scene| scene.as_str() == *name))
+            else {
+                let names_there = names_there.join(" or ");
                 let problem =
-                    format!("--change platform={spec}: it has no scene {called} for {} of the run", path.scene);
+                    format!("--change platform={spec}: it has no scene {names_there} for {} of the run", path.scene);
                 let hint = "name data that has all scenes of the run, or give the name of each there, as in --scene-name house2-3=home_2";
                 return Err(CommandError::usage(problem, hint));
             };
@@ -79,11 +81,11 @@ impl OtherPlatformScenes {
     fn open_filmed(base: &BaseRun, world: &dyn Platform, folder: &FilePath) -> Result<Self, CommandError> {
         film::film_paths(base, world, folder)?;
         let platform = platforms::open_named("recording", Some(folder), None, None)?;
-        let there = platform.list_scenes()?;
+        let recordings = platform.list_scenes()?;
         let (mut scene_of, mut base_of) = (BTreeMap::new(), BTreeMap::new());
         for path in &base.paths {
             let name = film::recording_name(path);
-            if let Some(scene) = there.iter().find(|scene| scene.as_str() == name) {
+            if let Some(scene) = recordings.iter().find(|scene| scene.as_str() == name) {
                 scene_of.insert(name, scene.clone());
                 base_of.insert(scene.clone(), path.scene.clone());
             }
@@ -95,13 +97,13 @@ impl OtherPlatformScenes {
     pub(super) fn world_for_path(&self, path: &Path, sees_labels: bool) -> Result<ChangedWorld<'_>, String> {
         let key = if self.is_film { film::recording_name(path) } else { path.scene.to_string() };
         let scene = self.scene_of.get(&key).cloned().ok_or("it is not there")?;
-        let found = if self.is_film { self.as_filmed(path, &scene)? } else { Path { scene, ..path.clone() } };
-        let base_frame_of = found.frames.iter().map(|frame| nearest_frame(path, frame)).collect();
+        let path_there = if self.is_film { self.as_filmed(path, &scene)? } else { Path { scene, ..path.clone() } };
+        let base_frame_of = path_there.frames.iter().map(|frame| nearest_frame(path, frame)).collect();
         let platform: Box<dyn Platform + '_> = match sees_labels {
             true => Box::new(RememberingPlatform::labels_of(self.platform.as_ref())),
             false => Box::new(self.platform.as_ref()),
         };
-        Ok(ChangedWorld { platform, path: found, base_frame_of })
+        Ok(ChangedWorld { platform, path: path_there, base_frame_of })
     }
 
     /// The scene of the run that a scene of this platform corresponds to.
@@ -111,9 +113,9 @@ impl OtherPlatformScenes {
 
     /// The path of a recording, under the id and with the target of the run's path.
     fn as_filmed(&self, path: &Path, scene: &SceneId) -> Result<Path, String> {
-        let whole = PathRequest { hops: 1..=usize::MAX, length_m: 0.0..=f64::MAX };
-        let found = self.platform.sample_path(scene, &whole, 0).map_err(|error| error.to_string())?;
-        Ok(Path { id: path.id.clone(), target: path.target.clone(), ..found })
+        let whole_recording = PathRequest { hops: 1..=usize::MAX, length_m: 0.0..=f64::MAX };
+        let recorded = self.platform.sample_path(scene, &whole_recording, 0).map_err(|error| error.to_string())?;
+        Ok(Path { id: path.id.clone(), target: path.target.clone(), ..recorded })
     }
 }
 

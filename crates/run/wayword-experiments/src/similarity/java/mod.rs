@@ -19,16 +19,20 @@ use wayword_run::error::CommandError;
 
 /// Time limit for a program over one set of texts.
 const MOST_TIME: Duration = Duration::from_secs(1800);
-/// Most bytes that are read of a line.
+/// Most bytes that are read of a line of a program's output, 64 MiB; the rest counts as the next line.
 const MOST_LINE: u64 = 64 << 20;
 
 /// The scores of one program, over the same sets of texts as the other metrics.
 #[derive(Debug, Serialize)]
 pub(super) struct JavaScores {
     pub(super) name: &'static str,
+    /// The score of A's texts against all of B's texts.
     pub(super) all: Option<f64>,
+    /// The score of A's texts against all of B's texts but the first of each item.
     pub(super) rest: Option<f64>,
+    /// The score of B's first text of each item against the others of the item.
     pub(super) person: Option<f64>,
+    /// The score of another path's text against the same references.
     pub(super) other_path: Option<f64>,
 }
 
@@ -52,7 +56,7 @@ pub(super) fn run_java_scorers(
 ) -> Result<Vec<JavaScores>, CommandError> {
     let words = vocabulary.words_by_number();
     let line = |text: &NumberedText| text.to_line(&words);
-    let mut found = Vec::new();
+    let mut scores = Vec::new();
     let programs: [(&'static str, Option<&Path>, JavaScorer); 2] = [
         ("METEOR", args.meteor_jar.as_deref(), meteor::meteor_score),
         ("SPICE", args.spice_jar.as_deref(), spice::spice_score),
@@ -63,31 +67,33 @@ pub(super) fn run_java_scorers(
             let problem = format!("{}: there is no such file", jar.display());
             return Err(CommandError::usage(problem, "give the .jar of the program (docs/CRITICS.md)"));
         }
-        let of_rows = |rows: &[CaptionRow<'_>]| -> Result<Option<f64>, CommandError> {
-            let said: Vec<TextWithReferences> = rows
+        let score_rows = |rows: &[CaptionRow<'_>]| -> Result<Option<f64>, CommandError> {
+            let texts: Vec<TextWithReferences> = rows
                 .iter()
                 .map(|row| TextWithReferences {
                     text: line(row.text),
                     references: row.references.iter().map(|reference| line(reference)).collect(),
                 })
                 .collect();
-            (!said.is_empty()).then(|| score(args, jar, &said)).transpose()
+            (!texts.is_empty()).then(|| score(args, jar, &texts)).transpose()
         };
-        found.push(JavaScores {
+        scores.push(JavaScores {
             name,
-            all: of_rows(&sets.all)?,
-            rest: of_rows(&sets.rest)?,
-            person: of_rows(&sets.person)?,
-            other_path: sets.other_path.as_deref().map_or(Ok(None), of_rows)?,
+            all: score_rows(&sets.all)?,
+            rest: score_rows(&sets.rest)?,
+            person: score_rows(&sets.person)?,
+            other_path: sets.other_path.as_deref().map_or(Ok(None), score_rows)?,
         });
     }
-    Ok(found)
+    Ok(scores)
 }
 
 /// A running program. It is killed when it exceeds the time limit, and when this value is dropped.
 struct JavaProcess {
     child: Arc<Mutex<Child>>,
+    /// The watching thread ends when this sender is dropped.
     done: Option<mpsc::Sender<()>>,
+    /// The thread that kills the program at the time limit.
     watch: Option<JoinHandle<()>>,
 }
 

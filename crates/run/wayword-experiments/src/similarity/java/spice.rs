@@ -10,27 +10,28 @@ use std::{
 };
 use wayword_run::error::CommandError;
 
-/// Most bytes of its file of scores.
+/// Most bytes of the file of scores that is read, 256 MiB; a larger file counts as a failure of SPICE.
 const MOST_SCORES: u64 = 256 << 20;
 
 /// The mean F score of a set of texts. Texts whose score is no number are left out, as in the reference.
-pub(super) fn spice_score(args: &Args, jar: &Path, said: &[TextWithReferences]) -> Result<f64, CommandError> {
+pub(super) fn spice_score(args: &Args, jar: &Path, texts: &[TextWithReferences]) -> Result<f64, CommandError> {
     let folder = SpiceFolder::new()?;
-    let [asked, answered, cache] = ["in.json", "out.json", "cache"].map(|name| folder.0.join(name));
-    let one = |(at, said): (usize, &TextWithReferences)| json!({ "image_id": at, "test": said.text, "refs": said.references });
-    let all = Value::from(said.iter().enumerate().map(one).collect::<Vec<_>>());
-    fs::write(&asked, all.to_string()).map_err(CommandError::io(&asked, "write"))?;
+    let [input_file, score_file, cache] = ["in.json", "out.json", "cache"].map(|name| folder.0.join(name));
+    let to_entry =
+        |(at, row): (usize, &TextWithReferences)| json!({ "image_id": at, "test": row.text, "refs": row.references });
+    let all = Value::from(texts.iter().enumerate().map(to_entry).collect::<Vec<_>>());
+    fs::write(&input_file, all.to_string()).map_err(CommandError::io(&input_file, "write"))?;
     fs::create_dir(&cache).map_err(CommandError::io(&cache, "make the folder"))?;
     let mut command = Command::new(&args.java);
     command
         .arg("-Xmx8G")
         .arg("-jar")
         .arg(absolute_path(jar))
-        .arg(&asked)
+        .arg(&input_file)
         .arg("-cache")
         .arg(&cache)
         .arg("-out")
-        .arg(&answered);
+        .arg(&score_file);
     command.args(["-subset", "-silent"]);
     let (running, pipes) = JavaProcess::start(&mut command)?;
     // Its output has no use, but is read, because a full pipe would block the program.
@@ -42,14 +43,14 @@ pub(super) fn spice_score(args: &Args, jar: &Path, said: &[TextWithReferences]) 
         let problem = format!("{}: the program failed, or did not answer as SPICE does", jar.display());
         CommandError::usage(problem, "use spice-1.0.jar with Stanford's models in lib/ beside it, and Java 8")
     };
-    let is_there = fs::metadata(&answered).is_ok_and(|file| file.len() <= MOST_SCORES);
+    let is_there = fs::metadata(&score_file).is_ok_and(|file| file.len() <= MOST_SCORES);
     if !running.is_well_at_end() || !is_there {
         return Err(failed());
     }
-    let text = fs::read_to_string(&answered).map_err(CommandError::io(&answered, "read"))?;
-    let found: Vec<Value> = serde_json::from_str(&text).map_err(|_| failed())?;
-    let scores: Vec<f64> = found.iter().filter_map(|one| one["scores"]["All"]["f"].as_f64()).collect();
-    if found.len() != said.len() || scores.is_empty() {
+    let text = fs::read_to_string(&score_file).map_err(CommandError::io(&score_file, "read"))?;
+    let answers: Vec<Value> = serde_json::from_str(&text).map_err(|_| failed())?;
+    let scores: Vec<f64> = answers.iter().filter_map(|answer| answer["scores"]["All"]["f"].as_f64()).collect();
+    if answers.len() != texts.len() || scores.is_empty() {
         return Err(failed());
     }
     Ok(scores.iter().sum::<f64>() / scores.len() as f64)

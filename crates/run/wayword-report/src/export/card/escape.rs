@@ -33,8 +33,8 @@ pub(super) fn write_card_value(out: &mut Output<'_>, _state: &State<'_, '_>, val
 /// Filter `yaml`: the text as a quoted YAML string. A JSON string is a valid YAML string.
 #[expect(clippy::needless_pass_by_value, reason = "a filter gets its values")]
 pub(super) fn yaml_filter(text: String) -> Value {
-    let seen: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    Value::from_safe_string(serde_json::Value::from(seen).to_string())
+    let printable: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    Value::from_safe_string(serde_json::Value::from(printable).to_string())
 }
 
 /// Filter `plain`: passes a text through unescaped. Only for texts that this program has checked or made: names of splits and files.

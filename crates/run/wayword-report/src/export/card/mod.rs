@@ -20,8 +20,9 @@ use wayword_run::{
     terms,
 };
 
+/// The template of the card, in Markdown with a YAML head.
 const CARD_TEMPLATE: &str = include_str!("card.md");
-/// The hub's classes of size, each with its upper limit.
+/// The classes of size of the Hugging Face hub, each with its upper limit in texts.
 const HUB_SIZE_CLASSES: [(usize, &str); 4] =
     [(1_000, "n<1K"), (10_000, "1K<n<10K"), (100_000, "10K<n<100K"), (1_000_000, "100K<n<1M")];
 
@@ -46,12 +47,15 @@ struct DatasetCard {
     outcome: CardVerdictCounts,
     rejected: usize,
     checks: Vec<CheckLine>,
+    /// Texts that may mean several places or objects, among those that were checked for that (`looked_at`).
     ambiguous: usize,
     looked_at: usize,
     platforms: Vec<PlatformLine>,
+    /// Whether the scenes of a platform belong to somebody, so that their terms apply.
     is_somebodys: bool,
 }
 
+/// A split with its file and its size.
 #[derive(Debug, Serialize)]
 struct SplitLine {
     name: String,
@@ -69,6 +73,7 @@ struct RoleLine {
     roles: CardRoles,
 }
 
+/// The names of the models and rules that played the roles, as the provenance of a text has them.
 #[derive(Debug, Serialize, PartialEq, Eq, PartialOrd, Ord)]
 struct CardRoles {
     asker: String,
@@ -87,6 +92,7 @@ struct CardVerdictCounts {
     failed: usize,
 }
 
+/// A check with its verdicts.
 #[derive(Debug, Serialize)]
 struct CheckLine {
     name: &'static str,
@@ -94,6 +100,7 @@ struct CheckLine {
     outcome: CardVerdictCounts,
 }
 
+/// A platform with the terms of its scenes.
 #[derive(Debug, Serialize)]
 struct PlatformLine {
     name: String,
@@ -140,16 +147,17 @@ fn render_card(card: &DatasetCard) -> Result<String, minijinja::Error> {
 fn count_rejected(args: &ExportArgs) -> Result<usize, CommandError> {
     let mut rejected = 0;
     for run in &args.run {
-        let of_run: Vec<RejectedText> = read_lines(&run.join(file::REJECTED))?;
-        let is_of_style = |text: &&RejectedText| args.style.as_ref().is_none_or(|style| *style == text.style);
-        rejected += of_run.iter().filter(is_of_style).count();
+        let rejected_texts: Vec<RejectedText> = read_lines(&run.join(file::REJECTED))?;
+        let has_style = |text: &&RejectedText| args.style.as_ref().is_none_or(|style| *style == text.style);
+        rejected += rejected_texts.iter().filter(has_style).count();
     }
     Ok(rejected)
 }
 
 impl DatasetCard {
     fn new(name: String, records: &[InstructionRecord], splits: &[String], rejected: usize) -> Self {
-        let count = |is: fn(&InstructionRecord) -> bool| records.iter().filter(|record| is(record)).count();
+        let count =
+            |is_counted: fn(&InstructionRecord) -> bool| records.iter().filter(|record| is_counted(record)).count();
         let looked_at = records.iter().filter_map(|record| record.instruction.ambiguity.as_ref());
         let largest = "1M<n<10M";
         let all: Vec<&InstructionRecord> = records.iter().collect();
@@ -218,12 +226,12 @@ fn group_records<K: Ord>(
 }
 
 fn split_lines(records: &[InstructionRecord], splits: &[String]) -> Vec<SplitLine> {
-    let line = |(split, of_split): (&str, Vec<&InstructionRecord>)| SplitLine {
+    let line = |(split, split_records): (&str, Vec<&InstructionRecord>)| SplitLine {
         name: split.to_owned(),
         file: file_name(split),
-        instructions: of_split.len(),
-        paths: count_paths(&of_split),
-        scenes: count_scenes(&of_split),
+        instructions: split_records.len(),
+        paths: count_paths(&split_records),
+        scenes: count_scenes(&split_records),
     };
     group_records(records, |index, _| splits.get(index).map_or("", String::as_str)).into_iter().map(line).collect()
 }
@@ -248,7 +256,10 @@ fn role_lines(records: &[InstructionRecord]) -> Vec<RoleLine> {
             version: provenance.wayword,
         }
     };
-    group_records(records, roles).into_iter().map(|(roles, of)| RoleLine { instructions: of.len(), roles }).collect()
+    group_records(records, roles)
+        .into_iter()
+        .map(|(roles, texts)| RoleLine { instructions: texts.len(), roles })
+        .collect()
 }
 
 fn check_lines(records: &[InstructionRecord]) -> Vec<CheckLine> {
@@ -261,9 +272,9 @@ fn check_lines(records: &[InstructionRecord]) -> Vec<CheckLine> {
 }
 
 fn platform_lines(records: &[InstructionRecord]) -> Vec<PlatformLine> {
-    let line = |(platform, of): (String, Vec<&InstructionRecord>)| PlatformLine {
-        instructions: of.len(),
-        scenes: count_scenes(&of),
+    let line = |(platform, platform_records): (String, Vec<&InstructionRecord>)| PlatformLine {
+        instructions: platform_records.len(),
+        scenes: count_scenes(&platform_records),
         terms: terms::scene_terms(&platform),
         name: platform,
     };

@@ -25,37 +25,38 @@ pub(super) fn split_instruction(instruction: &Instruction, frame_steps: &[usize]
     let text = instruction.text.as_str();
     let Some(last) = frame_steps.len().checked_sub(1) else { return Vec::new() };
     let mut all: Vec<InstructionPart> = Vec::new();
-    let mut waiting: Option<usize> = None;
+    // Where the words without evidence before the first part begin; the first part takes them.
+    let mut waiting_begin: Option<usize> = None;
     for step in read_steps(text, &read_instruction(text, &std::collections::BTreeSet::new())) {
-        let begin = waiting.take().unwrap_or(step.span[0]);
+        let begin = waiting_begin.take().unwrap_or(step.span[0]);
         let span = [begin, step.span[1]];
         match (part_from_span(instruction, span, last), all.last_mut()) {
             (Some(part), _) => all.push(part),
             (None, Some(before)) => before.span[1] = span[1],
-            (None, None) => waiting = Some(begin),
+            (None, None) => waiting_begin = Some(begin),
         }
     }
     let ends = end_frames(&all, last);
     let mut from = 0;
-    let told = all.iter().zip(ends).map(|(part, to)| {
+    let parts = all.iter().zip(ends).map(|(part, to)| {
         let frames = [from, to];
         from = to;
         let span = trim_span(text, part.span);
         let words = text.get(span[0]..span[1]).unwrap_or_default().to_owned();
         SubInstruction { text: words, span, frames, steps: frames.map(|frame| frame_steps[frame]) }
     });
-    told.collect()
+    parts.collect()
 }
 
 /// The part for a span of the text; `None` if no mention lies in it.
 fn part_from_span(instruction: &Instruction, span: [usize; 2], last: usize) -> Option<InstructionPart> {
     let within = |mention: &&wayword_core::TextMention| span[0] <= mention.span[0] && mention.span[1] <= span[1];
-    let told: Vec<_> = instruction.mentions.iter().filter(within).collect();
-    let over = |mention: &wayword_core::TextMention| {
+    let mentions: Vec<_> = instruction.mentions.iter().filter(within).collect();
+    let end_frame = |mention: &wayword_core::TextMention| {
         if mention.kind == MentionKind::Turn { (mention.frame + 1).min(last) } else { mention.frame.min(last) }
     };
-    let end = told.iter().map(|mention| over(mention)).max()?;
-    let opening = told.iter().min_by_key(|mention| mention.span[0]);
+    let end = mentions.iter().map(|mention| end_frame(mention)).max()?;
+    let opening = mentions.iter().min_by_key(|mention| mention.span[0]);
     let turns_at = opening.filter(|mention| mention.kind == MentionKind::Turn).map(|mention| mention.frame.min(last));
     Some(InstructionPart { span, end, turns_at })
 }

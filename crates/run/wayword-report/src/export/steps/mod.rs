@@ -65,7 +65,7 @@ pub(super) fn write_steps(
     let [run] = args.run.as_slice() else { return Err(CommandError::usage("--run is missing", "give one run")) };
     let scenes = WalkingScenes::open_run(&settings_of(run)?, [steps.width_px, steps.height_px])?;
     fs::create_dir_all(out).map_err(CommandError::io(out, "make the folder"))?;
-    let _held = lock_folder(out)?;
+    let _folder_lock = lock_folder(out)?;
     keep_config(out, &steps)?;
     let mut store = TrajectoryStore::open(out)?;
     let walks = walks_from_records(records, &splits);
@@ -77,10 +77,10 @@ pub(super) fn write_steps(
     )?;
     store.sort_and_sync(&walks)?;
     // Reads the file back, so that the reported figures are those of the file.
-    let taken = read_trajectories(&store.trajectories_file())?;
-    write_episodes(args, out, &walks, &taken, output)?;
+    let trajectories = read_trajectories(&store.trajectories_file())?;
+    write_episodes(args, out, &walks, &trajectories, output)?;
     tell_terms(records, output);
-    report_written(out, &taken, store.failed_count(), output)
+    report_written(out, &trajectories, store.failed_count(), output)
 }
 
 /// Takes all walks that are not done yet, several at the same time.
@@ -90,16 +90,17 @@ fn take_walks(
     store: &mut TrajectoryStore,
     output: &CommandOutput,
 ) -> Result<(), CommandError> {
+    // A unit is written as a whole: the walks of one shard, or a single walk.
     let numbers: Vec<usize> = (0..walks.len()).collect();
     let units: Vec<&[usize]> = numbers.chunks(maker.steps.shard.unwrap_or(1)).collect();
     let bar = output.progress_bar(walks.len(), "walks");
-    let _graceful = interrupt::finish_first(None);
-    let made = |unit: &&[usize]| {
+    let _interrupt_guard = interrupt::finish_first(None);
+    let make = |unit: &&[usize]| {
         interrupt::check_interrupt()?;
         maker.make_unit(walks, unit)
     };
-    let kept = in_order(&units, core_count(), made, |unit, made| {
-        store.keep_batch(&made?)?;
+    let kept = in_order(&units, core_count(), make, |unit, batch| {
+        store.keep_batch(&batch?)?;
         bar.inc(unit.len() as u64);
         Ok::<bool, CommandError>(true)
     });
@@ -118,13 +119,13 @@ fn write_episodes(
     let by_id: BTreeMap<&str, &ActionTrajectory> = taken.iter().map(|taken| (taken.id.as_str(), taken)).collect();
     let splits: BTreeSet<&str> = taken.iter().map(|taken| taken.split.as_str()).collect();
     for split in splits {
-        let (mut records, mut names, mut acted) = (Vec::new(), Vec::new(), BTreeMap::new());
+        let (mut records, mut names, mut actions) = (Vec::new(), Vec::new(), BTreeMap::new());
         let of_split = walks.iter().filter(|walk| walk.split == split);
         for (walk, taken) in of_split.filter_map(|walk| Some((walk, by_id.get(walk.path.id.as_str())?))) {
             for (name, record) in &walk.texts {
                 records.push((*record).clone());
                 names.push(name.clone());
-                acted.insert(name.clone(), EpisodeActions::from_positions(&taken.actions, &taken.positions));
+                actions.insert(name.clone(), EpisodeActions::from_positions(&taken.actions, &taken.positions));
             }
         }
         let mut episodes = items::episodes_from_records(DatasetFormat::Vlnce, &args.run, &records, output);
@@ -132,24 +133,24 @@ fn write_episodes(
             episode.id = name;
         }
         items::write_items(DatasetFormat::Vlnce, &out.join(format!("{split}.json.gz")), &records, episodes)?;
-        vlnce_actions::write_actions(&out.join(format!("{split}_gt.json.gz")), &acted)?;
+        vlnce_actions::write_actions(&out.join(format!("{split}_gt.json.gz")), &actions)?;
     }
     Ok(())
 }
 
 fn report_written(
     out: &Path,
-    taken: &[ActionTrajectory],
+    trajectories: &[ActionTrajectory],
     failed: usize,
     output: &CommandOutput,
 ) -> Result<Exit, CommandError> {
     let written = WrittenTrajectories {
         folder: out.to_owned(),
-        walks: taken.len(),
-        instructions: taken.iter().map(|taken| taken.instructions.len()).sum(),
-        pictures: taken.iter().map(|taken| taken.actions.len()).sum(),
+        walks: trajectories.len(),
+        instructions: trajectories.iter().map(|trajectory| trajectory.instructions.len()).sum(),
+        pictures: trajectories.iter().map(|trajectory| trajectory.actions.len()).sum(),
         failed,
-        farthest_off_m: taken.iter().map(|taken| taken.off_m).fold(0.0, f64::max),
+        farthest_off_m: trajectories.iter().map(|trajectory| trajectory.off_m).fold(0.0, f64::max),
     };
     let failures = match failed {
         0 => String::new(),

@@ -45,21 +45,21 @@ pub fn replay_export(folder: &Path, run: &Path, every: usize) -> Result<Trajecto
         .into_iter()
         .filter_map(|record| floor_positions(&record.path).last().map(|end| (record.path.id, *end)))
         .collect();
-    let mut told = TrajectoryReplay::default();
+    let mut counts = TrajectoryReplay::default();
     for trajectory in read_trajectories(&folder.join(super::store::TRAJECTORIES_FILE))? {
-        told.walks += 1;
+        counts.walks += 1;
         match replay_end(&trajectory, &scenes, &steps)?.zip(ends.get(&trajectory.id)) {
             Some((end, wanted)) => {
-                told.farthest_off_m = told.farthest_off_m.max((end - *wanted).truncate().length());
+                counts.farthest_off_m = counts.farthest_off_m.max((end - *wanted).truncate().length());
             }
-            None => told.astray += 1,
+            None => counts.astray += 1,
         }
         for (number, written) in read_pictures(folder, &trajectory)?.into_iter().enumerate().step_by(every.max(1)) {
-            told.pictures += 1;
-            told.others += usize::from(take_picture(&scenes, &steps, &trajectory, number)? != written);
+            counts.pictures += 1;
+            counts.others += usize::from(take_picture(&scenes, &steps, &trajectory, number)? != written);
         }
     }
-    Ok(told)
+    Ok(counts)
 }
 
 /// The place to which the actions of a walk lead; `None` if a step is blocked, or a pose differs from the written one.

@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 use wayword_habitat::walk::AgentGait;
 use wayword_run::{error::CommandError, own_format::OwnFormat};
 
-/// Sides of pictures, pixels.
+/// The allowed lengths of the sides of pictures, pixels.
 const SIDE_PX: std::ops::RangeInclusive<u32> = 16..=4096;
 
-/// Most walks in a shard: the pictures of a shard are in memory before it is written.
+/// Most walks in a shard, because the pictures of a shard are in memory before it is written. More are refused.
 const MOST_IN_SHARD: usize = 500;
 
 /// The agent's gait and camera, and the way in which pictures are stored.
@@ -17,10 +17,13 @@ const MOST_IN_SHARD: usize = 500;
 pub(super) struct StepExportSettings {
     pub(super) forward_m: f64,
     pub(super) turn_deg: f64,
+    /// How far a step may end off the walk, metres.
     pub(super) tolerance_m: f64,
     pub(super) width_px: u32,
     pub(super) height_px: u32,
+    /// Horizontal field of view of the pictures, degrees.
     pub(super) fov_deg: f64,
+    /// Height of the camera over the floor, metres.
     pub(super) eye_m: f64,
     /// Quality of the JPEG files, percent.
     pub(super) jpeg_quality: u8,

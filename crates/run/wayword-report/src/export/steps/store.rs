@@ -57,9 +57,10 @@ impl TrajectoryStore {
         self.trajectories.keys().map(str::to_owned).collect()
     }
 
-    pub(super) fn keep_batch(&mut self, made: &TrajectoryBatch) -> Result<(), CommandError> {
-        made.taken.iter().try_for_each(|taken| self.trajectories.append(&trajectory_line(taken)))?;
-        made.failed.iter().try_for_each(|failed| self.errors.append(failed))
+    /// Writes the lines of the walks of a unit.
+    pub(super) fn keep_batch(&mut self, batch: &TrajectoryBatch) -> Result<(), CommandError> {
+        batch.taken.iter().try_for_each(|taken| self.trajectories.append(&trajectory_line(taken)))?;
+        batch.failed.iter().try_for_each(|failed| self.errors.append(failed))
     }
 
     /// Puts the lines into the order of the walks.
@@ -101,43 +102,45 @@ impl TrajectoryMaker<'_> {
         unit: &[usize],
     ) -> Result<TrajectoryBatch, CommandError> {
         let is_done = |number: &usize| walks.get(*number).is_some_and(|walk| self.done.contains(&walk.path.id));
-        let mut made = TrajectoryBatch { taken: Vec::new(), failed: Vec::new() };
+        let mut batch = TrajectoryBatch { taken: Vec::new(), failed: Vec::new() };
         if unit.iter().all(is_done) {
-            return Ok(made);
+            return Ok(batch);
         }
-        let mut begun = Vec::new();
+        let mut trajectories = Vec::new();
         for number in unit {
             let Some(walk) = walks.get(*number) else { continue };
             match trajectory_from_walk(walk, self.scenes, self.steps, self.picture_place(*number, walk))? {
-                Ok(trajectory) => begun.push((*number, trajectory)),
-                Err(reason) => made.failed.push(reason),
+                Ok(trajectory) => trajectories.push((*number, trajectory)),
+                Err(reason) => batch.failed.push(reason),
             }
         }
         // A shard is written anew only if a walk can be taken that could not before.
-        if begun.iter().all(|(number, _)| is_done(number)) {
-            return Ok(made);
+        if trajectories.iter().all(|(number, _)| is_done(number)) {
+            return Ok(batch);
         }
-        let mut ready = Vec::with_capacity(begun.len());
-        for (number, trajectory) in begun {
+        let mut ready = Vec::with_capacity(trajectories.len());
+        for (number, trajectory) in trajectories {
             interrupt::check_interrupt()?;
             match self.take_pictures(&trajectory) {
                 Ok(pictures) => ready.push((number, trajectory, pictures)),
-                Err(error) => made.failed.push(failed_item(&trajectory, error)?),
+                Err(error) => batch.failed.push(failed_item(&trajectory, error)?),
             }
         }
-        made.taken = match self.steps.shard {
-            Some(of) => self.write_shard(ready, of)?,
+        batch.taken = match self.steps.shard {
+            Some(walks_per_shard) => self.write_shard(ready, walks_per_shard)?,
             None => {
                 ready.into_iter().map(|(_, walk, shown)| self.write_folder(walk, &shown)).collect::<Result<_, _>>()?
             }
         };
-        Ok(made)
+        Ok(batch)
     }
 
     fn picture_place(&self, number: usize, walk: &ExportedWalk<'_>) -> PictureLocation {
         match self.steps.shard {
             None => PictureLocation::Folder(format!("{IMAGES_FOLDER}/{}", walk.path.id)),
-            Some(of) => PictureLocation::Sample { shard: shard_of(number, of), key: format!("{number:06}") },
+            Some(walks_per_shard) => {
+                PictureLocation::Sample { shard: shard_of(number, walks_per_shard), key: format!("{number:06}") }
+            }
         }
     }
 
@@ -153,18 +156,18 @@ impl TrajectoryMaker<'_> {
     ) -> Result<ActionTrajectory, CommandError> {
         let PictureLocation::Folder(images) = &trajectory.pictures else { return Ok(trajectory) };
         let whole = self.folder.join(images);
-        let begun = self.folder.join(IMAGES_FOLDER).join(format!(".{}.part", trajectory.id));
-        for old in [&begun, &whole] {
+        let unfinished = self.folder.join(IMAGES_FOLDER).join(format!(".{}.part", trajectory.id));
+        for old in [&unfinished, &whole] {
             if old.exists() {
                 fs::remove_dir_all(old).map_err(CommandError::io(old, "remove what an earlier command left in"))?;
             }
         }
-        fs::create_dir_all(&begun).map_err(CommandError::io(&begun, "make the folder"))?;
+        fs::create_dir_all(&unfinished).map_err(CommandError::io(&unfinished, "make the folder"))?;
         for (number, picture) in pictures.iter().enumerate() {
-            let file = begun.join(picture_name(number));
+            let file = unfinished.join(picture_name(number));
             fs::write(&file, picture).map_err(CommandError::io(&file, "write"))?;
         }
-        fs::rename(&begun, &whole).map_err(CommandError::io(&whole, "name"))?;
+        fs::rename(&unfinished, &whole).map_err(CommandError::io(&whole, "name"))?;
         trajectory.sha256 = PictureDigest::from_pictures(pictures);
         Ok(trajectory)
     }
@@ -172,10 +175,10 @@ impl TrajectoryMaker<'_> {
     fn write_shard(
         &self,
         walks: Vec<(usize, ActionTrajectory, Vec<Vec<u8>>)>,
-        of: usize,
+        walks_per_shard: usize,
     ) -> Result<Vec<ActionTrajectory>, CommandError> {
         let Some((first, ..)) = walks.first() else { return Ok(Vec::new()) };
-        let file = self.folder.join(shard_of(*first, of));
+        let file = self.folder.join(shard_of(*first, walks_per_shard));
         let folder = self.folder.join(SHARDS_FOLDER);
         fs::create_dir_all(&folder).map_err(CommandError::io(&folder, "make the folder"))?;
         let mut shard = ShardWriter::begin(&file).map_err(CommandError::io(&file, "write"))?;
@@ -217,6 +220,7 @@ pub(super) fn take_picture(
     })
 }
 
-fn shard_of(number: usize, of: usize) -> String {
-    format!("{SHARDS_FOLDER}/{:06}.tar", number / of)
+/// The path of the shard that has a walk, below the folder of the export.
+fn shard_of(number: usize, walks_per_shard: usize) -> String {
+    format!("{SHARDS_FOLDER}/{:06}.tar", number / walks_per_shard)
 }

@@ -11,7 +11,7 @@ use wayword_navigation::{
 /// The metrics of the short table. The full table has all.
 pub(super) const SHORT_TABLE_METRICS: [TrajectoryMetric; 3] =
     [TrajectoryMetric::SuccessRate, TrajectoryMetric::OracleSuccessRate, TrajectoryMetric::Spl];
-/// Longest name, characters, because names come from files.
+/// Most characters of a name, because names come from files. The rest is cut off.
 const MOST_NAME_CHARS: usize = 80;
 
 /// A figure with its interval, rounded: shares in per cent, lengths in metres.
@@ -181,7 +181,7 @@ pub(super) fn effort_lines(comparison: &AgentComparison) -> Vec<ComparisonLine<'
     })
 }
 
-/// The problems in those walks: counts of useless replies, then of walks.
+/// The problems in walks by a language model: counts of useless replies, then counts of walks.
 pub(super) fn trouble_lines(comparison: &AgentComparison) -> Vec<ComparisonLine<'_>> {
     of_efforts(comparison, |effort| {
         let UselessReplies { no_call, no_way, idle, failed } = effort.useless;
@@ -197,6 +197,7 @@ pub(super) fn trouble_lines(comparison: &AgentComparison) -> Vec<ComparisonLine<
     })
 }
 
+/// A line without figures for each row that has an effort, with the cells that `beside` makes of it.
 fn of_efforts(comparison: &AgentComparison, beside: impl Fn(&EffortSummary) -> Vec<String>) -> Vec<ComparisonLine<'_>> {
     let line = |row: &'_ ComparisonRow| Some(of_row(comparison, row, &NO_FIGURES, beside(row.effort.as_ref()?)));
     mark_first_lines(comparison.rows.iter().filter_map(line))
@@ -214,6 +215,7 @@ fn mean_with_interval(estimate: &MeanEstimate, decimals: usize) -> String {
     format!("{mean:.decimals$} [{low:.decimals$}, {high:.decimals$}]")
 }
 
+/// The line for a row of the comparison.
 fn of_row<'a>(
     comparison: &AgentComparison,
     row: &ComparisonRow,
@@ -231,6 +233,7 @@ fn of_row<'a>(
     }
 }
 
+/// Marks the first of the consecutive lines of each agent, which shows the agent's name.
 fn mark_first_lines<'a>(lines: impl Iterator<Item = ComparisonLine<'a>>) -> Vec<ComparisonLine<'a>> {
     let mut before = None;
     let open = |mut line: ComparisonLine<'a>| {

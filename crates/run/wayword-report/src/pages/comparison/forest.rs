@@ -22,6 +22,7 @@ pub(super) struct ForestView {
     caption: &'static str,
 }
 
+/// An estimate with its interval; `at`, `low` and `high` are places on the axis.
 #[derive(Debug, Serialize)]
 struct ForestRowView {
     agent: String,
@@ -36,6 +37,7 @@ struct ForestRowView {
     figure: String,
 }
 
+/// A labelled place on the axis.
 #[derive(Debug, Serialize)]
 struct ForestTick {
     at: f64,
@@ -61,7 +63,7 @@ pub(super) struct ForestContent<'a> {
     pub(super) caption: &'static str,
 }
 
-/// Most steps of an axis.
+/// Most steps of an axis. A longer axis gets larger steps.
 const MOST_TICKS: f64 = 8.0;
 /// How far above the axis' end a line may lie for the axis to be drawn out to it: an upper bound of 100 would press all else together.
 const NEAR_AXIS_FACTOR: f64 = 1.5;
@@ -137,6 +139,7 @@ impl ForestAxis {
         (self.low..=self.high).contains(&(100.0 * share))
     }
 
+    /// The place of a share in per cent of the plot's width, rounded to hundredths.
     fn place_share(&self, share: f64) -> f64 {
         let along = (100.0 * share).clamp(self.low, self.high) - self.low;
         let place = EDGE_PER_CENT + along / (self.high - self.low) * (100.0 - 2.0 * EDGE_PER_CENT);

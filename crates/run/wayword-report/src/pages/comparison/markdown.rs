@@ -21,15 +21,15 @@ pub fn markdown_tables(comparison: &AgentComparison) -> String {
     append_text(&mut page, format_args!("\n{}\n\n", notes::describe_success(comparison.about.rule)));
     append_table(&mut page, "Instructions", &comparison_lines(comparison), &SHORT_TABLE_METRICS, &[]);
     let first = comparison.sets.first().map_or_else(String::new, |set| escape_markdown(&printable_name(&set.name)));
-    let less = difference_lines(comparison);
-    if !less.is_empty() {
+    let differences = difference_lines(comparison);
+    if !differences.is_empty() {
         append_text(&mut page, format_args!("\n## Minus {first}\n\n"));
-        append_table(&mut page, "Instructions", &less, &SHORT_TABLE_METRICS, &BESIDE_DIFFERENCES);
+        append_table(&mut page, "Instructions", &differences, &SHORT_TABLE_METRICS, &BESIDE_DIFFERENCES);
     }
-    let lost = swap_lines(comparison);
-    if !lost.is_empty() {
+    let swap_losses = swap_lines(comparison);
+    if !swap_losses.is_empty() {
         append_text(&mut page, format_args!("\n## Loss by swap of set {first}\n\n"));
-        append_table(&mut page, "Swap", &lost, &SHORT_TABLE_METRICS, &BESIDE_SWAPS);
+        append_table(&mut page, "Swap", &swap_losses, &SHORT_TABLE_METRICS, &BESIDE_SWAPS);
     }
     let efforts = effort_lines(comparison);
     if !efforts.is_empty() {

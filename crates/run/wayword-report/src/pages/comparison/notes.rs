@@ -8,7 +8,7 @@ use wayword_navigation::comparison::{
 };
 use wayword_run::count::count_phrase;
 
-/// The agents that read.
+/// The agents that read every clause: without the map, and with it.
 const READER_AGENT: &str = "reader";
 const READER_MAP: &str = "reader-map";
 /// The agent by a language model.
@@ -58,7 +58,7 @@ pub(super) fn describe_set(set: &InstructionSet) -> String {
 /// Warnings, shown first: agents with rows that give no evidence about the instructions, because another path's instruction does not
 /// make them worse, or this was not tested enough.
 pub(super) fn list_warnings(comparison: &AgentComparison) -> Vec<String> {
-    let lost = |swapped: &SwapEffect| {
+    let describe_loss = |swapped: &SwapEffect| {
         let lost = swapped.lost.figures.get(&TrajectoryMetric::SuccessRate);
         lost.map_or_else(String::new, |lost| {
             let paths = count_phrase(lost.clusters, "path");
@@ -72,7 +72,7 @@ pub(super) fn list_warnings(comparison: &AgentComparison) -> Vec<String> {
         format!(
             "{DEAF_MARK} {} is not shown to do worse with another path's instruction{}, so its rows say nothing about the instructions.",
             printable_name(&swapped.agent),
-            lost(swapped)
+            describe_loss(swapped)
         )
     };
     let mut warnings: Vec<String> = deaf_agents(comparison).map(note).collect();

@@ -31,6 +31,7 @@ pub(in super::super) struct ComparisonPageView {
     parameters: Vec<(String, Vec<(String, String)>)>,
 }
 
+/// A table with its headings; `beside` has the headings to the right of the figures.
 #[derive(Debug, Serialize)]
 struct TableView {
     label: &'static str,
@@ -39,6 +40,7 @@ struct TableView {
     lines: Vec<LineView>,
 }
 
+/// A line of a table. Each of its `cells` has a figure and its interval.
 #[derive(Debug, Serialize)]
 struct LineView {
     agent: String,
@@ -52,16 +54,22 @@ struct LineView {
 
 impl ComparisonPageView {
     pub(in super::super) fn new(comparison: &AgentComparison) -> Self {
-        let (table, less, lost) = (comparison_lines(comparison), difference_lines(comparison), swap_lines(comparison));
+        let (table, differences, swap_losses) =
+            (comparison_lines(comparison), difference_lines(comparison), swap_lines(comparison));
         let first = comparison.sets.first().map_or_else(String::new, |set| printable_name(&set.name));
         let mut folded =
             vec![("All figures".to_owned(), TableView::new("Instructions", &table, &present_metrics(&table), vec![]))];
-        if !less.is_empty() {
-            let view = TableView::new("Instructions", &less, &present_metrics(&less), BESIDE_DIFFERENCES.to_vec());
+        if !differences.is_empty() {
+            let view = TableView::new(
+                "Instructions",
+                &differences,
+                &present_metrics(&differences),
+                BESIDE_DIFFERENCES.to_vec(),
+            );
             folded.push((format!("All differences to {first}, and McNemar's test"), view));
         }
-        if !lost.is_empty() {
-            let view = TableView::new("Swap", &lost, &present_metrics(&lost), BESIDE_SWAPS.to_vec());
+        if !swap_losses.is_empty() {
+            let view = TableView::new("Swap", &swap_losses, &present_metrics(&swap_losses), BESIDE_SWAPS.to_vec());
             folded.push((format!("All losses by swaps of {first}"), view));
         }
         Self {
@@ -80,7 +88,7 @@ impl ComparisonPageView {
             .filter(|(lines, _)| !lines.is_empty())
             .map(|(lines, beside)| TableView::new("Instructions", &lines, &[], beside))
             .collect(),
-            forests: draw_forests(&first, &table, &less, &lost),
+            forests: draw_forests(&first, &table, &differences, &swap_losses),
             folded,
             parameters: parameter_lists(comparison),
         }
@@ -132,8 +140,8 @@ fn number_with_minus(text: &str) -> String {
 fn draw_forests(
     first: &str,
     table: &[ComparisonLine<'_>],
-    less: &[ComparisonLine<'_>],
-    lost: &[ComparisonLine<'_>],
+    differences: &[ComparisonLine<'_>],
+    swap_losses: &[ComparisonLine<'_>],
 ) -> Vec<ForestView> {
     let read: Vec<ComparisonLine<'_>> = table.iter().filter(|line| line.kind == AgentKind::Agent).cloned().collect();
     let mark = |line: &ComparisonLine<'_>| {
@@ -158,7 +166,7 @@ fn draw_forests(
         ForestContent {
             title: format!("Success rate minus that of {first}, points"),
             label: "Instructions",
-            lines: less,
+            lines: differences,
             marks: vec![],
             has_zero: true,
             caption: "Right of the line: better than the first set. Hollow: the interval includes 0, so no difference is shown.",
@@ -166,7 +174,7 @@ fn draw_forests(
         ForestContent {
             title: format!("Success rate lost when {first} is swapped, points"),
             label: "Swap",
-            lines: lost,
+            lines: swap_losses,
             marks: vec![],
             has_zero: true,
             caption: "Right of the line: the agent does worse by swapped texts, so it follows what was swapped. Hollow: the interval includes 0, so that is not shown.",

@@ -21,13 +21,19 @@ pub fn screen_text(comparison: &AgentComparison) -> String {
     );
     append_table(&mut text, "instructions", &comparison_lines(comparison), &SHORT_TABLE_METRICS, &[]);
     let first = comparison.sets.first().map_or_else(String::new, |set| printable_name(&set.name));
-    let less = difference_lines(comparison);
-    if !less.is_empty() {
-        append_table(&mut text, &format!("minus {first}"), &less, &SHORT_TABLE_METRICS, &BESIDE_DIFFERENCES);
+    let differences = difference_lines(comparison);
+    if !differences.is_empty() {
+        append_table(&mut text, &format!("minus {first}"), &differences, &SHORT_TABLE_METRICS, &BESIDE_DIFFERENCES);
     }
-    let lost = swap_lines(comparison);
-    if !lost.is_empty() {
-        append_table(&mut text, &format!("loss by swap of set {first}"), &lost, &SHORT_TABLE_METRICS, &BESIDE_SWAPS);
+    let swap_losses = swap_lines(comparison);
+    if !swap_losses.is_empty() {
+        append_table(
+            &mut text,
+            &format!("loss by swap of set {first}"),
+            &swap_losses,
+            &SHORT_TABLE_METRICS,
+            &BESIDE_SWAPS,
+        );
     }
     let efforts = effort_lines(comparison);
     if !efforts.is_empty() {

@@ -17,9 +17,9 @@ use wayword_run::{
     error::CommandError,
 };
 
-/// The version of the file.
+/// The version of the format of the JSON file.
 const FORMAT_VERSION: u32 = 1;
-/// Most texts on the page. The file has all.
+/// Most texts that the page shows. The JSON file has all.
 const MOST_SHOWN: usize = 1000;
 
 /// Texts with their doubts, as the file has them.
@@ -67,10 +67,10 @@ pub struct DoubtTally {
 
 impl DoubtSummary {
     fn of_texts(texts: &[DoubtedText]) -> Self {
-        let tally = |is: &dyn Fn(&TextDoubt) -> bool| {
+        let tally = |is_counted: &dyn Fn(&TextDoubt) -> bool| {
             let mut tally = DoubtTally::default();
             for text in texts {
-                let doubts: Vec<&TextDoubt> = text.doubts.iter().filter(|doubt| is(doubt)).collect();
+                let doubts: Vec<&TextDoubt> = text.doubts.iter().filter(|doubt| is_counted(doubt)).collect();
                 tally.texts += usize::from(!doubts.is_empty());
                 tally.doubts += doubts.len();
                 let spans = doubts.iter().map(|doubt| words_in(&text.text, doubt.span));
@@ -146,10 +146,10 @@ pub fn write_page(out: &Path, highlights: &DoubtHighlights) -> Result<(), Comman
 /// When it cannot be drawn, which is a bug.
 fn highlights_html(highlights: &DoubtHighlights) -> Result<String, CommandError> {
     let DoubtHighlights { checked_against, summary, texts, .. } = highlights;
-    let told = |grade: DoubtGrade| (grade.name(), grade.reader_label());
-    let tallies = |names: &[(&str, &str)], of: &BTreeMap<&str, DoubtTally>| -> Vec<Value> {
+    let grade_label = |grade: DoubtGrade| (grade.name(), grade.reader_label());
+    let tallies = |names: &[(&str, &str)], by_name: &BTreeMap<&str, DoubtTally>| -> Vec<Value> {
         let row = |(name, told): &(&str, &str)| {
-            let tally = of.get(name).copied().unwrap_or_default();
+            let tally = by_name.get(name).copied().unwrap_or_default();
             context! { name, told, share => share_text(tally.words, summary.words), ..Value::from_serialize(tally) }
         };
         names.iter().map(row).collect()
@@ -158,7 +158,7 @@ fn highlights_html(highlights: &DoubtHighlights) -> Result<String, CommandError>
     let view = context! {
         checked_against,
         summary => Value::from_serialize(summary),
-        grades => tallies(&DoubtGrade::ALL.map(told), &summary.grades),
+        grades => tallies(&DoubtGrade::ALL.map(grade_label), &summary.grades),
         causes => tallies(&causes, &summary.causes),
         texts => texts.iter().take(MOST_SHOWN).map(text_view).collect::<Vec<_>>(),
         left_out => texts.len().saturating_sub(MOST_SHOWN),

@@ -23,7 +23,7 @@ use wayword_run::{count::count_phrase, run_folder::PathMap};
 const MOST_STEPS: usize = 100;
 /// Most key phrases of an instruction that are shown.
 const MOST_PHRASES: usize = 50;
-/// Longest text, characters.
+/// Most characters of a text that are shown. The rest is cut off.
 const MOST_TEXT_CHARS: usize = 2_000;
 
 /// A walk, with the path that it is compared with.
@@ -137,7 +137,7 @@ impl WalkReplay<'_> {
             WalkEnd::Circles => "it walked in circles",
             WalkEnd::NoUse => "its model gave no reply of use",
         };
-        let off = score.navigation_error_m.map_or_else(
+        let distance_to_goal = score.navigation_error_m.map_or_else(
             || "its end has no connection to the goal".to_owned(),
             |error_m| format!("ends {error_m:.1} m from the goal"),
         );
@@ -145,7 +145,7 @@ impl WalkReplay<'_> {
             format!("Scene {}", walk.scene),
             count_phrase(walk.steps.len(), "step"),
             format!("{:.1} m", score.length_m),
-            off,
+            distance_to_goal,
             end.to_owned(),
         ];
         match self.outcome() {

@@ -6,10 +6,10 @@ use wayword_core::CompassPoint;
 use wayword_navigation::walk::{AgentStep, AgentWalkRecord, StepChoice, StepViewScores, SurroundingsSummary};
 use wayword_run::count::count_phrase;
 
-/// Longest phrase in a cell, characters.
+/// Most characters of a phrase in a cell. The rest is cut off.
 const MOST_PHRASE_CHARS: usize = 120;
 
-/// Longest reason, characters.
+/// Most characters of a reason. The rest is cut off.
 const MOST_REASON_CHARS: usize = 400;
 
 /// A step.
@@ -118,12 +118,12 @@ fn phrase_words(walk: &AgentWalkRecord, step: &AgentStep) -> String {
     )
 }
 
-fn report_words(told: &SurroundingsSummary) -> String {
-    let room = match &told.room {
+fn report_words(summary: &SurroundingsSummary) -> String {
+    let room = match &summary.room {
         Some(room) => format!("in room {}", room.chars().take(MOST_PHRASE_CHARS).collect::<String>()),
         None => "in a room without a name".to_owned(),
     };
-    format!("{room}, {} on, {}", count_phrase(told.ways, "way"), count_phrase(told.things, "thing"))
+    format!("{room}, {} on, {}", count_phrase(summary.ways, "way"), count_phrase(summary.things, "thing"))
 }
 
 fn choice_words(choice: StepChoice) -> String {

@@ -9,20 +9,22 @@ const MOST_GROUPS: usize = 1_000;
 /// A sample of walks, taken while they are read. It keeps the positions of walks, not the walks.
 #[derive(Debug, Clone)]
 pub struct WalkSample<T> {
+    /// The largest number of walks that are chosen.
     most: usize,
     groups: BTreeMap<WalkGroupKey, WalkGroup<T>>,
     /// Number of walks that were offered.
     offered: usize,
 }
 
-/// One walk of each item of a group, because a walk of another item shows more than a second one of the same item.
+/// Walks of a group, one of each item, because a walk of another item shows more than a second one of the same item.
 #[derive(Debug, Clone)]
 struct WalkGroup<T> {
+    /// The item of the last walk that was taken. Walks are offered item by item.
     last_item: String,
     places: Vec<T>,
 }
 
-/// Walks that are alike: by swapped texts, agent, set, success.
+/// The key of walks that are alike: whether they are by swapped texts, agent, set, and whether they are successes.
 type WalkGroupKey = (bool, String, String, bool);
 
 impl<T: Ord> WalkSample<T> {

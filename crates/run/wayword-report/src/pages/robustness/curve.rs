@@ -20,10 +20,12 @@ const LEAST_UNCHANGED_RATIO: f64 = 0.8;
 #[derive(Debug, Serialize)]
 pub(super) struct CurveDrawing {
     change: String,
+    /// The curve in a sentence.
     said: String,
     width: f64,
     height: f64,
     lines: Vec<CurveLine>,
+    /// The points of the line through the means, as an SVG `polyline` takes them.
     way: String,
     dots: Vec<CurveDot>,
     labels: Vec<CurveLabel>,
@@ -96,35 +98,39 @@ impl CurveDrawing {
         let scale = CurveScale::from_curve(curve);
         let known: Vec<(f64, &MeanEstimate)> =
             curve.points.iter().filter_map(|(dose, r)| r.as_ref().map(|r| (*dose, r))).collect();
-        let across = |class, ratio: f64| CurveLine {
+        let horizontal = |class, ratio: f64| CurveLine {
             class,
             x1: MARGIN_LEFT_PX,
             y1: scale.ratio_y(ratio),
             x2: DRAWING_WIDTH_PX - MARGIN_RIGHT_PX,
             y2: scale.ratio_y(ratio),
         };
-        let up = |class, dose: f64, low: f64, high: f64| CurveLine {
+        let vertical = |class, dose: f64, low: f64, high: f64| CurveLine {
             class,
             x1: scale.dose_x(dose),
             y1: scale.ratio_y(low),
             x2: scale.dose_x(dose),
             y2: scale.ratio_y(high),
         };
-        let mut lines =
-            vec![across("grid", 0.0), across("grid", 0.5), across("grid", 1.0), across("least", LEAST_UNCHANGED_RATIO)];
-        lines.extend(curve.unchanged.map(|dose| up("unchanged", dose, scale.ratios.0, scale.ratios.1)));
-        lines.extend(known.iter().map(|(dose, r)| up("whisker", *dose, r.low, r.high)));
-        let mut way: Vec<(f64, f64)> = known.iter().map(|(dose, r)| (*dose, r.mean)).collect();
-        way.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let way: Vec<String> =
-            way.iter().map(|(dose, r)| format!("{},{}", scale.dose_x(*dose), scale.ratio_y(*r))).collect();
+        let mut lines = vec![
+            horizontal("grid", 0.0),
+            horizontal("grid", 0.5),
+            horizontal("grid", 1.0),
+            horizontal("least", LEAST_UNCHANGED_RATIO),
+        ];
+        lines.extend(curve.unchanged.map(|dose| vertical("unchanged", dose, scale.ratios.0, scale.ratios.1)));
+        lines.extend(known.iter().map(|(dose, r)| vertical("whisker", *dose, r.low, r.high)));
+        let mut line_points: Vec<(f64, f64)> = known.iter().map(|(dose, r)| (*dose, r.mean)).collect();
+        line_points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let line_points: Vec<String> =
+            line_points.iter().map(|(dose, r)| format!("{},{}", scale.dose_x(*dose), scale.ratio_y(*r))).collect();
         Self {
             change: curve.change.clone(),
             said: describe_curve(curve),
             width: DRAWING_WIDTH_PX,
             height: DRAWING_HEIGHT_PX,
             lines,
-            way: way.join(" "),
+            way: line_points.join(" "),
             dots: known.iter().map(|(dose, r)| CurveDot { x: scale.dose_x(*dose), y: scale.ratio_y(r.mean) }).collect(),
             labels: curve_labels(curve, &scale),
         }

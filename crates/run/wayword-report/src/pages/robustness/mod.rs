@@ -81,6 +81,7 @@ fn reading_notes() -> [&'static str; 5] {
     ]
 }
 
+/// The results for the texts of one style, as the template shows them.
 #[derive(Serialize)]
 struct StyleResultsView {
     style: String,
@@ -91,6 +92,7 @@ struct StyleResultsView {
     examples: Vec<ExampleGroup>,
 }
 
+/// A row of the table of R: a change, or an anchor (the agreement of a text with one written again or with another path's).
 #[derive(Serialize)]
 struct RobustnessRow {
     change: String,
@@ -100,6 +102,7 @@ struct RobustnessRow {
     paths: String,
 }
 
+/// A figure with its interval, or a dash with the reason why there is no figure.
 #[derive(Default, Serialize)]
 struct RobustnessCell {
     figure: String,
@@ -107,6 +110,7 @@ struct RobustnessCell {
     reason: String,
 }
 
+/// A change with an exact expectation, and the share of texts that keep it.
 #[derive(Serialize)]
 struct ExpectationView {
     change: String,
@@ -116,12 +120,14 @@ struct ExpectationView {
     expected: String,
 }
 
+/// The pairs of texts that are shown for one change.
 #[derive(Serialize)]
 struct ExampleGroup {
     change: String,
     examples: Vec<ExampleView>,
 }
 
+/// A text before and after a change, with the differing words marked.
 #[derive(Serialize)]
 struct ExampleView {
     path: String,
@@ -134,8 +140,8 @@ impl StyleResultsView {
     fn from_results(style: &StyleResults) -> Self {
         let mut rows: Vec<RobustnessRow> = anchor_rows(style);
         rows.extend(style.changes.iter().map(change_row));
-        let of_changes = style.changes.iter().map(|one| (&one.change, &one.examples));
-        let of_expectations = style.expectations.iter().map(|one| (&one.change, &one.examples));
+        let of_changes = style.changes.iter().map(|result| (&result.change, &result.examples));
+        let of_expectations = style.expectations.iter().map(|result| (&result.change, &result.examples));
         let groups = of_changes.chain(of_expectations).filter(|(_, examples)| !examples.is_empty());
         Self {
             style: style.style.clone(),
@@ -153,13 +159,13 @@ impl StyleResultsView {
     }
 }
 
-/// The agreements of a text with one written again, and with another path's: of the first change, because all have nearly
-/// the same.
+/// The rows with the agreements of a text with one written again, and with another path's. They are taken from the first change,
+/// because they are nearly the same for all changes.
 fn anchor_rows(style: &StyleResults) -> Vec<RobustnessRow> {
     let Some(first) = style.changes.first() else { return Vec::new() };
-    let row = |change: &str, of: fn(&RobustnessFigure) -> Option<f64>| {
+    let row = |change: &str, agreement: fn(&RobustnessFigure) -> Option<f64>| {
         let cell = |figure: &RobustnessFigure| RobustnessCell {
-            figure: of(figure).map_or_else(dash_text, two_decimals),
+            figure: agreement(figure).map_or_else(dash_text, two_decimals),
             ..RobustnessCell::default()
         };
         RobustnessRow {
@@ -227,13 +233,13 @@ fn missing_reasons(style: &StyleResults) -> Vec<String> {
     reasons
 }
 
-fn expectation_view(one: &ExpectationResult) -> ExpectationView {
+fn expectation_view(result: &ExpectationResult) -> ExpectationView {
     ExpectationView {
-        change: one.change.clone(),
-        share: one.share_that_holds().map_or_else(dash_text, |share| format!("{:.1} %", share * 100.0)),
-        is_whole: one.holds == one.told,
-        told: one.told,
-        expected: one.expected.clone(),
+        change: result.change.clone(),
+        share: result.share_that_holds().map_or_else(dash_text, |share| format!("{:.1} %", share * 100.0)),
+        is_whole: result.holds == result.told,
+        told: result.told,
+        expected: result.expected.clone(),
     }
 }
 

@@ -7,9 +7,9 @@ use wayword_robustness::ratio::RobustnessRatio;
 /// How many of the texts that were written again in the unchanged world are equal to the run's own.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RepeatedTexts {
-    /// Those that are equal.
+    /// The number of equal texts.
     pub equal: usize,
-    /// All that were written again.
+    /// The number of texts that were written again.
     pub of: usize,
 }
 
@@ -30,7 +30,7 @@ pub struct RobustnessResults {
     pub agent: String,
     /// Level of the intervals.
     pub level: f64,
-    /// One for each style.
+    /// The results of each style.
     pub styles: Vec<StyleResults>,
     /// Changes that make no sense on this platform, each with the reason.
     pub refused: Vec<RefusedChange>,
@@ -54,7 +54,7 @@ pub struct StyleResults {
     pub changes: Vec<ChangeResults>,
     /// Changes with an exact expectation.
     pub expectations: Vec<ExpectationResult>,
-    /// One for each change with several doses.
+    /// The dose curve of each change with several doses.
     pub curves: Vec<DoseCurve>,
 }
 
@@ -67,7 +67,7 @@ pub struct ChangeResults {
     pub paths: usize,
     /// Paths with a text that failed only in the changed world.
     pub lost: usize,
-    /// Of landmarks, turns, rooms, floors, and their mean.
+    /// R of landmarks, turns, rooms and floors, and of their mean.
     pub figures: Vec<RobustnessFigure>,
     /// Change of the agent's success rate: changed less unchanged.
     pub success: Option<MeanEstimate>,
@@ -82,12 +82,14 @@ pub struct RobustnessFigure {
     pub kind: String,
     /// R with its interval; `None` where it cannot be computed.
     pub r: Option<MeanEstimate>,
-    /// Why there is none.
+    /// The reason why there is no R.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) reason: Option<String>,
-    /// Agreement with the text of the changed world, of the same run once more, and of another path.
+    /// Agreement of the unchanged world's text with that of the changed world.
     pub(crate) changed: Option<f64>,
+    /// Agreement with the text that was written once more in the unchanged world.
     pub(crate) repeat: Option<f64>,
+    /// Agreement with the text of another path.
     pub(crate) other: Option<f64>,
 }
 
@@ -100,9 +102,9 @@ pub struct ExpectationResult {
     pub expected: String,
     /// Texts that mention the thing.
     pub told: usize,
-    /// Those of them for which it holds.
+    /// The number of these texts that have the property.
     pub holds: usize,
-    /// Texts for which it does not hold, with the difference.
+    /// Texts without the property, with the difference.
     pub examples: Vec<TextPairExample>,
 }
 
@@ -119,7 +121,7 @@ pub struct TextPairExample {
     pub note: String,
 }
 
-/// R of the mean over doses.
+/// R of the mean of all kinds of statements, at each dose of a change.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct DoseCurve {
     /// The change without its dose.
@@ -128,7 +130,7 @@ pub struct DoseCurve {
     pub unchanged: Option<f64>,
     /// Dose, and R with its interval where there is one.
     pub points: Vec<(f64, Option<MeanEstimate>)>,
-    /// Change of R for one more of the dose's unit; `None` of a single point.
+    /// How much R changes for each unit of the dose; `None` for a single point.
     pub slope: Option<f64>,
     /// The doses at which R falls below 0.8, below and above the unchanged one where there is one.
     pub falls_at: Vec<f64>,
@@ -142,7 +144,7 @@ impl From<RobustnessRatio> for RobustnessFigure {
 }
 
 impl ExpectationResult {
-    /// The share of texts for which it holds; `None` if no text mentions the thing.
+    /// The share of texts that have the property; `None` if no text mentions the thing.
     pub fn share_that_holds(&self) -> Option<f64> {
         (self.told > 0).then(|| self.holds as f64 / self.told as f64)
     }

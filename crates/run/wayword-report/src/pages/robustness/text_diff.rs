@@ -12,6 +12,7 @@ pub(super) struct ComparedWords {
 /// The words of both texts, grouped into equal and differing ones, by their longest common subsequence.
 pub(super) fn compare_words(before: &str, after: &str) -> (Vec<ComparedWords>, Vec<ComparedWords>) {
     let (a, b): (Vec<&str>, Vec<&str>) = (before.split_whitespace().collect(), after.split_whitespace().collect());
+    // `longest[at][to]` is the length of the longest common subsequence of `a[at..]` and `b[to..]`.
     let mut longest = vec![vec![0_usize; b.len() + 1]; a.len() + 1];
     for at in (0..a.len()).rev() {
         for to in (0..b.len()).rev() {

@@ -19,6 +19,7 @@ use wayword_run::error::CommandError;
 /// How quickly the 256 colours of a picture are chosen, 1 to 30. At 10 they look as good as at 1.
 const GIF_QUANTISER_SPEED: i32 = 10;
 
+/// A GIF that is being written.
 pub(super) struct GifFilm {
     encoder: GifEncoder<SharedGifFile>,
     file: SharedGifFile,

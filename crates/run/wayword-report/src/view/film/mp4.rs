@@ -43,11 +43,12 @@ pub(super) fn open_video(out: &Path, fps: f64) -> Result<Box<dyn FilmWriter>, Co
     }))
 }
 
+/// A video that is being written.
 struct VideoFilm {
     encoder: Encoder,
     /// `Some` until the first picture, which sets the size.
     file: Option<UnfinishedFile>,
-    /// `Some` from then on.
+    /// `Some` from the first picture on.
     muxer: Option<Muxer<UnfinishedFile>>,
     out: PathBuf,
     /// Frames for each second.

@@ -11,11 +11,12 @@ use wayword_core::{ClimbDirection, DVec3, FromAbove, Heading, Path, ViewpointGra
 /// The limits of the sheet.
 const VIEW_MAP_LIMITS: SheetLimits =
     SheetLimits { most: [800.0, 760.0], least: [240.0, 160.0], padding: 26.0, margin_m: 0.5, most_scale: 64.0 };
-/// Height below the map for scale bar and north arrow.
+/// Height below the map for scale bar and north arrow, units of the sheet.
 const FOOT_HEIGHT: f64 = 36.0;
 const DARK_INK: InkColour = [30, 38, 52];
 const GREY_INK: InkColour = [96, 112, 136];
 const WHITE_INK: InkColour = [255; 3];
+/// The dashes of a hop on stairs: lengths of a dash and of the gap after it, units of the sheet. With round ends these are dots.
 const STAIR_DASH: [f64; 2] = [1.0, 7.0];
 
 /// The content of a map.

@@ -62,7 +62,7 @@ fn choose_level(
     output: &CommandOutput,
 ) -> Result<Option<u32>, CommandError> {
     let levels: BTreeSet<u32> = graph.viewpoints().filter_map(|viewpoint| graph.level_of(viewpoint)).collect();
-    let told = levels.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
+    let level_list = levels.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
     match asked {
         Some(level) if levels.contains(&level) => Ok(Some(level)),
         Some(level) if levels.is_empty() => {
@@ -71,14 +71,14 @@ fn choose_level(
         }
         Some(level) => Err(CommandError::usage(
             format!("--level {level}: scene {scene} has no storey of that number"),
-            format!("there are: {told}"),
+            format!("there are: {level_list}"),
         )),
         None => {
             let starts = path.and_then(|path| path.frames.first()?.level).filter(|level| levels.contains(level));
             let level = starts.or_else(|| levels.first().copied());
             if let Some(level) = level.filter(|_| levels.len() > 1) {
                 output.say(format_args!(
-                    "drawing storey {level} (the scene has storeys {told}); choose another with --level"
+                    "drawing storey {level} (the scene has storeys {level_list}); choose another with --level"
                 ));
             }
             Ok(level)

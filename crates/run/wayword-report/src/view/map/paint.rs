@@ -40,6 +40,7 @@ fn wrong_size() -> CommandError {
     picture_error(ImageError::Parameter(ParameterError::from_kind(ParameterErrorKind::DimensionMismatch)))
 }
 
+/// The picture that is painted.
 struct PixelCanvas(RgbImage);
 
 impl PixelCanvas {
@@ -90,6 +91,7 @@ impl PixelCanvas {
         }
     }
 
+    /// A filled triangle.
     fn fill_triangle(&mut self, corners: [SheetPoint; 3], ink: InkColour) {
         let corners = corners.map(|corner| corner.map(|at| at * PIXELS_PER_UNIT));
         let ends = |axis: usize| {
@@ -122,6 +124,7 @@ impl PixelCanvas {
         from.floor().clamp(0.0, most) as u32..to.ceil().clamp(0.0, most) as u32
     }
 
+    /// Mixes ink into a pixel; `share` is the part of the pixel that the ink covers, cut to 0 to 1.
     fn blend_pixel(&mut self, x: u32, y: u32, ink: InkColour, share: f64) {
         let share = share.clamp(0.0, 1.0);
         if share > 0.0 {

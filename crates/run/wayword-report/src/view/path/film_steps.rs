@@ -6,7 +6,7 @@ use wayword_run::error::CommandError;
 
 /// How fast the camera turns on the spot, radians for each second.
 const TURNS_RAD: f64 = FRAC_PI_2;
-/// How fast it moves, metres for each second.
+/// How fast the camera moves straight on, metres for each second.
 const WALKS_M: f64 = 1.0;
 
 /// A place from which a picture of the film is taken.
@@ -28,13 +28,13 @@ pub fn film_steps(path: &Path, between: usize) -> Result<Vec<FilmStep>, CommandE
         let problem = format!("path {}: without poses there are no pictures between its frames", path.id);
         return Err(CommandError::usage(problem, "leave --smooth out to see the frames only"));
     }
-    let own = |frame: &Frame| FilmStep { frame: frame.clone(), is_between: false };
+    let path_step = |frame: &Frame| FilmStep { frame: frame.clone(), is_between: false };
     let mut steps = Vec::new();
     for pair in path.frames.windows(2) {
-        steps.push(own(&pair[0]));
+        steps.push(path_step(&pair[0]));
         steps.extend((1..=between).map(|at| on_the_way(&pair[0], &pair[1], at as f64 / (between + 1) as f64)));
     }
-    steps.extend(path.frames.last().map(own));
+    steps.extend(path.frames.last().map(path_step));
     Ok(steps)
 }
 

@@ -10,13 +10,13 @@ use std::sync::Arc;
 use wayword_core::{Image, Platform, PlatformError, SceneId, ViewGaze};
 use wayword_run::{count::count_phrase, error::CommandError, output::CommandOutput};
 
-/// Most pictures of a path.
+/// Most pictures of a path. A path that needs more is refused.
 const MOST_STEPS: usize = 20_000;
 /// Pictures for each second: with the path's own frames only, and with pictures between them.
 const DEFAULT_FPS: [f64; 2] = [1.0, 12.0];
 /// The rates that can be asked for: a GIF counts in hundredths of a second.
 const FPS_RANGE: std::ops::RangeInclusive<f64> = 0.1..=50.0;
-/// Widest pictures, pixels.
+/// Greatest width of the pictures, pixels. A wider one is refused.
 const WIDEST_PX: u32 = 8192;
 
 pub(super) fn write_path(args: &ViewPath, output: &CommandOutput) -> Result<WrittenView, CommandError> {

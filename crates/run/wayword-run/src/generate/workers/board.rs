@@ -68,18 +68,11 @@ impl std::fmt::Display for ChunkHandout {
 
 /// The board from which this worker takes its chunks.
 pub(super) enum WorkerBoard<'a> {
-    Shard {
-        folder: &'a Path,
-        plan: &'a ChunkPlan,
-        part: ShardPart,
-        heart: HeartbeatThread,
-    },
+    /// A fixed part of the chunks, with their state in the shared folder. `heart` writes this worker's signs of life.
+    Shard { folder: &'a Path, plan: &'a ChunkPlan, part: ShardPart, heart: HeartbeatThread },
+    /// A database that hands out chunks. `lease` is how long a sign of life counts.
     #[cfg(feature = "queue")]
-    Queue {
-        queue: wayword_queue::ChunkQueue,
-        database: wayword_database::PostgresDatabase,
-        lease: std::time::Duration,
-    },
+    Queue { queue: wayword_queue::ChunkQueue, database: wayword_database::PostgresDatabase, lease: std::time::Duration },
 }
 
 impl<'a> WorkerBoard<'a> {
@@ -184,15 +177,15 @@ pub(super) fn part_of(
         tokens_per_minute: service.tokens_per_minute.map(|rate| rate / n),
         ..service.clone()
     };
-    let said = [
+    let limits = [
         own.max_usd.map(|usd| format!("${usd:.4} of --max-usd")),
         own.max_calls.map(|calls| format!("{calls} of --max-calls")),
         own.requests_per_minute.map(|rate| format!("{rate:.2} of --requests-per-minute")),
         own.tokens_per_minute.map(|rate| format!("{rate:.0} of --tokens-per-minute")),
     ];
-    let said: Vec<String> = said.into_iter().flatten().collect();
-    if !said.is_empty() {
-        output.say(format_args!("shard {part} may use a part of the whole run's: {}", said.join(", ")));
+    let limits: Vec<String> = limits.into_iter().flatten().collect();
+    if !limits.is_empty() {
+        output.say(format_args!("shard {part} may use a part of the whole run's: {}", limits.join(", ")));
     }
     Ok(own)
 }

@@ -16,9 +16,12 @@ use std::{
 };
 use wayword_queue::{ChunkClaim, ChunkOutcome, ChunkPlan, ChunkRecord, chunk_folder, sync_tree};
 
-/// Longest reason of a failure that a mark keeps, characters.
+/// Longest reason of a failure that a completion mark keeps, characters. The rest is cut off; `errors.jsonl` has all of
+/// it.
 const MOST_REASON_CHARS: usize = 200;
 
+/// Makes a claimed chunk. The outcome is done, with the completion mark; stopped, through no fault of the chunk; or
+/// failed.
 pub(super) fn make_chunk(
     out: &Path,
     plan: &ChunkPlan,
@@ -91,6 +94,7 @@ fn usd_so_far(shop: &ItemWorkshop<'_>) -> f64 {
     shop.calls.map_or(0.0, |calls| calls.spent_so_far().usd)
 }
 
+/// The completion mark of a chunk, counted from the files in its folder.
 fn completion_mark(
     folder: &Path,
     claimed: ChunkClaim,

@@ -33,7 +33,9 @@ use wayword_queue::{PLAN, WorkSummary, work_chunks};
 
 /// Why a worker stops although chunks are left.
 pub(super) struct WorkerStop {
+    /// The reason, for the user.
     reason: String,
+    /// The exit code that goes with it.
     exit: Exit,
 }
 
@@ -70,8 +72,8 @@ pub fn run_worker(
     let kept = kept.map_or_else(|| wayword_queue::ChunkPlan::for_folder(out), Ok)?;
     plan_file::check_agreement(place.shown_path(), &kept, plan, settings, asked)?;
     if asked.plan {
-        let told = PlanSummary::from_plan(place.shown_path(), &kept);
-        output.print_result(&told, &told);
+        let summary = PlanSummary::from_plan(place.shown_path(), &kept);
+        output.print_result(&summary, &summary);
         return Ok(Exit::Done);
     }
     watch::is_of_run(&kept.run);
@@ -80,6 +82,8 @@ pub fn run_worker(
     Ok(worked.exit)
 }
 
+/// Makes chunks until the board has none for this worker, or the worker has to stop. `kept` is the plan in the folder,
+/// which all workers share; `plan` has the items of this worker's own settings, which agree with it.
 fn make_chunks(
     place: &RunPlace,
     kept: &wayword_queue::ChunkPlan,
@@ -99,8 +103,8 @@ fn make_chunks(
     if asked.shard.is_some() {
         place.fetch_marks(kept)?;
     }
-    let counter = WorkerBoard::open(place, kept, worker, asked)?;
-    let job = RunJob { keeping: counter.kept_calls(), ..plan.job.clone() };
+    let worker_board = WorkerBoard::open(place, kept, worker, asked)?;
+    let job = RunJob { keeping: worker_board.kept_calls(), ..plan.job.clone() };
     let calls = ModelCalls::open(&job, &kept.run, output)?;
     let lookout = DetectorLookout::from_settings(settings, calls.as_ref(), &plan.styles)?;
     let team = RoleTeam::new(settings, calls.as_ref(), plan.platform)?.with_lookout(lookout);
@@ -109,8 +113,8 @@ fn make_chunks(
     let make =
         |claimed| watch::within_chunk_span(claimed, || chunk::make_chunk(out, kept, &shop, claimed, worker, output));
     let finished: WorkSummary<WorkerStop> =
-        counter.with_board(|board| place.with_sending(board, |board| work_chunks(board, make, interrupt_stop)))?;
-    counter.write_missing_marks()?;
+        worker_board.with_board(|board| place.with_sending(board, |board| work_chunks(board, make, interrupt_stop)))?;
+    worker_board.write_missing_marks()?;
     match asked.shard {
         // Others have finished chunks meanwhile.
         Some(_) => place.fetch_marks(kept)?,

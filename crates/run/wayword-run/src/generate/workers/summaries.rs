@@ -17,6 +17,7 @@ pub(super) struct PlanSummary {
     run: String,
     items: usize,
     chunks: usize,
+    /// Items in a chunk.
     chunk: usize,
     estimate: serde_json::Value,
 }
@@ -71,7 +72,7 @@ impl WorkerSummary {
         spent: Option<CallSpending>,
     ) -> Result<Self, CommandError> {
         let WorkSummary { done, dropped, stopped } = finished;
-        let sum = |of: fn(&ChunkRecord) -> usize| done.iter().map(of).sum();
+        let sum = |count: fn(&ChunkRecord) -> usize| done.iter().map(count).sum();
         let failed = sum(ChunkRecord::failed_items);
         let made: usize = sum(|done| done.made);
         Ok(Self {

@@ -18,7 +18,7 @@ pub(super) struct LineFile {
 
 struct LineFileState {
     file: File,
-    /// Bytes of the whole lines.
+    /// Length of the complete lines, bytes. A half-written line is cut off there.
     whole: u64,
     /// Whether the warning about lost lines was printed.
     is_told: bool,

@@ -9,7 +9,7 @@ use ureq::{
     tls::{PemItem, RootCerts, TlsConfig, parse_pem},
 };
 
-/// Most bytes that are read of a collector's answer, which is empty or a few words.
+/// Largest answer of a collector that is read, bytes; a larger one is an error. An answer is empty or a few words.
 const LARGEST_ANSWER: u64 = 1 << 16;
 
 /// A blocking client; the exporter uses it on a thread of its own.
@@ -20,6 +20,8 @@ pub(super) struct CollectorClient {
 }
 
 impl CollectorClient {
+    /// A client with the time limit and the certificates that the environment names.
+    ///
     /// # Errors
     /// When the certificates of the environment cannot be read.
     pub(super) fn new(teller: Arc<FailureReporter>) -> Result<Self, String> {

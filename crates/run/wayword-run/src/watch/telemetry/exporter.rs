@@ -20,6 +20,7 @@ use std::{
 #[derive(Debug)]
 pub(super) struct FailureReporter {
     output: CommandOutput,
+    /// Whether the warning was printed.
     is_told: AtomicBool,
     /// Why the last request failed.
     noted: Mutex<String>,

@@ -20,7 +20,7 @@ use tracing::Subscriber;
 use tracing_opentelemetry::OpenTelemetryLayer;
 use tracing_subscriber::registry::LookupSpan;
 
-/// How long a worker that is done waits for its last spans to be sent.
+/// How long a worker that is done waits for its last spans to be sent. Then it ends without them.
 const LAST_WAIT: Duration = Duration::from_secs(5);
 
 /// The connection to a collector.

@@ -2,21 +2,23 @@
 
 use std::time::Duration;
 
-/// Names the collector, for all kinds of telemetry.
+/// The variable with the address of the collector for all kinds of telemetry.
 pub(super) const ENDPOINT_VARIABLE: &str = "OTEL_EXPORTER_OTLP_ENDPOINT";
 
-/// The same for spans alone.
+/// The variable with the address of the collector for spans alone.
 const SPANS_ENDPOINT: &str = "OTEL_EXPORTER_OTLP_TRACES_ENDPOINT";
 
 /// How long a request may take, unless a variable gives another time.
 const DEFAULT_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// A variable that is set and not empty.
+/// The value of a variable; `None` if it is not set or blank.
 pub(super) fn variable_text(name: &str) -> Option<String> {
     std::env::var(name).ok().filter(|value| !value.trim().is_empty())
 }
 
-/// Of a variable for spans and the one for all, the first that is set.
+/// The value of a variable of OTLP, the protocol for collectors. `what` is the end of its name, as in `TIMEOUT`. A
+/// variable for spans alone (`OTEL_EXPORTER_OTLP_TRACES_TIMEOUT`) wins over the one for all telemetry
+/// (`OTEL_EXPORTER_OTLP_TIMEOUT`).
 pub(super) fn of_spans_or_all(what: &str) -> Option<String> {
     variable_text(&format!("OTEL_EXPORTER_OTLP_TRACES_{what}"))
         .or_else(|| variable_text(&format!("OTEL_EXPORTER_OTLP_{what}")))
@@ -24,9 +26,9 @@ pub(super) fn of_spans_or_all(what: &str) -> Option<String> {
 
 /// Whether the environment names a collector and does not switch spans off.
 pub(super) fn is_asked() -> bool {
-    let says =
+    let is_set_to =
         |name: &str, word: &str| variable_text(name).is_some_and(|value| value.trim().eq_ignore_ascii_case(word));
-    let is_off = says("OTEL_SDK_DISABLED", "true") || says("OTEL_TRACES_EXPORTER", "none");
+    let is_off = is_set_to("OTEL_SDK_DISABLED", "true") || is_set_to("OTEL_TRACES_EXPORTER", "none");
     !is_off && (variable_text(ENDPOINT_VARIABLE).is_some() || variable_text(SPANS_ENDPOINT).is_some())
 }
 

@@ -10,10 +10,12 @@ use crate::{
 };
 use wayword_language::reading::steps::StepRelation;
 
-/// Weights of a mention by the distance class of the object, and of the room.
+/// Weights of a mentioned object by the class of its distance, the nearest first; the last class is unknown.
 const OF_THING: [f64; CLASSES] = [1.0, 0.8, 0.3, -0.4, -1.0, -1.5, 0.0];
+/// Weights of a mentioned room by the class of its distance, the nearest first; the last class is unknown.
 const OF_ROOM: [f64; CLASSES] = [1.5, 1.0, 0.2, -0.7, -1.5, -2.0, 0.0];
 
+/// Sets the weights of rooms and objects.
 pub(super) fn set_places(set: &mut WeightSetter<'_>) {
     for relation in StepRelation::ALL {
         set_nearness(relation, set);
@@ -40,8 +42,8 @@ pub(super) fn set_places(set: &mut WeightSetter<'_>) {
     for (group, is_room, is_last) in [(1, 0, 0), (1, 0, 1), (2, 0, 0), (2, 0, 1)] {
         for which in 0..4 {
             let (was_nearer, comes_nearer) = (which & 2 != 0, which & 1 != 0);
-            let goes = if was_nearer { -0.6 } else { 0.0 } - if comes_nearer { 0.5 } else { 0.0 };
-            set(&NEAREST, &[(group, GROUPS), (is_room, 2), (is_last, 2), (which, 4)], goes);
+            let weight = if was_nearer { -0.6 } else { 0.0 } - if comes_nearer { 0.5 } else { 0.0 };
+            set(&NEAREST, &[(group, GROUPS), (is_room, 2), (is_last, 2), (which, 4)], weight);
         }
     }
 }
@@ -60,9 +62,10 @@ fn of_walk(class: usize, is_goal: usize, set: &mut WeightSetter<'_>) {
     }
 }
 
+/// Weights of the distance from a place along a stretch.
 fn set_nearness(relation: StepRelation, set: &mut WeightSetter<'_>) {
     // Where along the stretch the place has to be: where it begins (0), anywhere (1), where it ends (2).
-    let (at, of_room) = match relation {
+    let (at, room_strength) = match relation {
         StepRelation::OutOf => (0, 1.0),
         StepRelation::Into | StepRelation::In => (2, 1.2),
         StepRelation::Through => (1, 1.0),
@@ -73,7 +76,7 @@ fn set_nearness(relation: StepRelation, set: &mut WeightSetter<'_>) {
     };
     let number = (relation as usize, RELATIONS);
     for class in 0..CLASSES {
-        set(&ROOM, &[number, (at, 3), (class, CLASSES)], of_room * OF_ROOM[class]);
+        set(&ROOM, &[number, (at, 3), (class, CLASSES)], room_strength * OF_ROOM[class]);
         for (commonness, strength) in [0.8, 0.6, 0.3].into_iter().enumerate() {
             let place = [number, (commonness, 3), (at, 3), (class, CLASSES)];
             set(&THING, &place, strength * OF_THING[class]);
@@ -85,8 +88,8 @@ fn set_nearness(relation: StepRelation, set: &mut WeightSetter<'_>) {
         StepRelation::Into => [-0.5, 1.0, -1.0, 0.0],
         _ => return,
     };
-    for (which, goes) in moves.into_iter().enumerate() {
-        set(&ROOM_MOVE, &[number, (which, 4)], goes);
+    for (which, weight) in moves.into_iter().enumerate() {
+        set(&ROOM_MOVE, &[number, (which, 4)], weight);
     }
 }
 

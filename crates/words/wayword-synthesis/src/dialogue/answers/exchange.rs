@@ -17,13 +17,14 @@ use wayword_language::{
 
 /// All sightings of an exchange, attributed to `by`.
 pub(super) fn read_exchange(exchange: &DialogueExchange, by: &str) -> Vec<AnswerSighting> {
-    let mut said = of_answer(exchange);
-    for told in &mut said {
-        by.clone_into(&mut told.sighting.by);
+    let mut sightings = of_answer(exchange);
+    for answered in &mut sightings {
+        by.clone_into(&mut answered.sighting.by);
     }
-    said
+    sightings
 }
 
+/// The sightings of an answer, without the name of the answerer.
 fn of_answer(exchange: &DialogueExchange) -> Vec<AnswerSighting> {
     let answer = &exchange.answer.replace('’', "'");
     match read_question(&exchange.question) {
@@ -43,18 +44,19 @@ fn of_answer(exchange: &DialogueExchange) -> Vec<AnswerSighting> {
 /// The things that an answer names. Walls, floors, ceilings and corners are in every room, so they only count if they
 /// are in `known`.
 fn mentioned_things(answer: &str, known: &BTreeSet<String>) -> Vec<AnswerMention> {
-    let everywhere = |name: &str| {
+    let is_everywhere = |name: &str| {
         find_thing(name).is_some_and(|thing| matches!(thing.name, "wall" | "floor" | "ceiling" | "corner"))
     };
-    let of_note = |mention: &AnswerMention| {
-        mention.is_thing && (known.contains(&normalise_name(&mention.name)) || !everywhere(&mention.name))
+    let is_of_note = |mention: &AnswerMention| {
+        mention.is_thing && (known.contains(&normalise_name(&mention.name)) || !is_everywhere(&mention.name))
     };
-    find_mentions(answer, known).into_iter().filter(of_note).collect()
+    find_mentions(answer, known).into_iter().filter(is_of_note).collect()
 }
 
+/// Sightings of things that the question did not ask for. `place` is for mentions without a place of their own.
 fn asides_from_mentions(mentions: Vec<AnswerMention>, place: Option<ViewThird>) -> Vec<AnswerSighting> {
-    let aside = |AnswerMention { name, witness, place: own, colour, several, .. }| {
-        aside_sighting(ObjectSighting { place: own.or(place), colour, several, ..new_sighting(&name, witness) })
+    let aside = |AnswerMention { name, witness, place: own_place, colour, several, .. }| {
+        aside_sighting(ObjectSighting { place: own_place.or(place), colour, several, ..new_sighting(&name, witness) })
     };
     mentions.into_iter().map(aside).collect()
 }
@@ -73,12 +75,12 @@ fn new_sighting(name: &str, witness: WitnessAnswer) -> ObjectSighting {
     ObjectSighting::new(name, witness, "")
 }
 
-/// Mentions of a wanted thing, and the others.
+/// The mentions of the thing with this name, and the other mentions.
 fn of_wanted(name: &str, mentions: Vec<AnswerMention>) -> (Vec<AnswerMention>, Vec<AnswerMention>) {
     mentions.into_iter().partition(|mention| names_agree(&mention.name, name))
 }
 
-/// The answer to "Is there a lamp?" or "Is there a bed or a sofa?".
+/// The answer to "Is there a lamp?" or "Is there a bed or a sofa?". With `or`, the wanted things are alternatives.
 fn read_presence(wanted: &[QuestionThing], or: bool, answer: &str) -> Vec<AnswerSighting> {
     let known = wanted.iter().map(|wanted| normalise_name(&wanted.name)).collect();
     let mut rest = mentioned_things(answer, &known);
@@ -91,38 +93,42 @@ fn read_presence(wanted: &[QuestionThing], or: bool, answer: &str) -> Vec<Answer
     };
     let both = answer_words(&lower).contains(&"both");
     let mut found = Vec::new();
-    for one in wanted {
-        let (own, others) = of_wanted(&one.name, rest);
+    for thing in wanted {
+        let (own, others) = of_wanted(&thing.name, rest);
         rest = others;
         let witness = presence_witness(&own, polarity, or && !both && wanted.len() > 1, wanted.len() > 1);
-        found.extend(witness.map(|witness| direct_sighting(of_one(one, witness, &own, place))));
+        found.extend(witness.map(|witness| direct_sighting(of_one(thing, witness, &own, place))));
     }
     found.extend(asides_from_mentions(rest, None));
     found
 }
 
-/// The witness of an answer for one wanted thing; `None` where a yes or no to several things leaves it open.
+/// The witness of an answer for one wanted thing; `None` where a yes or no to several things leaves it open. `own` are
+/// the mentions of this thing in the answer, and `polarity` is that of the whole answer.
 fn presence_witness(
     own: &[AnswerMention],
     polarity: AnswerPolarity,
     or: bool,
     of_several: bool,
 ) -> Option<WitnessAnswer> {
-    let says = |witness| own.iter().any(|mention| mention.witness == witness);
+    let is_mentioned = |witness| own.iter().any(|mention| mention.witness == witness);
     match polarity {
-        _ if says(WitnessAnswer::Denied) => Some(WitnessAnswer::Denied),
-        AnswerPolarity::No if of_several && !or => says(WitnessAnswer::Seen).then_some(WitnessAnswer::Seen),
+        _ if is_mentioned(WitnessAnswer::Denied) => Some(WitnessAnswer::Denied),
+        AnswerPolarity::No if of_several && !or => is_mentioned(WitnessAnswer::Seen).then_some(WitnessAnswer::Seen),
         AnswerPolarity::No => Some(WitnessAnswer::Denied),
         // "Yes, there might be one": the wording about the thing itself counts more than the yes.
-        AnswerPolarity::Yes if says(WitnessAnswer::Unsure) && !says(WitnessAnswer::Seen) => Some(WitnessAnswer::Unsure),
+        AnswerPolarity::Yes if is_mentioned(WitnessAnswer::Unsure) && !is_mentioned(WitnessAnswer::Seen) => {
+            Some(WitnessAnswer::Unsure)
+        }
         AnswerPolarity::Yes if !or => Some(WitnessAnswer::Seen),
         AnswerPolarity::Unsure => Some(WitnessAnswer::Unsure),
-        _ if says(WitnessAnswer::Seen) => Some(WitnessAnswer::Seen),
+        _ if is_mentioned(WitnessAnswer::Seen) => Some(WitnessAnswer::Seen),
         AnswerPolarity::Open if !of_several => Some(WitnessAnswer::Unsure),
         _ => None,
     }
 }
 
+/// The sighting of a wanted thing. What the answer does not mention of it is taken from the question.
 fn of_one(
     wanted: &QuestionThing,
     witness: WitnessAnswer,
@@ -147,6 +153,7 @@ fn of_one(
     }
 }
 
+/// The words of an answer without punctuation marks. An apostrophe belongs to its word.
 fn answer_words(answer: &str) -> Vec<&str> {
     answer.split(|c: char| !(c.is_alphanumeric() || c == '\'')).filter(|word| !word.is_empty()).collect()
 }
@@ -156,7 +163,7 @@ fn read_colour(name: &str, guesses: &[String], answer: &str) -> Vec<AnswerSighti
     // The form in which `labels` answers, where names may be any words. Shades are left out, because what one model
     // calls light brown another calls brown.
     let exact = answer.strip_prefix("The ").and_then(|rest| rest.strip_prefix(name)?.strip_prefix(" is "));
-    if let Some(word) = exact.and_then(|said| bare_colour(said.trim_end_matches('.'))) {
+    if let Some(word) = exact.and_then(|phrase| bare_colour(phrase.trim_end_matches('.'))) {
         let colour = Some(word.to_lowercase());
         return vec![direct_sighting(ObjectSighting { colour, ..new_sighting(name, WitnessAnswer::Seen) })];
     }
@@ -170,9 +177,9 @@ fn read_colour(name: &str, guesses: &[String], answer: &str) -> Vec<AnswerSighti
         || guesses.first().filter(|_| guesses.len() == 1 && polarity_of(answer) == AnswerPolarity::Yes).cloned();
     let colour = seen.and_then(|mention| mention.colour.clone());
     let colour = colour.or_else(|| first_colour(&said)).or_else(guessed).filter(|_| !is_unsure(&said));
-    let absent = guesses.is_empty() && polarity_of(answer) == AnswerPolarity::No && colour.is_none();
+    let is_absent = guesses.is_empty() && polarity_of(answer) == AnswerPolarity::No && colour.is_none();
     let mut found = Vec::new();
-    if denied || absent {
+    if denied || is_absent {
         found.push(direct_sighting(new_sighting(name, WitnessAnswer::Denied)));
     } else if colour.is_some() || seen.is_some() {
         let place = seen.and_then(|mention| mention.place);
@@ -192,10 +199,10 @@ fn read_colour(name: &str, guesses: &[String], answer: &str) -> Vec<AnswerSighti
 fn read_number(wanted: QuestionThing, answer: &str) -> Vec<AnswerSighting> {
     const NO_NUMBER_WORDS: [&str; 4] = ["no", "none", "zero", "0"];
     let lower = answer.to_lowercase();
-    let said = answer_words(&lower);
-    let one = said.iter().any(|word| matches!(*word, "one" | "1" | "single"));
-    let many = said.iter().any(|word| COUNT_WORDS.contains(word) || word.parse::<u32>().is_ok_and(|count| count > 1));
-    if said.first().is_some_and(|first| NO_NUMBER_WORDS.contains(first)) {
+    let words = answer_words(&lower);
+    let one = words.iter().any(|word| matches!(*word, "one" | "1" | "single"));
+    let many = words.iter().any(|word| COUNT_WORDS.contains(word) || word.parse::<u32>().is_ok_and(|count| count > 1));
+    if words.first().is_some_and(|first| NO_NUMBER_WORDS.contains(first)) {
         return read_presence(&[wanted], false, "No.");
     }
     if !(one || many) {
@@ -207,23 +214,25 @@ fn read_number(wanted: QuestionThing, answer: &str) -> Vec<AnswerSighting> {
 /// The answer to "Where is the lamp?".
 fn read_place(wanted: &QuestionThing, answer: &str) -> Vec<AnswerSighting> {
     let lower = answer.to_lowercase();
-    let said = answer_words(&lower);
-    let bare = match said.first() {
-        Some(&("left" | "right" | "middle" | "center" | "centre")) if said.len() <= 3 => format!("on the {lower}"),
+    let words = answer_words(&lower);
+    let bare = match words.first() {
+        Some(&("left" | "right" | "middle" | "center" | "centre")) if words.len() <= 3 => format!("on the {lower}"),
         _ => lower.clone(),
     };
-    let told = read_presence(std::slice::from_ref(wanted), false, &bare);
+    let answered = read_presence(std::slice::from_ref(wanted), false, &bare);
     // Without a place or a no, the answer leaves open whether the thing is there.
-    told.into_iter().filter(|told| !told.direct || told.sighting.witness != WitnessAnswer::Unsure).collect()
+    answered.into_iter().filter(|one| !one.direct || one.sighting.witness != WitnessAnswer::Unsure).collect()
 }
 
-/// The things that the answer to a question for the room mentions besides the room.
+/// The things that the answer to a question for the room mentions besides the room. An answer of up to four words ("It
+/// is an office") names the room only.
 fn beside_the_room(answer: &str) -> Vec<AnswerSighting> {
-    let more = answer_words(answer).len() > 4;
-    let named = mentioned_things(answer, &BTreeSet::new()).into_iter().filter(|mention| more && !mention.is_room);
+    let is_long = answer_words(answer).len() > 4;
+    let named = mentioned_things(answer, &BTreeSet::new()).into_iter().filter(|mention| is_long && !mention.is_room);
     asides_from_mentions(named.collect(), None)
 }
 
+/// The phrases of place that end an item of an enumeration.
 const PLACE_ENDINGS: [(&str, ViewThird); 3] =
     [(" on the left", ViewThird::Left), (" in the middle", ViewThird::Middle), (" on the right", ViewThird::Right)];
 
@@ -246,6 +255,7 @@ pub(super) fn parse_enumeration(answer: &str) -> Option<Vec<ObjectSighting>> {
     }
 }
 
+/// One item of an enumeration, such as "two lamps". `None` if it reads like free text or its name has over 60 bytes.
 fn parse_item(words: &str, place: ViewThird) -> Option<ObjectSighting> {
     let (count, name) = words.split_once(' ')?;
     let several = COUNT_WORDS.contains(&count);

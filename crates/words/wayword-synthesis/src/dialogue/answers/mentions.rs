@@ -22,11 +22,16 @@ use wayword_language::{
 pub(in crate::dialogue) struct AnswerMention {
     /// Its name, in the singular if it has one. A denied thing keeps the words that distinguish it: "red chair".
     pub(in crate::dialogue) name: String,
+    /// Whether the name can mean a thing. "Stairs" can mean a thing and a room.
     pub(in crate::dialogue) is_thing: bool,
+    /// Whether the name can mean a room.
     pub(in crate::dialogue) is_room: bool,
+    /// Whether the text affirms, denies or doubts it.
     pub(in crate::dialogue) witness: WitnessAnswer,
     pub(in crate::dialogue) colour: Option<String>,
+    /// Its place in the view, where the text gives one.
     pub(in crate::dialogue) place: Option<ViewThird>,
+    /// Whether the text speaks of more than one.
     pub(in crate::dialogue) several: bool,
     /// The word before it, articles and adjectives skipped: "to", "of" ...
     pub(in crate::dialogue) before: String,
@@ -34,7 +39,7 @@ pub(in crate::dialogue) struct AnswerMention {
     pub(in crate::dialogue) is_beyond: bool,
 }
 
-/// Longest name that counts as one, bytes.
+/// Longest name of a mention, bytes; a longer one is no mention.
 const MOST_NAME_BYTES: usize = 60;
 /// Longest text that is read, bytes. Answers are shorter; the rest of a longer one is ignored.
 const MOST_BYTES: usize = 16_384;
@@ -70,6 +75,8 @@ fn sentence_ranges(text: &str, tokens: &[TextToken]) -> Vec<Range<usize>> {
     found
 }
 
+/// Adds the mentions of one sentence. `words` are those of the sentence, which begins at token `start` of the text; the
+/// ranges of `nouns` count from the beginning of the text.
 fn of_sentence(words: &[&str], start: usize, nouns: &[&NounMention], found: &mut Vec<AnswerMention>) {
     let ranges: Vec<Range<usize>> = nouns.iter().map(|noun| noun.at.start - start..noun.at.end - start).collect();
     let mut witnesses = AnswerSentence { words, nouns: &ranges }.noun_witnesses();
@@ -77,23 +84,23 @@ fn of_sentence(words: &[&str], start: usize, nouns: &[&NounMention], found: &mut
     let places = places_of(words, &ranges);
     for (at, noun) in nouns.iter().enumerate().filter(|(at, _)| !doubles.contains(at)) {
         let (range, witness) = (&ranges[at], witnesses[at]);
-        let said = words[range.clone()].join(" ");
-        let which = distinguishing_words(words, range);
-        if witness == WitnessAnswer::Denied && which.iter().any(|word| OTHERS.contains(word)) {
+        let spelling = words[range.clone()].join(" ");
+        let distinctions = distinguishing_words(words, range);
+        if witness == WitnessAnswer::Denied && distinctions.iter().any(|word| OTHERS.contains(word)) {
             continue;
         }
-        let plural = says_several(&said);
-        let name = if plural { to_singular(&said) } else { said };
+        let is_plural = says_several(&spelling);
+        let name = if is_plural { to_singular(&spelling) } else { spelling };
         let denied = witness == WitnessAnswer::Denied;
         let colour = noun.colour.clone().or_else(|| colour_said_of(&words[range.end..])).filter(|_| !denied);
         found.push(AnswerMention {
-            name: if denied && !which.is_empty() { format!("{} {name}", which.join(" ")) } else { name },
+            name: if denied && !distinctions.is_empty() { format!("{} {name}", distinctions.join(" ")) } else { name },
             is_thing: noun.is_thing,
             is_room: noun.is_room,
             witness,
             colour,
             place: places[at],
-            several: !denied && (plural || is_counted(words, range.start)),
+            several: !denied && (is_plural || is_counted(words, range.start)),
             before: word_before(words, range.start).to_owned(),
             is_beyond: is_beyond(words, range),
         });
@@ -165,6 +172,7 @@ fn word_before<'a>(words: &[&'a str], noun: usize) -> &'a str {
     words[..noun].iter().rev().find(|word| !skips(word)).copied().unwrap_or("")
 }
 
+/// Whether a number over one is before a noun, at most five words earlier: "three small chairs".
 fn is_counted(words: &[&str], noun: usize) -> bool {
     for word in words[..noun].iter().rev().take(5) {
         let is_number = NUMBERS.contains(word) || word.parse::<u32>().is_ok_and(|number| number > 1);
@@ -182,9 +190,10 @@ fn is_counted(words: &[&str], noun: usize) -> bool {
 /// of its part of the sentence, to all nouns that follow.
 fn places_of(words: &[&str], nouns: &[Range<usize>]) -> Vec<Option<ViewThird>> {
     let mut places = vec![None; nouns.len()];
-    let told = place_phrases(words);
-    for (at, phrase) in told.iter().enumerate() {
-        let end = told[at + 1..].iter().find(|next| is_head(words, next, nouns)).map_or(words.len(), |next| next.from);
+    let phrases = place_phrases(words);
+    for (at, phrase) in phrases.iter().enumerate() {
+        let end =
+            phrases[at + 1..].iter().find(|next| is_head(words, next, nouns)).map_or(words.len(), |next| next.from);
         if is_head(words, phrase, nouns) {
             for (noun, place) in nouns.iter().zip(&mut places) {
                 if noun.start >= phrase.to && noun.end <= end {
@@ -194,9 +203,9 @@ fn places_of(words: &[&str], nouns: &[Range<usize>]) -> Vec<Option<ViewThird>> {
         } else if let Some(last) = nouns.iter().rposition(|noun| noun.end <= phrase.from) {
             let between = &words[nouns[last].end..phrase.from];
             // "Two windows, both on the left".
-            let apart =
+            let is_apart =
                 between.contains(&",") && !matches!(between, [",", "both" | "located" | "placed" | "situated", ..]);
-            if between.len() <= 8 && !apart {
+            if between.len() <= 8 && !is_apart {
                 places[last] = Some(phrase.place);
             }
         }
@@ -209,13 +218,14 @@ fn places_of(words: &[&str], nouns: &[Range<usize>]) -> Vec<Option<ViewThird>> {
 fn is_head(words: &[&str], phrase: &PlacePhrase, nouns: &[Range<usize>]) -> bool {
     let before = phrase.from.checked_sub(1).map_or("", |at| words[at]);
     let begins = !nouns.iter().any(|noun| noun.end <= phrase.from) && !matches!(before, "it" | "one" | "them" | "they");
-    let joined = matches!(before, "," | "and" | ";" | "while" | "-");
-    let more = nouns.iter().any(|noun| noun.start >= phrase.to);
-    more && (joined || (begins && phrase.from <= 4))
+    let is_joined = matches!(before, "," | "and" | ";" | "while" | "-");
+    let has_nouns_after = nouns.iter().any(|noun| noun.start >= phrase.to);
+    has_nouns_after && (is_joined || (begins && phrase.from <= 4))
 }
 
 /// A thing or room, as a range of the tokens of a text.
 struct NounMention {
+    /// The tokens of its name.
     at: Range<usize>,
     is_thing: bool,
     is_room: bool,
@@ -251,10 +261,10 @@ fn find_nouns(text: &str, tokens: &[TextToken], words: &[&str], known: &BTreeSet
 }
 
 /// Whether a "picture" is the view itself and not an object on a wall: "the picture shows", "in this photo", "a picture
-/// of a kitchen".
+/// of a kitchen". The noun has the words `from` to `to`, without `to`.
 fn is_the_picture(words: &[&str], from: usize, to: usize) -> bool {
-    let single = to == from + 1 && matches!(words[from], "picture" | "photo" | "photograph");
-    let filled = |word: &str| {
+    let is_single = to == from + 1 && matches!(words[from], "picture" | "photo" | "photograph");
+    let is_filling = |word: &str| {
         matches!(
             word,
             "fills"
@@ -273,16 +283,17 @@ fn is_the_picture(words: &[&str], from: usize, to: usize) -> bool {
                 | "within"
         )
     };
-    if single && from > 1 && matches!(words[from - 1], "the" | "this") && filled(words[from - 2]) {
+    if is_single && from > 1 && matches!(words[from - 1], "the" | "this") && is_filling(words[from - 2]) {
         return true;
     }
     let word = |at: usize| words.get(at).copied().unwrap_or("");
     let before = if from > 0 { word(from - 1) } else { "" };
-    let hangs = matches!(word(to), "on" | "above" | "over" | "hanging" | "hangs" | "frame" | "frames");
+    let is_hanging = matches!(word(to), "on" | "above" | "over" | "hanging" | "hangs" | "frame" | "frames");
     let brought_in = words[..from].iter().any(|word| matches!(*word, "there" | "see" | "has" | "with"));
     let of_all = word(to) == "of" && from <= 4 && !brought_in;
-    let shows = matches!(word(to), "shows" | "depicts" | "features" | "contains" | "captures" | "showing" | "itself");
-    single && !hangs && (matches!(before, "the" | "this") || of_all || shows)
+    let is_showing =
+        matches!(word(to), "shows" | "depicts" | "features" | "contains" | "captures" | "showing" | "itself");
+    is_single && !is_hanging && (matches!(before, "the" | "this") || of_all || is_showing)
 }
 
 /// Whether a noun is the subject of a picture: "a painting of a horse" puts no horse into the room.

@@ -1,8 +1,8 @@
 //! Turns the transcript of a dialogue into sightings, one for each thing, and the name of the room.
 //!
 //! [`question`] finds out what a question asks for, and [`exchange`] interprets one answer to it. Both build on
-//! [`find_mentions`] (the things named in free text), [`polarity`] (affirmed or denied) and [`phrases`] (places, colours,
-//! names).
+//! [`find_mentions`] (the things named in free text), [`polarity`] (affirmed or denied) and [`phrases`] (places,
+//! colours, names).
 
 mod exchange;
 mod mentions;
@@ -31,6 +31,7 @@ pub(crate) use {
 /// A sighting from one answer, and whether the question was about that very thing.
 pub(super) struct AnswerSighting {
     pub(super) sighting: ObjectSighting,
+    /// Whether the question asked for this thing; `false` where the answer mentions the thing in passing.
     pub(super) direct: bool,
 }
 
@@ -43,11 +44,11 @@ pub(crate) fn dialogue_sightings(transcript: &[DialogueExchange], by: &str) -> V
     let mut joined: Vec<ObjectSighting> = Vec::new();
     for exchange in transcript {
         let earlier = joined.len();
-        for told in read_exchange(exchange, by) {
-            if told.sighting.witness == WitnessAnswer::Denied {
-                add_denial(&mut joined, told.sighting);
+        for answered in read_exchange(exchange, by) {
+            if answered.sighting.witness == WitnessAnswer::Denied {
+                add_denial(&mut joined, answered.sighting);
             } else {
-                add_sighting(&mut joined, earlier, told);
+                add_sighting(&mut joined, earlier, answered);
             }
         }
     }
@@ -70,29 +71,35 @@ pub(super) fn denial_covers(denial: &ObjectSighting, name: &str, colour: Option<
     !is_one_of_many && kinds_of(&name).contains(&general[0])
 }
 
+/// Whether two sightings may be of one place; a sighting without a place agrees with all.
 fn places_agree(a: &ObjectSighting, b: &ObjectSighting) -> bool {
     a.place == b.place || a.place.is_none() || b.place.is_none()
 }
 
+/// Denies the things that a denial covers, and adds the denial itself unless an earlier sighting
+/// of the same kind shows it already.
 fn add_denial(joined: &mut Vec<ObjectSighting>, denial: ObjectSighting) {
-    let mut known = false;
+    let mut is_covered = false;
     for before in joined.iter_mut() {
-        let other = before.witness != WitnessAnswer::Denied && !places_agree(before, &denial);
+        let is_elsewhere = before.witness != WitnessAnswer::Denied && !places_agree(before, &denial);
         if denial_covers(&denial, &before.name, before.colour.as_deref()) {
             // "No chair on the left" does not touch a chair on the right, and needs no entry of its own.
-            known |= other || kinds_of(&before.name)[0] == kinds_of(&denial.name)[0] || before.name == denial.name;
-            if !other {
+            is_covered |=
+                is_elsewhere || kinds_of(&before.name)[0] == kinds_of(&denial.name)[0] || before.name == denial.name;
+            if !is_elsewhere {
                 before.witness = WitnessAnswer::Denied;
             }
         }
     }
-    if !known {
+    if !is_covered {
         joined.push(denial);
     }
 }
 
-fn add_sighting(joined: &mut Vec<ObjectSighting>, earlier: usize, told: AnswerSighting) {
-    let AnswerSighting { mut sighting, direct } = told;
+/// Joins a sighting with the one of the same thing, or adds it. Only the first `earlier` sightings, those of earlier
+/// exchanges, may name the same thing more precisely ("dining chair" for "chair").
+fn add_sighting(joined: &mut Vec<ObjectSighting>, earlier: usize, answered: AnswerSighting) {
+    let AnswerSighting { mut sighting, direct } = answered;
     let colours_agree = |before: &ObjectSighting| {
         before.colour.is_none() || sighting.colour.is_none() || before.colour == sighting.colour
     };
@@ -124,7 +131,7 @@ fn add_sighting(joined: &mut Vec<ObjectSighting>, earlier: usize, told: AnswerSi
     joined.push(sighting);
 }
 
-/// Longest name of a room, bytes.
+/// Longest name of a room, bytes; a longer text names none.
 const MOST_BYTES: usize = 40;
 
 /// The name of the room: from the answer to a question for it, or else from the first description.

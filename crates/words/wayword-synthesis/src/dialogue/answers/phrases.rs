@@ -8,7 +8,8 @@ use wayword_language::{
     reading::vocabulary::{ABSTRACT, BREAKERS, COLOURS},
 };
 
-/// A phrase that places something in the view: the range of its words, and the third of the view that it means.
+/// A phrase that places something in the view: the range of its words (`from` up to `to`, without `to`), and the third
+/// of the view that it means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct PlacePhrase {
     pub(super) from: usize,
@@ -17,7 +18,7 @@ pub(super) struct PlacePhrase {
 }
 
 /// The place that the phrase beginning at a word means, and where the phrase ends. `Some((None, _))` for a place
-/// relative to another thing ("to the left of the sofa").
+/// relative to another thing ("to the left of the sofa"); `None` if no phrase of place begins there.
 fn phrase_at(words: &[&str], from: usize) -> Option<(Option<ViewThird>, usize)> {
     let word = |at: usize| words.get(at).copied().unwrap_or("");
     match (word(from), word(from + 1), word(from + 2)) {
@@ -41,6 +42,7 @@ fn phrase_at(words: &[&str], from: usize) -> Option<(Option<ViewThird>, usize)> 
         "middle" | "centre" | "center" | "background" | "distance" => ViewThird::Middle,
         _ => return None,
     };
+    // "On left" without "the" is no phrase of place.
     if at == from + 1 {
         return None;
     }
@@ -53,8 +55,8 @@ fn phrase_at(words: &[&str], from: usize) -> Option<(Option<ViewThird>, usize)> 
     }
     let whole = if matches!(word(at + 1), "the" | "this" | "your" | "my") { at + 2 } else { at + 1 };
     let room = is_room(word(whole)) || word(whole + 1) == "room";
-    let of_view = WHOLES.contains(&word(whole)) || room;
-    Some(if of_view { (Some(place), whole + 1) } else { (None, at + 1) })
+    let is_of_view = WHOLES.contains(&word(whole)) || room;
+    Some(if is_of_view { (Some(place), whole + 1) } else { (None, at + 1) })
 }
 
 /// The phrases of place among these words.
@@ -112,9 +114,9 @@ pub(super) fn colour_said_of(after: &[&str]) -> Option<String> {
     colour_at(&rest[skipped..]).map(|(colour, _)| colour)
 }
 
-/// Longest name that is asked for, bytes.
+/// Longest name that is asked for, bytes; a question for a longer one asks for nothing that we know.
 const MOST_NAME_BYTES: usize = 60;
-/// Most things that one question asks for.
+/// Most things that one question asks for; further ones are ignored.
 const MOST_THINGS: usize = 8;
 
 /// A thing that a question asks for.
@@ -159,7 +161,8 @@ pub(super) fn all_wanted(words: &[&str]) -> Option<(Vec<QuestionThing>, bool)> {
     }
 }
 
-/// The words of the noun phrase that begins at `at`; moves `at` behind it.
+/// The words of the noun phrase that begins at `at`, without fillers before it. Moves `at` to the next "or", "and" or
+/// comma.
 pub(super) fn noun_phrase<'a>(words: &[&'a str], at: &mut usize) -> Option<Vec<&'a str>> {
     while words.get(*at).is_some_and(|word| FILLERS.contains(word)) {
         *at += 1;
@@ -167,7 +170,8 @@ pub(super) fn noun_phrase<'a>(words: &[&'a str], at: &mut usize) -> Option<Vec<&
     let start = *at;
     let in_name = |at: usize| {
         let word = words[at];
-        let of = word == "of"
+        // "Of" belongs to the name only in names that the lexicon has, such as "chest of drawers".
+        let is_of_in_name = word == "of"
             && at > start
             && (1..=3).any(|more| {
                 words.get(start..at + 1 + more).is_some_and(|name| is_thing(&normalise_name(&name.join(" "))))
@@ -175,7 +179,7 @@ pub(super) fn noun_phrase<'a>(words: &[&'a str], at: &mut usize) -> Option<Vec<&
         let is_word = word.starts_with(char::is_alphanumeric);
         is_word
             && at < start + 6
-            && (of || !BREAKERS.contains(&word) || (at == start && matches!(word, "hanging" | "standing")))
+            && (is_of_in_name || !BREAKERS.contains(&word) || (at == start && matches!(word, "hanging" | "standing")))
             && !matches!(word, "visible" | "present" | "mentioned" | "really" | "actually" | "here" | "anywhere")
     };
     while *at < words.len() && in_name(*at) {
@@ -189,17 +193,17 @@ pub(super) fn noun_phrase<'a>(words: &[&'a str], at: &mut usize) -> Option<Vec<&
     (!found.is_empty()).then_some(found)
 }
 
-/// The thing that words begin with.
+/// The thing that these words begin with.
 pub(super) fn first_wanted(words: &[&str]) -> Option<QuestionThing> {
     question_thing(&noun_phrase(words, &mut 0)?, None)
 }
 
-/// Makes a wanted thing of a name; `None` for vague words such as "anything".
+/// Makes a wanted thing of the words of a name; `None` for vague words such as "anything", and for too long a name.
 pub(super) fn question_thing(name: &[&str], place: Option<ViewThird>) -> Option<QuestionThing> {
     let head = normalise_name(name.last()?);
-    let nothing = |word: &str| ANYTHING.contains(&word);
-    let vague = ABSTRACT.contains(&head.as_str()) && !is_thing(&normalise_name(&name.join(" ")));
-    if vague || nothing(&head) || name.iter().any(|word| nothing(word)) {
+    let is_vague_word = |word: &str| ANYTHING.contains(&word);
+    let is_vague = ABSTRACT.contains(&head.as_str()) && !is_thing(&normalise_name(&name.join(" ")));
+    if is_vague || is_vague_word(&head) || name.iter().any(|word| is_vague_word(word)) {
         return None;
     }
     let said = name.join(" ");

@@ -20,8 +20,9 @@ use wayword_language::{
 pub(super) enum AnswerPolarity {
     Yes,
     No,
+    /// The answer expresses doubt.
     Unsure,
-    /// Neither; the things that it names decide.
+    /// The answer is no yes, no "no" and no doubt; the things that it names decide.
     Open,
 }
 
@@ -41,14 +42,15 @@ pub(super) fn polarity_of(answer: &str) -> AnswerPolarity {
             return of_words(&rest);
         }
     }
-    let all = split_words(&answer);
-    if is_unsure(&all.iter().map(String::as_str).collect::<Vec<_>>()) {
+    let all_words = split_words(&answer);
+    if is_unsure(&all_words.iter().map(String::as_str).collect::<Vec<_>>()) {
         AnswerPolarity::Unsure
     } else {
         AnswerPolarity::Open
     }
 }
 
+/// The polarity of the words at the beginning of an answer.
 fn of_words(words: &[String]) -> AnswerPolarity {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let words = words.strip_prefix(&["well"]).unwrap_or(&words);
@@ -58,8 +60,10 @@ fn of_words(words: &[String]) -> AnswerPolarity {
     if is_unsure(words) || longest(&MAYBE).is_some() {
         return AnswerPolarity::Unsure;
     }
-    let alone = |words: &&Vec<&str>, said: &[&str]| {
-        said.strip_prefix(words.as_slice())
+    // "There are two on the left." is a yes, but "There are two lamps." is not.
+    let alone = |phrase: &&Vec<&str>, answer: &[&str]| {
+        answer
+            .strip_prefix(phrase.as_slice())
             .is_some_and(|rest| rest.first().is_none_or(|next| AFTER_NOUN.contains(next)))
     };
     let alone = YES_ALONE.iter().filter(|phrase| alone(phrase, words)).map(Vec::len).max();
@@ -85,8 +89,9 @@ pub(super) struct AnswerSentence<'a> {
 /// How far a trigger reaches, and the witness that it gives to the nouns within.
 #[derive(Clone, Copy)]
 struct TriggerReach {
-    /// The word at which it begins.
+    /// The word at which the reach begins, right after the trigger.
     from: usize,
+    /// The witness of the nouns that it reaches: denied or unsure.
     says: WitnessAnswer,
     /// Whether it covers a whole list ("a lamp, a bed or a sofa"), as a negated verb does, and not only the first noun.
     over_articles: bool,
@@ -94,6 +99,7 @@ struct TriggerReach {
     to_the_end: bool,
 }
 
+/// Words that deny a verb or a noun after them.
 const NEGATION_WORDS: [&str; 2] = ["not", "never"];
 
 /// The length of the phrase of doubt with which words begin, if they do.
@@ -104,10 +110,11 @@ pub(super) fn doubt_at(words: &[&str]) -> Option<usize> {
 impl AnswerSentence<'_> {
     /// The witness for each noun: seen, unless a trigger denies or doubts it.
     pub(super) fn noun_witnesses(&self) -> Vec<WitnessAnswer> {
-        let mut said = vec![WitnessAnswer::Seen; self.nouns.len()];
+        let mut witnesses = vec![WitnessAnswer::Seen; self.nouns.len()];
         for reach in (0..self.words.len()).filter_map(|at| self.trigger_at(at)) {
             for noun in self.nouns_within(reach) {
-                said[noun] = if said[noun] == WitnessAnswer::Denied { WitnessAnswer::Denied } else { reach.says };
+                witnesses[noun] =
+                    if witnesses[noun] == WitnessAnswer::Denied { WitnessAnswer::Denied } else { reach.says };
             }
         }
         for noun in 0..self.nouns.len() {
@@ -116,20 +123,23 @@ impl AnswerSentence<'_> {
                 while first > 0 && self.is_joined(first - 1) {
                     first -= 1;
                 }
-                said[first..=noun].fill(WitnessAnswer::Denied);
+                witnesses[first..=noun].fill(WitnessAnswer::Denied);
             }
         }
-        said
+        witnesses
     }
 
+    /// The word at a position; an empty one behind the end of the sentence.
     fn word_at(&self, at: usize) -> &str {
         self.words.get(at).copied().unwrap_or("")
     }
 
+    /// The number of the noun that begins at a word.
     fn noun_at(&self, at: usize) -> Option<usize> {
         self.nouns.iter().position(|noun| noun.start == at)
     }
 
+    /// The reach of the trigger that begins at a word, if one does.
     fn trigger_at(&self, at: usize) -> Option<TriggerReach> {
         let word = self.word_at(at);
         let denial = |from, over_articles| {
@@ -182,7 +192,7 @@ impl AnswerSentence<'_> {
         matches!(self.word_at(at), "a" | "an" | "any" | "one")
     }
 
-    /// Where the object of a negated verb begins; `after` is behind the "not".
+    /// Where the object of a negated verb begins ("not see | a lamp"); `after` is the word after the "not".
     fn negated_verb(&self, after: usize) -> Option<usize> {
         let mut at = after;
         while at < after + 5 && MEANWHILE.contains(&self.word_at(at)) {
@@ -224,6 +234,8 @@ impl AnswerSentence<'_> {
         found
     }
 
+    /// Whether the reach of a trigger ends at a word that begins no noun. `had_noun`: whether it has reached a noun
+    /// before.
     fn ends_reach(&self, at: usize, reach: TriggerReach, had_noun: bool) -> bool {
         let word = self.word_at(at);
         if STOPPERS.contains(&word) {
@@ -247,7 +259,7 @@ impl AnswerSentence<'_> {
         }
     }
 
-    /// Whether a list goes on behind a comma or an "and".
+    /// Whether a list goes on at a word behind a comma or an "and".
     fn goes_on(&self, at: usize, reach: TriggerReach) -> bool {
         match self.word_at(at) {
             "or" | "nor" | "any" => true,
@@ -279,7 +291,7 @@ impl AnswerSentence<'_> {
         }
     }
 
-    /// Whether only commas, articles and "and" or "or" separate a noun from the next.
+    /// Whether a noun and the next one belong to one list: only commas, articles, "and" or "or" are between them.
     fn is_joined(&self, noun: usize) -> bool {
         let between = &self.words[self.nouns[noun].end..self.nouns[noun + 1].start];
         between.iter().any(|word| matches!(*word, "and" | "or" | "nor"))

@@ -18,7 +18,7 @@ pub(crate) enum QuestionSubject {
     Presence {
         /// One, or several with "or" or "and" between them.
         wanted: Vec<QuestionThing>,
-        /// They are alternatives: a yes to them is not a yes to each.
+        /// Whether they are alternatives ("a bed or a sofa"): a yes to them is not a yes to each.
         or: bool,
     },
     /// The colour of a thing, which the question takes to be there.
@@ -28,7 +28,7 @@ pub(crate) enum QuestionSubject {
         /// Colours that the question names.
         guesses: Vec<String>,
     },
-    /// How many there are.
+    /// How many of a thing there are.
     Number(QuestionThing),
     /// Where a thing is, which the question takes to be there.
     Place(QuestionThing),
@@ -40,7 +40,7 @@ pub(crate) enum QuestionSubject {
     Other(Option<ViewThird>),
 }
 
-/// What a question asks for.
+/// Reads a question: tries one kind of question after the other, the most special first.
 pub(crate) fn read_question(question: &str) -> QuestionSubject {
     // "Look again and answer in one short sentence: ...": only the words after the colon matter.
     let question = question.rsplit_once(": ").map_or(question, |(_, rest)| rest);
@@ -57,13 +57,15 @@ pub(crate) fn read_question(question: &str) -> QuestionSubject {
         .unwrap_or_else(|| QuestionSubject::Other(place_phrases(words).first().map(|phrase| phrase.place)))
 }
 
+/// Whether words contain these words in a row.
 fn has_run(words: &[&str], run: &[&str]) -> bool {
     words.windows(run.len()).any(|window| window == run)
 }
 
+/// "Which room is this?", "What kind of place is it?", "Where was the picture taken?"
 fn room_question(words: &[&str]) -> Option<QuestionSubject> {
     let asks = ["which", "what"].contains(words.first()?);
-    let kind = |of: &str| ["kind", "type", "sort"].iter().any(|kind| has_run(words, &[kind, "of", of]));
+    let kind = |noun: &str| ["kind", "type", "sort"].iter().any(|kind| has_run(words, &[kind, "of", noun]));
     let place = ["room", "place", "space", "area"].into_iter().any(kind);
     let which = has_run(words, &["which", "room"])
         || has_run(words, &["what", "room"])
@@ -105,11 +107,13 @@ fn ends_phrase(words: &[&str], at: usize) -> bool {
     at > 1 && words.get(at + 1).is_none_or(|next| matches!(*next, "or" | "?" | "and" | "in" | ","))
 }
 
+/// "How many chairs are there?"
 fn number_question(words: &[&str]) -> Option<QuestionSubject> {
     let rest = words.strip_prefix(&["how", "many"])?;
     first_wanted(rest).map(QuestionSubject::Number)
 }
 
+/// "Where is the lamp?", "On which side is the lamp?"
 fn place_question(words: &[&str]) -> Option<QuestionSubject> {
     let rest = match words {
         ["where", "is" | "are", rest @ ..] => rest,
@@ -137,6 +141,7 @@ fn identity_question(words: &[&str]) -> Option<QuestionSubject> {
     }
 }
 
+/// "Is there a lamp?", "Can you see a lamp?", "Any lamps?"
 fn presence_question(words: &[&str]) -> Option<QuestionSubject> {
     let rest = match words {
         ["is" | "are" | "was" | "were", "there", rest @ ..] => rest,
@@ -157,6 +162,7 @@ fn presence_question(words: &[&str]) -> Option<QuestionSubject> {
     all_wanted(&rest[skipped..]).map(presence_of)
 }
 
+/// Makes the question for the presence of the things that [`all_wanted`] found.
 fn presence_of((wanted, or): (Vec<QuestionThing>, bool)) -> QuestionSubject {
     QuestionSubject::Presence { wanted, or }
 }

@@ -8,25 +8,29 @@ use wayword_language::lexicon::{ThingClass, find_thing, kinds_of};
 #[derive(Debug, Clone, Default)]
 pub struct BuildingListing {
     pub(super) objects: Vec<ListingObject>,
+    /// The viewpoints, or the one frame.
     pub(super) places: Vec<ListingViewpoint>,
     pub(super) rooms: Vec<ListingRoom>,
     /// How many storeys there are.
     pub(super) storeys: usize,
+    /// The number of each object in `objects`.
     by_id: BTreeMap<ObjectId, usize>,
+    /// The number of each viewpoint in `places`.
     place_of: BTreeMap<ViewpointId, usize>,
 }
 
-/// An object.
+/// An object of the building.
 #[derive(Debug, Clone)]
 pub(super) struct ListingObject {
     pub(super) name: String,
+    /// The kinds of thing that its name means, the most specific first: "dining chair", "chair".
     kinds: Vec<String>,
     pub(super) class: ThingClass,
     pub(super) salience: u8,
     pub(super) colour: Option<String>,
     /// Its centre, metres, world frame.
     pub(super) position: Option<DVec3>,
-    /// The rooms in which it may be.
+    /// The numbers of the rooms in which it may be.
     pub(super) rooms: Vec<usize>,
     pub(super) level: Option<u32>,
 }
@@ -34,7 +38,9 @@ pub(super) struct ListingObject {
 /// A viewpoint with its room and the objects that are seen from it.
 #[derive(Debug, Clone)]
 pub(super) struct ListingViewpoint {
+    /// Where the eye is, metres, world frame.
     pub(super) eye: DVec3,
+    /// The number of its room.
     pub(super) room: usize,
     level: Option<u32>,
     pub(super) sights: Vec<ListingSighting>,
@@ -43,6 +49,7 @@ pub(super) struct ListingViewpoint {
 /// An object as it is seen from a viewpoint.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ListingSighting {
+    /// The number of the object.
     pub(super) object: usize,
     pub(super) heading: Heading,
     elevation_rad: f64,
@@ -55,7 +62,7 @@ pub(super) struct ListingRoom {
     pub(super) name: Option<String>,
     /// Names of the neighbouring rooms.
     pub(super) beside: BTreeSet<String>,
-    /// The objects that are certainly in it.
+    /// The objects that are certainly in it, by number.
     pub(super) things: Vec<usize>,
 }
 
@@ -120,6 +127,7 @@ impl BuildingListing {
         self.place_index(frame).is_some_and(|place| !self.places[place].sights.is_empty())
     }
 
+    /// Adds a place, and the objects that its labels show.
     fn add_place<'a>(
         &mut self,
         eye: DVec3,
@@ -143,6 +151,7 @@ impl BuildingListing {
         self.places.push(ListingViewpoint { eye, room, level, sights });
     }
 
+    /// The number of a label's object, which is added if it is new.
     fn add_object(&mut self, label: &ObjectLabel) -> usize {
         if let Some(at) = self.by_id.get(&label.object) {
             return *at;
@@ -184,15 +193,16 @@ impl BuildingListing {
             let rooms: BTreeSet<usize> = near.map(|at| self.places[at].room).collect();
             self.rooms[self.places[nearest].room].things.push(object);
             let level = self.places[nearest].level;
-            let found = &mut self.objects[object];
-            (found.position, found.level, found.rooms) = (position, level, rooms.into_iter().collect());
+            let located = &mut self.objects[object];
+            (located.position, located.level, located.rooms) = (position, level, rooms.into_iter().collect());
         }
     }
 }
 
 /// The point nearest to all rays (origin and direction, least squares); `None` unless at least two rays cross at a
-/// clear angle.
+/// clear angle, about 15 degrees or more.
 fn meeting_point(rays: &[(DVec3, DVec3)]) -> Option<DVec3> {
+    // The length is the sine of the angle.
     let crosses = |a: &DVec3, b: &DVec3| a.cross(*b).length() > 0.25;
     rays.iter().find(|(_, way)| crosses(way, &rays[0].1))?;
     let (mut matrix, mut vector) = (DMat3::ZERO, DVec3::ZERO);
@@ -211,7 +221,7 @@ fn meeting_point(rays: &[(DVec3, DVec3)]) -> Option<DVec3> {
 /// For each viewpoint, the number of its room: neighbours of one name and storey are in one room.
 fn number_rooms(survey: &ViewpointSurvey) -> Vec<usize> {
     let viewpoints = survey.viewpoints();
-    let is_one = |a: usize, b: usize| {
+    let is_same_room = |a: usize, b: usize| {
         let (a, b) = (&viewpoints[a], &viewpoints[b]);
         let names = (a.known.room.as_deref(), b.known.room.as_deref());
         a.level == b.level && matches!(names, (Some(a), Some(b)) if a == b)
@@ -226,7 +236,7 @@ fn number_rooms(survey: &ViewpointSurvey) -> Vec<usize> {
         room_of[first] = count;
         while let Some(at) = open.pop() {
             for other in &viewpoints[at].neighbours {
-                if room_of[*other] == usize::MAX && is_one(at, *other) {
+                if room_of[*other] == usize::MAX && is_same_room(at, *other) {
                     room_of[*other] = count;
                     open.push(*other);
                 }

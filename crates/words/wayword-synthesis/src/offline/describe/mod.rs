@@ -1,8 +1,9 @@
 //! Finds descriptions of a target that fit no other object of its building: properties that are added to its name and
 //! the kind of its room ("the lamp above the desk").
 //!
-//! All subsets of up to three properties are tried, after Dale and Reiter (1995). The cheapest subsets that leave no
-//! rival are kept; if every subset leaves rivals, those that leave fewest.
+//! A rival is another object that could be called by the target's name. All subsets of up to three properties are
+//! tried, after Dale and Reiter (1995). The cheapest subsets that fit no rival are kept; if every subset fits rivals,
+//! those that fit fewest. The cost of a description is roughly the number of its words.
 
 mod listing;
 mod properties;
@@ -16,15 +17,16 @@ pub use listing::BuildingListing;
 use properties::{TargetContext, TargetProperty};
 use wayword_core::{Frame, ObjectDescription, ObjectDistinction, PathTarget};
 
-/// Most descriptions of a target.
+/// Most descriptions of a target, the cheapest first; dearer ones are dropped.
 const MOST_KEPT: usize = 32;
-/// Most properties that are combined, the cheapest first.
+/// Most properties that are combined, the cheapest first; dearer ones are not tried.
 const MOST_PROPERTIES: usize = 36;
-/// Extra cost of a superlative ("the leftmost") where more objects of the kind exist than can be seen from the end.
+/// Extra cost, in words, of a superlative ("the leftmost") where more objects of the kind exist than can be seen from
+/// the end.
 const UNCLEAR_SUPERLATIVE_COST: f64 = 1.2;
-/// Cost of a second property of the object.
+/// Cost, in words, of a second property of the object.
 const SECOND_PROPERTY_COST: f64 = 1.0;
-/// Cost of a property that is not needed to single the target out.
+/// Cost, in words, of a property that is not needed to single the target out.
 const IDLE_PROPERTY_COST: f64 = 1.0;
 
 /// Fills in how a target can be described: for a listener at the last frame, who sees other objects of the same name
@@ -32,27 +34,27 @@ const IDLE_PROPERTY_COST: f64 = 1.0;
 pub fn describe_target(target: &mut PathTarget, last: &Frame, listing: &BuildingListing) {
     let (Some(own), Some(place)) = (listing.object_index(&target.object), listing.place_index(last)) else { return };
     let place = &listing.places[place];
-    let scene = TargetContext::new(listing, last, place, own);
-    let mut properties = scene.all_properties();
+    let context = TargetContext::new(listing, last, place, own);
+    let mut properties = context.all_properties();
     properties.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     properties.truncate(MOST_PROPERTIES);
-    let namesakes: Vec<bool> = scene.rivals.iter().map(|rival| scene.sight_of_object(*rival).is_some()).collect();
+    let namesakes: Vec<bool> = context.rivals.iter().map(|rival| context.sight_of_object(*rival).is_some()).collect();
     target.has_namesake = namesakes.contains(&true);
-    target.told_by = told_by(&scene, &properties, &namesakes);
-    target.descriptions = search_descriptions(&scene, &properties);
-    target.hangs = scene.target_hangs();
+    target.told_by = told_by(&context, &properties, &namesakes);
+    target.descriptions = search_descriptions(&context, &properties);
+    target.hangs = context.target_hangs();
     target.storeys = listing.storeys;
 }
 
 /// The single properties that no namesake in view has, the cheapest first.
-fn told_by(scene: &TargetContext<'_>, properties: &[TargetProperty], namesakes: &[bool]) -> Vec<ObjectDistinction> {
-    let tells = |property: &&TargetProperty| {
+fn told_by(context: &TargetContext<'_>, properties: &[TargetProperty], namesakes: &[bool]) -> Vec<ObjectDistinction> {
+    let distinguishes = |property: &&TargetProperty| {
         !property.told.is_of_room() && !property.fits.iter().zip(namesakes).any(|(fits, in_view)| *fits && *in_view)
     };
     let mut told: Vec<(f64, ObjectDistinction)> =
-        properties.iter().filter(tells).map(|property| (property.cost, property.told.clone())).collect();
+        properties.iter().filter(distinguishes).map(|property| (property.cost, property.told.clone())).collect();
     if namesakes.contains(&true) {
-        told.extend(scene.superlatives_among(namesakes));
+        told.extend(context.superlatives_among(namesakes));
     }
     // A listener who hears "on the right" looks for the only one there.
     let is_clear = |told: &ObjectDistinction| !told.is_of_room() && !matches!(told, ObjectDistinction::OnSide { .. });
@@ -65,8 +67,8 @@ fn told_by(scene: &TargetContext<'_>, properties: &[TargetProperty], namesakes: 
     }
     if told.is_empty() {
         // A property that all of them share still narrows down where to look.
-        let is_said = |told: &ObjectDistinction| is_clear(told) || !told.is_of_room() && scene.is_outermost();
-        let of_object = properties.iter().filter(|property| is_said(&property.told));
+        let is_usable = |told: &ObjectDistinction| is_clear(told) || !told.is_of_room() && context.is_outermost();
+        let of_object = properties.iter().filter(|property| is_usable(&property.told));
         told.extend(of_object.map(|property| (property.cost, property.told.clone())));
     }
     told.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -79,16 +81,17 @@ struct DescriptionCandidate {
     description: ObjectDescription,
 }
 
-fn search_descriptions(scene: &TargetContext<'_>, properties: &[TargetProperty]) -> Vec<ObjectDescription> {
-    let base = scene.rivals_in_kind();
+/// The best descriptions among all combinations of up to three properties.
+fn search_descriptions(context: &TargetContext<'_>, properties: &[TargetProperty]) -> Vec<ObjectDescription> {
+    let base = context.rivals_in_kind();
     let mut found: Vec<DescriptionCandidate> = Vec::new();
-    add_candidates(scene, &[], &base, &mut found);
+    add_candidates(context, &[], &base, &mut found);
     for (first, a) in properties.iter().enumerate() {
         let left = both_true(&base, &a.fits);
-        add_candidates(scene, &[a], &left, &mut found);
+        add_candidates(context, &[a], &left, &mut found);
         for (second, b) in properties.iter().enumerate().skip(first + 1) {
             let left = both_true(&left, &b.fits);
-            add_candidates(scene, &[a, b], &left, &mut found);
+            add_candidates(context, &[a, b], &left, &mut found);
             if !left.contains(&true) {
                 continue;
             }
@@ -101,37 +104,43 @@ fn search_descriptions(scene: &TargetContext<'_>, properties: &[TargetProperty])
         }
     }
     // If several are on one side, "the one on the left" means the leftmost.
-    if !scene.is_outermost() {
+    if !context.is_outermost() {
         let is_side = |by: &ObjectDistinction| matches!(by, ObjectDistinction::OnSide { .. });
         found.retain(|found| found.description.leaves == 1 || !found.description.by.iter().any(is_side));
     }
     best_descriptions(found)
 }
 
+/// For each rival, whether it passed both lists.
 fn both_true(a: &[bool], b: &[bool]) -> Vec<bool> {
     a.iter().zip(b).map(|(a, b)| *a && *b).collect()
 }
 
-/// Adds a candidate with these properties alone, and candidates with a superlative among the namesakes in view. The
-/// superlative ignores namesakes that cannot be seen from the end; that is less clear, so it costs more.
+/// Adds a candidate with these properties alone, and candidates with a superlative among the namesakes in view. `left`
+/// has the rivals that the properties fit too. The superlative ignores namesakes that cannot be seen from the end; that
+/// is less clear, so it costs more.
 fn add_candidates(
-    scene: &TargetContext<'_>,
+    context: &TargetContext<'_>,
     by: &[&TargetProperty],
     left: &[bool],
     found: &mut Vec<DescriptionCandidate>,
 ) {
     let count = |left: &[bool]| left.iter().filter(|left| **left).count();
     push_candidate(by, count(left), None, found);
-    let in_view: Vec<bool> =
-        left.iter().zip(&scene.rivals).map(|(left, rival)| *left && scene.sight_of_object(*rival).is_some()).collect();
+    let in_view: Vec<bool> = left
+        .iter()
+        .zip(&context.rivals)
+        .map(|(left, rival)| *left && context.sight_of_object(*rival).is_some())
+        .collect();
     if in_view.contains(&true) {
         let unclear = if count(left) > count(&in_view) { UNCLEAR_SUPERLATIVE_COST } else { 0.0 };
-        for (cost, superlative) in scene.superlatives_among(&in_view) {
+        for (cost, superlative) in context.superlatives_among(&in_view) {
             push_candidate(by, 0, Some((cost + unclear, superlative)), found);
         }
     }
 }
 
+/// Adds a candidate, unless people would not say it so. `rest` is the number of rivals that it fits too.
 fn push_candidate(
     by: &[&TargetProperty],
     rest: usize,
@@ -169,13 +178,13 @@ fn best_descriptions(mut found: Vec<DescriptionCandidate>) -> Vec<ObjectDescript
     found.retain(|found| found.description.leaves == least);
     found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let mut kept: Vec<DescriptionCandidate> = Vec::new();
-    for mut one in found {
-        let holds =
-            |other: &DescriptionCandidate| other.description.by.iter().all(|by| one.description.by.contains(by));
-        if kept.iter().any(holds) {
-            one.cost += IDLE_PROPERTY_COST;
+    for mut candidate in found {
+        let contains_other =
+            |other: &DescriptionCandidate| other.description.by.iter().all(|by| candidate.description.by.contains(by));
+        if kept.iter().any(contains_other) {
+            candidate.cost += IDLE_PROPERTY_COST;
         }
-        kept.push(one);
+        kept.push(candidate);
     }
     kept.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     kept.truncate(MOST_KEPT);

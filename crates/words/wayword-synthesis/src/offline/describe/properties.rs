@@ -9,8 +9,9 @@ use wayword_language::lexicon::{ThingClass, room_name, same_room};
 /// A property that the target has.
 #[derive(Debug, Clone)]
 pub(super) struct TargetProperty {
+    /// The property as a description mentions it.
     pub(super) told: ObjectDistinction,
-    /// For each rival, whether it fits too.
+    /// For each rival, in the order of [`TargetContext::rivals`], whether the property fits it too.
     pub(super) fits: Vec<bool>,
     /// The cost of mentioning it, roughly its words.
     pub(super) cost: f64,
@@ -19,15 +20,19 @@ pub(super) struct TargetProperty {
 /// The target, the viewpoint at the end, and the rivals: all objects that could be called by the target's name.
 pub(super) struct TargetContext<'a> {
     pub(super) listing: &'a BuildingListing,
+    /// The viewpoint where the path ends.
     pub(super) place: &'a ListingViewpoint,
+    /// The heading with which the walker arrives there.
     pub(super) heading: Heading,
+    /// The number of the target in the listing.
     pub(super) target: usize,
+    /// The numbers of the rivals in the listing.
     pub(super) rivals: Vec<usize>,
 }
 
 /// Greatest distance at which an object in the same room counts as visible, metres.
 const IN_SIGHT_M: f64 = 8.0;
-/// A hanging thing is at most this far below the eye, metres.
+/// A thing on a wall counts as hanging if it is less than this far below the eye, metres.
 const HIGH_M: f64 = 0.4;
 
 impl<'a> TargetContext<'a> {
@@ -42,6 +47,7 @@ impl<'a> TargetContext<'a> {
         &self.listing.objects[at]
     }
 
+    /// The object as it is seen at the end; `None` if it is not seen there.
     pub(super) fn sight_of_object(&self, object: usize) -> Option<&'a ListingSighting> {
         self.place.sights.iter().find(|sight| sight.object == object)
     }
@@ -51,6 +57,7 @@ impl<'a> TargetContext<'a> {
         Some(self.heading.turn_to(self.sight_of_object(object)?.heading))
     }
 
+    /// The distance of an object that is seen at the end, metres.
     pub(super) fn distance_m(&self, object: usize) -> Option<f64> {
         let sight = self.sight_of_object(object)?;
         sight.distance_m.or_else(|| Some(self.object_at(object).position?.distance(self.place.eye)))
@@ -71,6 +78,7 @@ impl<'a> TargetContext<'a> {
         self.rivals.iter().map(|rival| self.object_at(*rival).rooms.iter().any(is_kind)).collect()
     }
 
+    /// A property of the target. `fits` decides for the number of each rival whether the property fits it too.
     pub(super) fn new_property(
         &self,
         told: ObjectDistinction,
@@ -80,7 +88,7 @@ impl<'a> TargetContext<'a> {
         TargetProperty { told, cost, fits: self.rivals.iter().map(|rival| fits(*rival)).collect() }
     }
 
-    /// All properties of the target that do not depend on the rest of the description; superlatives do.
+    /// All properties of the target that do not depend on the rest of the description, as superlatives do.
     pub(super) fn all_properties(&self) -> Vec<TargetProperty> {
         let mut all = self.of_room();
         let own = self.object_at(self.target);
@@ -105,6 +113,7 @@ impl<'a> TargetContext<'a> {
         let Some(here) = own.position else { return false };
         let carries = |at: &ListingObject| {
             let Some(there) = at.position else { return false };
+            // It carries the target if it is at most 0.7 m aside and 0.6 m lower.
             let aside = DVec3::new(there.x - here.x, there.y - here.y, 0.0).length();
             !matches!(at.class, ThingClass::WallArt | ThingClass::Glass | ThingClass::Light)
                 && aside < 0.7
@@ -117,6 +126,8 @@ impl<'a> TargetContext<'a> {
             && !self.listing.objects.iter().any(carries)
     }
 
+    /// Properties of the room where the path ends: its storey, a neighbouring room, a thing in it. None where the
+    /// target is in another room.
     fn of_room(&self) -> Vec<TargetProperty> {
         let (listing, own) = (self.listing, self.object_at(self.target));
         let mut all = Vec::new();
@@ -139,11 +150,11 @@ impl<'a> TargetContext<'a> {
         }
         let mut told: Vec<&str> = Vec::new();
         for thing in room.things.iter().map(|at| self.object_at(*at)) {
-            let is_told = |name: &&str| **name == *thing.name;
+            let has_this_name = |name: &&str| **name == *thing.name;
             if thing.salience < 2
                 || thing.class == ThingClass::Stairs
                 || thing.is_like(own)
-                || told.iter().any(is_told)
+                || told.iter().any(has_this_name)
                 || is_unclear(thing)
             {
                 continue;
@@ -156,6 +167,7 @@ impl<'a> TargetContext<'a> {
         all
     }
 
+    /// "On the left" or "on the right", where the target is clearly to a side: 25 to 155 degrees from the heading.
     fn side_property(&self) -> Option<TargetProperty> {
         let (side, sign) = match self.bearing_deg(self.target)? {
             deg if (25.0..155.0).contains(&deg) => (Side::Right, 1.0),

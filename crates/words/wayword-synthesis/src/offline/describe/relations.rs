@@ -16,9 +16,9 @@ const NEAR_M: f64 = 1.5;
 const NOT_NEAR_M: f64 = 1.8;
 /// The target has to be nearer than this share of the distance of every rival.
 const CLEARLY_NEARER_SHARE: f64 = 0.7;
-/// The target also has to be nearer by this, metres.
+/// The target also has to be nearer than every rival by this, metres.
 const CLEARLY_M: f64 = 0.3;
-/// Extra cost of a relation to a small thing.
+/// Extra cost of a relation to a small thing, in words.
 const SMALL_NEIGHBOUR_COST: f64 = 0.9;
 /// Distances are compared after rounding to this many units per metre, a tenth of a millimetre each.
 const PER_M: f64 = 10_000.0;
@@ -43,6 +43,7 @@ impl<'a> TargetContext<'a> {
         near
     }
 
+    /// The relations of the target to its neighbours: one set for each name of a neighbour, and "between" for pairs.
     pub(super) fn relation_properties(&self) -> Vec<TargetProperty> {
         let neighbours = self.near_neighbours();
         let mut all: Vec<TargetProperty> = Vec::new();
@@ -65,6 +66,7 @@ impl<'a> TargetContext<'a> {
         self.listing.objects.iter().filter(|other| other.is_like(thing)).collect()
     }
 
+    /// The relations of the target to the object with this number, which is `apart_m` metres away.
     fn relations_to(&self, at: usize, apart_m: f64) -> Vec<TargetProperty> {
         let (own, to) = (self.object_at(self.target), self.object_at(at));
         let alike = self.objects_like(to);
@@ -117,10 +119,10 @@ impl<'a> TargetContext<'a> {
     /// Left or right of a thing, as seen from the end.
     fn beside_property(&self, at: usize, alike: &[&ListingObject]) -> Option<TargetProperty> {
         let (own, to) = (self.object_at(self.target), self.object_at(at));
-        let level_m = (own.position?.z - to.position?.z).abs();
+        let rise_m = (own.position?.z - to.position?.z).abs();
         let off_rad = self.sight_of_object(at)?.heading.turn_to(self.sight_of_object(self.target)?.heading);
         let off_deg = off_rad.to_degrees();
-        if level_m > 0.9 || !(8.0..70.0).contains(&off_deg.abs()) {
+        if rise_m > 0.9 || !(8.0..70.0).contains(&off_deg.abs()) {
             return None;
         }
         let relation = if off_deg > 0.0 { ObjectRelation::RightOf } else { ObjectRelation::LeftOf };
@@ -142,9 +144,11 @@ impl<'a> TargetContext<'a> {
         Some(self.new_property(told, 1.9, may_be))
     }
 
+    /// "Between the bed and the window": the directions to both differ by 140 degrees or more for the target; a rival
+    /// is excluded below 100.
     fn between_property(&self, one: usize, other: usize) -> Option<TargetProperty> {
         let (one, other) = (self.object_at(one), self.object_at(other));
-        let stands = |object: &ListingObject, degrees: f64| {
+        let lies_between = |object: &ListingObject, degrees: f64| {
             let all_one = self.objects_like(one);
             let all_other = self.objects_like(other);
             all_one.iter().any(|a| all_other.iter().any(|b| is_between(object, a, b, degrees).unwrap_or(true)))
@@ -154,11 +158,11 @@ impl<'a> TargetContext<'a> {
             return None;
         }
         let told = ObjectDistinction::Between { one: one.name.clone(), other: other.name.clone() };
-        Some(self.new_property(told, 3.0, |rival| stands(self.object_at(rival), 100.0)))
+        Some(self.new_property(told, 3.0, |rival| lies_between(self.object_at(rival), 100.0)))
     }
 }
 
-/// Metres between two centres.
+/// Metres between two centres; `None` where a position is not known.
 fn centre_distance_m(a: &ListingObject, b: &ListingObject) -> Option<f64> {
     Some(a.position?.distance(b.position?))
 }
@@ -166,10 +170,14 @@ fn centre_distance_m(a: &ListingObject, b: &ListingObject) -> Option<f64> {
 /// Whether a relation has to hold clearly (for the target) or may just hold (for a rival).
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum RelationStrictness {
+    /// The relation has to hold clearly.
     Yes,
+    /// The relation may just hold; it also holds where a position is not known.
     No,
 }
 
+/// Whether `a` is above, under or on `b`, by how much higher its centre is (`rise`) and how far off to the side
+/// (`aside`), both in metres. Other relations never hold here.
 fn relation_holds(relation: ObjectRelation, a: &ListingObject, b: &ListingObject, strict: RelationStrictness) -> bool {
     let (Some(from), Some(to)) = (a.position, b.position) else { return strict == RelationStrictness::No };
     let rise = from.z - to.z;

@@ -3,15 +3,15 @@
 use super::properties::TargetContext;
 use wayword_core::{ObjectDistinction, Side};
 
-/// Least angle between the target and the next in a row, degrees.
+/// Least angle between the target and the next object in a row, degrees; closer ones make the row unclear.
 const APART_DEG: f64 = 5.0;
 /// The widest row, degrees. If things lie all around the walker, none of them is the leftmost.
 const WIDEST_DEG: f64 = 150.0;
-/// The nearest has to be nearer than this share of the distance of the next.
+/// The nearest object has to be nearer than this share of the distance of the next.
 const CLEARLY_NEAREST_SHARE: f64 = 0.75;
-/// The highest has to be higher than the next by this, metres.
+/// The highest object has to be higher than the next by this, metres.
 const HIGHER_M: f64 = 0.3;
-/// The longest row in which people count ("the third from the left").
+/// The longest row in which people count ("the third from the left"), objects.
 const LONGEST_ROW: usize = 5;
 
 impl TargetContext<'_> {
@@ -26,6 +26,7 @@ impl TargetContext<'_> {
             .collect()
     }
 
+    /// "The leftmost", "the second from the right". `None` where the objects make no clear row.
     fn in_row(&self, others: &[usize]) -> Option<(f64, ObjectDistinction)> {
         let own = self.turn_rad(self.target)?.to_degrees();
         let turns: Option<Vec<f64>> = others.iter().map(|other| Some(self.turn_rad(*other)?.to_degrees())).collect();
@@ -48,6 +49,7 @@ impl TargetContext<'_> {
         Some((cost, ObjectDistinction::InRow { place, of, from }))
     }
 
+    /// "The nearest" or "the furthest", where that is clear.
     fn range_superlative(&self, others: &[usize]) -> Option<(f64, ObjectDistinction)> {
         let own_m = self.distance_m(self.target)?;
         let others: Option<Vec<f64>> = others.iter().map(|other| self.distance_m(*other)).collect();
@@ -57,6 +59,7 @@ impl TargetContext<'_> {
         (nearest || furthest).then_some((2.0, ObjectDistinction::Range { nearest }))
     }
 
+    /// "The highest" or "the lowest", where that is clear.
     fn height_superlative(&self, others: &[usize]) -> Option<(f64, ObjectDistinction)> {
         let own_m = self.object_at(self.target).position?.z;
         let others: Option<Vec<f64>> = others.iter().map(|other| Some(self.object_at(*other).position?.z)).collect();

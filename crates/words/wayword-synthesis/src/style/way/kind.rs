@@ -10,6 +10,10 @@ use wayword_language::{
 
 /// The content of a clause. In its shape, `{s}` is a side, `{l}` a thing, `{r}` a room, `{a}` the room that one leaves,
 /// and `{p}` the side on which a thing is.
+///
+/// `TurnIn` is "turn left in the kitchen", `TurnInto` "turn left into the kitchen", `TurnOut` "turn left out of the
+/// kitchen"; `To` is "go to the sofa", `EnterWith` "enter the room with the sofa", `LeaveEnter` "leave the kitchen and
+/// enter the hallway".
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[allow(missing_docs)] // The names explain themselves.
@@ -89,16 +93,20 @@ impl ClauseKind {
 /// The names of openings between rooms.
 const DOOR_WORDS: &[&str] = &["door", "doorway", "opening", "entrance", "exit"];
 
-/// A clause taken apart.
+/// A clause taken apart into its turns, climbs, stops, rooms, things and doors.
 pub(super) struct ClauseParts<'a> {
+    /// The turns, with the spans of their words in bytes.
     turns: Vec<(Side, [usize; 2])>,
     climb: Option<ClimbDirection>,
+    /// Whether it is an order to stop.
     stops: bool,
+    /// Whether it sends the walker straight on.
     onward: bool,
-    /// Rooms and things that fill a slot, with the spans of their names.
+    /// Rooms and things that fill a slot, with the spans of their names in bytes.
     pub(super) rooms: Vec<(&'a PlaceMention, [usize; 2])>,
     pub(super) things: Vec<(&'a PlaceMention, [usize; 2])>,
     doors: Vec<&'a PlaceMention>,
+    /// Whether it names stairs.
     stairs: bool,
 }
 
@@ -129,6 +137,7 @@ impl<'a> ClauseParts<'a> {
         Some(parts)
     }
 
+    /// Adds a place that the clause names; `None` if no kind of clause has such a place.
     fn add_place(&mut self, place: &'a PlaceMention, span: [usize; 2]) -> Option<()> {
         let is_plain = place.ordinal.is_none() && place.count.is_none() && place.colour.is_none();
         let class = find_thing(&place.name).map(|thing| thing.class);
@@ -147,14 +156,15 @@ impl<'a> ClauseParts<'a> {
         Some(())
     }
 
-    /// The span of the words of its only turn.
+    /// The span of the words of its first turn, bytes.
     pub(super) fn turn_span(&self) -> Option<[usize; 2]> {
         self.turns.first().map(|(_, span)| *span)
     }
 
-    /// The kind of the clause, by its parts and its words.
+    /// The kind of the clause, by its parts and its words; `None` if it fits no kind. Climbs, stairs, turns and stops
+    /// decide first, and then how many rooms, things and doors the clause names.
     pub(super) fn clause_kind(&self, words: &BTreeSet<&str>) -> Option<ClauseKind> {
-        let has = |of: &[&str]| of.iter().any(|word| words.contains(word));
+        let has = |wanted: &[&str]| wanted.iter().any(|word| words.contains(word));
         let (turns, rooms, things, doors) = (self.turns.len(), self.rooms.len(), self.things.len(), self.doors.len());
         let is_hall = |place: &PlaceMention| room_name(&place.name) == Some("hallway");
         if turns > 1 || things > 1 || rooms > 2 || doors > 1 || (self.stops && turns > 0) {
@@ -186,6 +196,7 @@ impl<'a> ClauseParts<'a> {
             return self.stopping_kind(at_end || says_more);
         }
         match (self.rooms.as_slice(), self.things.as_slice(), self.doors.as_slice()) {
+            // "The room" replaces the name of a room.
             ([], [], []) if has(&["room"]) => {
                 let leaves = has(&["exit", "leave", "out", "exiting", "leaving"]);
                 let through = has(&["through", "across", "cross"]);
@@ -245,6 +256,8 @@ impl<'a> ClauseParts<'a> {
         }
     }
 
+    /// The kind of a clause with a turn to `side`. `at_end`: it names the end of something; `slight`: the turn is
+    /// slight.
     fn turning_kind(&self, side: Side, at_end: bool, slight: bool) -> Option<ClauseKind> {
         let around = side == Side::Behind;
         let place = self.rooms.iter().chain(&self.things).map(|(place, _)| *place).chain(self.doors.iter().copied());
@@ -285,6 +298,7 @@ impl<'a> ClauseParts<'a> {
         }
     }
 
+    /// The kind of a clause that stops. With `at_end` it has a detail that fits no kind.
     fn stopping_kind(&self, at_end: bool) -> Option<ClauseKind> {
         match (self.rooms.as_slice(), self.things.as_slice(), self.doors.as_slice()) {
             _ if at_end => None,
@@ -313,6 +327,7 @@ impl<'a> ClauseParts<'a> {
         }
     }
 
+    /// The kind of a clause that names a door only.
     fn by_door(door: &PlaceMention) -> Option<ClauseKind> {
         let through = matches!(door.going, Some(PlaceMotion::Through | PlaceMotion::Entering | PlaceMotion::Leaving));
         match (through, door.side.is_some(), door.going) {
@@ -323,6 +338,7 @@ impl<'a> ClauseParts<'a> {
         }
     }
 
+    /// The kind of a clause that names a thing only.
     fn by_thing(place: &PlaceMention, at_end: bool) -> Option<ClauseKind> {
         match (place.going, place.side.is_some()) {
             _ if at_end => None,

@@ -41,10 +41,10 @@ pub struct WayWording {
     pub things: BTreeMap<String, BTreeMap<String, f64>>,
 }
 
-/// The built-in constructions, with shares that were measured on R2R's training split.
+/// The content of `builtin/way.toml`: constructions with counts that were measured on R2R's training split.
 #[derive(Default, Deserialize)]
 struct BuiltIn {
-    /// The words of which shapes may consist.
+    /// The words of which shapes may consist, with spaces between them.
     words: String,
     #[serde(flatten)]
     way: WayWording,
@@ -53,14 +53,16 @@ struct BuiltIn {
 static BUILT_IN: LazyLock<BuiltIn> =
     LazyLock::new(|| toml::from_str(include_str!("../builtin/way.toml")).unwrap_or_default());
 
+/// The words of which shapes may consist.
 static ALLOWED_SHAPE_WORDS: LazyLock<BTreeSet<&'static str>> =
     LazyLock::new(|| BUILT_IN.words.split_whitespace().collect());
 
 /// A shape is used if at least this many texts have it.
 const FEWEST_TEXTS: f64 = 3.0;
-/// With this many clauses, the measured shares are preferred to the built-in ones.
+/// With this many clauses of one kind, or the square of this number of all kinds, the measured counts are preferred to
+/// the built-in ones.
 const ENOUGH_CLAUSES: f64 = 40.0;
-/// A name belongs to a room or thing if it has at least this share of its mentions.
+/// A name belongs to a room or thing if at least this share of the mentions of the room or thing use it.
 const LEAST_SHARE: f64 = 0.04;
 
 impl WayWording {
@@ -76,6 +78,7 @@ impl WayWording {
         way
     }
 
+    /// Counts the clauses, joints and names of one text.
     fn add_text(&mut self, text: &str, reading: &TextReading) {
         let mut seen = BTreeSet::new();
         let mut after_turn = false;
@@ -134,32 +137,32 @@ impl WayWording {
 
     /// Fills in the built-in constructions and names where these texts show too few.
     fn fill_from_built_in(&mut self) {
-        let own = &BUILT_IN.way;
+        let built_in = &BUILT_IN.way;
         if self.kinds.values().sum::<f64>() < ENOUGH_CLAUSES * ENOUGH_CLAUSES {
-            self.kinds = own.kinds.clone();
+            self.kinds = built_in.kinds.clone();
         }
-        for (kind, shapes) in &own.shapes {
-            let told = self.shapes.entry(*kind).or_default();
-            if told.values().sum::<f64>() < ENOUGH_CLAUSES {
-                *told = shapes.clone();
+        for (kind, shapes) in &built_in.shapes {
+            let measured = self.shapes.entry(*kind).or_default();
+            if measured.values().sum::<f64>() < ENOUGH_CLAUSES {
+                *measured = shapes.clone();
             }
             // An "until" clause is read together with the clause before it, so no measured clause shows it.
             let until = shapes.iter().filter(|(shape, _)| is_until(shape));
-            told.extend(until.map(|(shape, texts)| (shape.clone(), *texts)));
+            measured.extend(until.map(|(shape, texts)| (shape.clone(), *texts)));
         }
-        for (told, own) in [
-            (&mut self.joints, &own.joints),
-            (&mut self.turn_joints, &own.turn_joints),
-            (&mut self.stop_joints, &own.stop_joints),
+        for (measured, built_in) in [
+            (&mut self.joints, &built_in.joints),
+            (&mut self.turn_joints, &built_in.turn_joints),
+            (&mut self.stop_joints, &built_in.stop_joints),
         ] {
-            if told.values().sum::<f64>() < ENOUGH_CLAUSES {
-                *told = own.clone();
+            if measured.values().sum::<f64>() < ENOUGH_CLAUSES {
+                *measured = built_in.clone();
             }
         }
-        for (told, own) in [(&mut self.rooms, &own.rooms), (&mut self.things, &own.things)] {
-            let is_small = told.values().flat_map(BTreeMap::values).sum::<f64>() < ENOUGH_CLAUSES * ENOUGH_CLAUSES;
+        for (measured, built_in) in [(&mut self.rooms, &built_in.rooms), (&mut self.things, &built_in.things)] {
+            let is_small = measured.values().flat_map(BTreeMap::values).sum::<f64>() < ENOUGH_CLAUSES * ENOUGH_CLAUSES;
             if is_small {
-                *told = own.clone();
+                *measured = built_in.clone();
             }
         }
     }

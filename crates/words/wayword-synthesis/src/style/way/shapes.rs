@@ -8,7 +8,7 @@ use wayword_language::{
     text::{self, TextToken},
 };
 
-/// Most words of a shape.
+/// Most words of a shape; a clause with more has no shape.
 const MOST_WORDS: usize = 13;
 
 /// A clause of a text, with its joint to the clause before and, if it has one, its shape.
@@ -17,12 +17,13 @@ pub(super) struct ShapedClause {
     pub(super) joint: ClauseJoint,
     /// Its kind, if it has one.
     pub(super) kind: Option<ClauseKind>,
+    /// Its kind and its words with slots, if they make a shape that the writer can use.
     pub(super) shape: Option<(ClauseKind, String)>,
     /// Whether it is an order to stop.
     pub(super) stops: bool,
 }
 
-/// The words and marks between two clauses.
+/// The words and marks between two clauses. `Start` is before the first clause of a text; `Stop` is a full stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[allow(missing_docs)] // The names explain themselves.
@@ -75,8 +76,8 @@ pub(super) fn shape_clauses(text: &str, reading: &TextReading, allowed: &BTreeSe
     let mut is_first = true;
     for (number, clause) in reading.clauses.iter().enumerate() {
         let [from, to] = clause.span;
-        let of = |token: &&TextToken| token.span[0] >= from && token.span[1] <= to && token.is_word();
-        let words: Vec<&TextToken> = tokens.iter().filter(of).collect();
+        let is_in_clause = |token: &&TextToken| token.span[0] >= from && token.span[1] <= to && token.is_word();
+        let words: Vec<&TextToken> = tokens.iter().filter(is_in_clause).collect();
         let links = words.iter().take_while(|token| JOINING_WORDS.contains(&token.word.as_str())).count();
         let between = if from >= end { text.get(end..from).unwrap_or_default() } else { "" };
         pending.push(between);
@@ -167,7 +168,7 @@ fn words_with_slots(
     Some(shaped.join(" "))
 }
 
-/// Whether a shape has the slots that its kind needs, each once, and no other.
+/// Whether a shape has the slots that its kind needs, each once, and no other ([`ClauseKind`] explains the slots).
 fn is_whole(kind: ClauseKind, shape: &str) -> bool {
     let count = |slot: &str| shape.matches(slot).count();
     let (s, l, r, a, p) = (count("{s}"), count("{l}"), count("{r}"), count("{a}"), count("{p}"));

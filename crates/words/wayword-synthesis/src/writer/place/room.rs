@@ -14,7 +14,9 @@ use wayword_language::lexicon::{room_name, with_article};
 pub(super) struct GoalRoom<'a> {
     wording: &'a PlaceWording,
     room: &'a str,
+    /// The number of its storey, from 1.
     level: Option<u32>,
+    /// Which way the last stairs of the path go.
     climb: Option<ClimbDirection>,
     /// Probability that the storey is named although it is not needed.
     names_level: f64,
@@ -100,6 +102,7 @@ impl<'a> GoalRoom<'a> {
         join_words(&[filled.replace("{r}", room)], &qualifiers)
     }
 
+    /// "Next to the hallway", "with the stove"; `None` for a property that is not about rooms.
     fn room_qualifier(&self, by: &ObjectDistinction, rng: &mut ChaCha8Rng) -> Option<String> {
         let (table, name) = match by {
             ObjectDistinction::RoomBy { room } => ("room by", self.wording.draw_name(room, rng).to_owned()),

@@ -1,4 +1,4 @@
-//! Carries out a plan: fills its places with the things that are there.
+//! Carries out a plan: fills its places for things (offers) with the things that are there.
 
 use super::{ClauseKind, MAIN_WEIGHT, OfferRole, WayClause, onward::passing_kind};
 use crate::writer::{
@@ -18,40 +18,42 @@ pub(in crate::writer) fn carry_out(
     dice: TextDice,
 ) -> Vec<WayClause> {
     let mut things = things_of(plan, landmarks);
-    let (mut told, mut passed) = (Vec::new(), 0);
+    let (mut clauses, mut passed) = (Vec::new(), 0);
     let mut follows_offer = false;
     for (at, clause) in plan.iter().enumerate() {
         let thing = things.remove(&at);
         let clause = WayClause { follows_offer, ..clause.clone() };
         follows_offer = clause.is_offer();
         match (clause.offer.as_ref().map(|offer| offer.role), thing) {
-            (Some(role), Some(thing)) => told.extend(with_thing(clause, (role, thing), brief, dice, passed)),
+            (Some(role), Some(thing)) => clauses.extend(with_thing(clause, (role, thing), brief, dice, passed)),
             (Some(_), None) => {
-                let goes_straight = told.last().is_some_and(|before: &WayClause| before.kind == ClauseKind::Straight);
+                let goes_straight =
+                    clauses.last().is_some_and(|before: &WayClause| before.kind == ClauseKind::Straight);
                 let new = without_thing(clause).into_iter();
-                told.extend(new.skip_while(|clause| goes_straight && clause.kind == ClauseKind::Straight));
+                clauses.extend(new.skip_while(|clause| goes_straight && clause.kind == ClauseKind::Straight));
             }
-            (None, _) => told.push(clause),
+            (None, _) => clauses.push(clause),
         }
         passed += usize::from(follows_offer);
     }
-    told
+    clauses
 }
 
-/// The thing of each place, by the number of its clause.
+/// The thing of each place, by the number of its clause. An offer that replaces another one keeps its thing only if no
+/// other offer of that hop got one.
 fn things_of(plan: &[WayClause], landmarks: &LandmarkChooser<'_>) -> BTreeMap<usize, ChosenLandmark> {
     let offers = || plan.iter().enumerate().filter_map(|(at, clause)| Some((at, clause.offer.as_ref()?)));
     let spots: Vec<LandmarkSpot> = offers().map(|(_, offer)| offer.landmark_spot()).collect();
     let found = offers().zip(landmarks.landmarks_at(&spots)).filter_map(|((at, _), thing)| Some((at, thing?)));
     let mut things: BTreeMap<usize, ChosenLandmark> = found.collect();
-    let mut told: BTreeSet<usize> = plan
+    let mut served_hops: BTreeSet<usize> = plan
         .iter()
         .enumerate()
         .filter(|(at, clause)| is_own(clause) && things.contains_key(at))
         .map(|(_, clause)| clause.at)
         .collect();
     for (at, offer) in offers() {
-        if offer.stands_in_for.is_some_and(|hop| things.contains_key(&at) && !told.insert(hop)) {
+        if offer.stands_in_for.is_some_and(|hop| things.contains_key(&at) && !served_hops.insert(hop)) {
             things.remove(&at);
         }
     }
@@ -89,6 +91,7 @@ fn with_thing(
     let mut rng = clause.clause_rng("with", dice);
     match role {
         OfferRole::Turn => {
+            // "Go to the lamp. Turn left" where the thing is ahead, or else "turn left at the lamp".
             let ahead = if thing.side == Some(Side::Ahead) { 1.8 } else { 0.0 };
             if draw_option(&[(3.0, false), (ahead, true)], &mut rng) == Some(true) {
                 let to = WayClause { kind: ClauseKind::To, thing: Some(thing), ..bare_clause(&clause) };

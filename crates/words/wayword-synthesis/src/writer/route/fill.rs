@@ -35,6 +35,7 @@ enum FillerKind {
     Onward,
 }
 
+/// How often each kind is tried first, relative to the others.
 const FILLER_SHARES: [(f64, FillerKind); 8] = [
     (4.0, FillerKind::Landmark),
     (1.0, FillerKind::Side),
@@ -46,18 +47,18 @@ const FILLER_SHARES: [(f64, FillerKind); 8] = [
     (0.2, FillerKind::Onward),
 ];
 
-/// Share of added things that may be poor landmarks.
+/// Share of the added places for things that accept poor landmarks too.
 const LESS_SALIENT: f64 = 0.25;
 /// Least number of places for things before the end of a text.
 const LEAST_OFFERS: usize = 2;
 
 /// Adds one detail; `false` if there is none to add.
 pub(in crate::writer) fn fill_plan(clauses: &mut Vec<WayClause>, brief: &WritingBrief<'_>, dice: TextDice) -> bool {
-    let mut left = FILLER_SHARES.to_vec();
+    let mut untried = FILLER_SHARES.to_vec();
     let mut rng = dice.named_rng(&["more"]);
-    while let Some(more) = draw_option(&left, &mut rng) {
+    while let Some(more) = draw_option(&untried, &mut rng) {
         let mut filler = PlanFiller { clauses, brief, rng: dice.named_rng(&["more of", &format!("{more:?}")]) };
-        let is_told = match more {
+        let is_added = match more {
             FillerKind::Landmark => filler.add_landmark(),
             FillerKind::Side => filler.add_side(),
             FillerKind::Pair => filler.add_pair(),
@@ -67,10 +68,10 @@ pub(in crate::writer) fn fill_plan(clauses: &mut Vec<WayClause>, brief: &Writing
             FillerKind::StopRoom => filler.stop_room(),
             FillerKind::Onward => filler.add_onward(),
         };
-        if is_told {
+        if is_added {
             return true;
         }
-        left.retain(|(_, other)| *other != more);
+        untried.retain(|(_, other)| *other != more);
     }
     false
 }
@@ -93,6 +94,7 @@ pub(in crate::writer) fn offer_places(clauses: &mut Vec<WayClause>, brief: &Writ
     }
 }
 
+/// Adds details to the clauses of a plan. Each `add_...` returns whether it found something to add.
 struct PlanFiller<'a> {
     clauses: &'a mut Vec<WayClause>,
     brief: &'a WritingBrief<'a>,
@@ -121,11 +123,13 @@ impl PlanFiller<'_> {
         offers.find(|offer| says_less(offer))
     }
 
+    /// The side of a thing, at the last place that names neither a side nor a second thing.
     fn add_side(&mut self) -> bool {
         let offer = self.find_offer(|offer| offer.role == OfferRole::Onward && !offer.tells_side && !offer.pair);
         offer.map(|offer| offer.tells_side = true).is_some()
     }
 
+    /// A second thing near one, at the last place that names neither a side nor a second thing.
     fn add_pair(&mut self) -> bool {
         let may = |role: OfferRole| matches!(role, OfferRole::Stop(_) | OfferRole::Onward | OfferRole::Turn);
         let offer = self.find_offer(|offer| may(offer.role) && !offer.pair && !offer.tells_side);
@@ -156,8 +160,8 @@ impl PlanFiller<'_> {
     fn add_door(&mut self) -> bool {
         let doors = self.brief.memory.openings.iter().filter(|opening| opening.has_door);
         for opening in doors {
-            let told = self.clauses.iter().position(|clause| clause.at == opening.before && !clause.is_offer());
-            let Some(at) = told else {
+            let same_place = self.clauses.iter().position(|clause| clause.at == opening.before && !clause.is_offer());
+            let Some(at) = same_place else {
                 self.insert_clause(WayClause::new(ClauseKind::ThroughDoor, opening.before, SIDE_WEIGHT));
                 return true;
             };
@@ -190,6 +194,7 @@ impl PlanFiller<'_> {
         false
     }
 
+    /// The room in the clause to stop, and in the role of its thing.
     fn stop_room(&mut self) -> bool {
         let Some(stop) = self.clauses.last_mut().filter(|stop| stop.room.is_some()) else { return false };
         let named = [(ClauseKind::StopAt, ClauseKind::StopAtIn), (ClauseKind::Stop, ClauseKind::StopIn)];

@@ -25,19 +25,19 @@ use wayword_language::lexicon::room_name;
 /// A planned clause.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct WayClause {
-    /// Its kind.
+    /// The content of the clause, such as a turn at a thing.
     pub(super) kind: ClauseKind,
-    /// Its frame.
+    /// The frame at which the walker does it.
     pub(super) at: usize,
     /// The side of its turn, or of its door or room.
     pub(super) side: Option<Side>,
-    /// Its thing.
+    /// The thing that its words name.
     pub(super) thing: Option<ChosenLandmark>,
-    /// Its room.
+    /// The room that its words name: the one that the walker enters, or where the clause takes place.
     pub(super) room: Option<String>,
     /// The room that it leaves.
     pub(super) from: Option<String>,
-    /// How much it matters. A clause of weight [`KEPT_WEIGHT`] is never left out.
+    /// How much it matters, from 1. A clause of weight [`KEPT_WEIGHT`] is never left out.
     pub(super) weight: u8,
     /// The place for a thing that it offers.
     pub(super) offer: Option<ThingOffer>,
@@ -58,7 +58,7 @@ const FILLER_WEIGHT: u8 = 1;
 
 /// Least salience of a landmark on the way.
 const WALKED_PAST: u8 = 2;
-/// Least salience of one that is stopped at.
+/// Least salience of a landmark that the walk stops at.
 const STOPPED_AT: u8 = 1;
 /// A hop longer than this is worth a clause, metres.
 pub(super) const LONG_M: f64 = 3.0;
@@ -153,15 +153,16 @@ pub(super) fn plan_clauses(brief: &WritingBrief<'_>, dice: TextDice) -> Vec<WayC
 
 /// Numbers the clauses of each kind.
 pub(super) fn number_clauses(mut plan: Vec<WayClause>) -> Vec<WayClause> {
-    let mut told: BTreeMap<ClauseKind, usize> = BTreeMap::new();
+    let mut counts: BTreeMap<ClauseKind, usize> = BTreeMap::new();
     for clause in plan.iter_mut().filter(|clause| !clause.is_offer()) {
-        let number = told.entry(clause.kind).or_default();
+        let number = counts.entry(clause.kind).or_default();
         clause.number = *number;
         *number += 1;
     }
     plan
 }
 
+/// Plans the clauses of a way step by step, from its start.
 struct WayPlanner<'a> {
     brief: &'a WritingBrief<'a>,
     memory: &'a WalkMemory,
@@ -176,6 +177,7 @@ struct WayPlanner<'a> {
 }
 
 impl WayPlanner<'_> {
+    /// Plans all clauses before the stop, frame by frame.
     fn plan_way(&mut self) {
         let last = self.memory.frame_count().saturating_sub(1);
         let mut at = self.leave_at_once().unwrap_or(0);
@@ -235,6 +237,7 @@ impl WayPlanner<'_> {
         Some(WalkBend { first: at, ..*bend })
     }
 
+    /// How often the texts of the style have a kind of clause: the weight of the kind in a draw.
     fn kind_count(&self, kind: ClauseKind) -> f64 {
         self.brief.profile.way.kind_count(kind)
     }
@@ -249,6 +252,7 @@ impl WayPlanner<'_> {
         self.along = false;
     }
 
+    /// Adds the clause for a flight of stairs. Behind it the text leaves the room open.
     fn add_climb(&mut self, flight: StairFlight) {
         let kind = if flight.climb == ClimbDirection::Up { ClauseKind::Up } else { ClauseKind::Down };
         self.push(WayClause::new(kind, flight.from, MAIN_WEIGHT));

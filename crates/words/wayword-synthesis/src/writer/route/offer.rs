@@ -1,4 +1,4 @@
-//! Places of a plan where a thing may be named.
+//! Offers: places of a plan where a thing may be named, if there is one.
 
 use super::{STOPPED_AT, WALKED_PAST, WayClause};
 use crate::{

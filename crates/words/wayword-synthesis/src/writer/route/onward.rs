@@ -9,6 +9,7 @@ use wayword_core::Side;
 use wayword_language::lexicon::room_name;
 
 impl WayPlanner<'_> {
+    /// Adds "go along the hallway".
     pub(super) fn go_along(&mut self, at: usize, room: &str, weight: u8) {
         self.push(WayClause::new(ClauseKind::Along, at, weight).with_room(room));
         self.along = true;
@@ -20,8 +21,8 @@ impl WayPlanner<'_> {
             return;
         }
         let is_last = at + 2 >= self.memory.frame_count();
-        let often = if is_last { 0.3 } else { 0.5 };
-        let offers = self.rng.random_bool(often) || self.is_first_hop_of_untold_turn(at);
+        let offer_share = if is_last { 0.3 } else { 0.5 };
+        let offers = self.rng.random_bool(offer_share) || self.is_first_hop_of_untold_turn(at);
         let room = self.memory.room_at(at + 1).and_then(usable_room);
         let hall = room.filter(|room| room_name(room) == Some("hallway"));
         if let Some(hall) = hall.filter(|_| !self.along && self.rng.random_bool(0.5)) {
@@ -59,10 +60,10 @@ pub(super) fn passing_kind(way: &WayWording, passed: Option<Side>, side: Option<
     if matches!(side, Some(Side::Ahead) | None) {
         kinds.push((way.kind_count(ClauseKind::To) * 1.5, ClauseKind::To));
     }
-    let mut left = share * kinds.iter().map(|(weight, _)| weight).sum::<f64>();
+    let mut remaining = share * kinds.iter().map(|(weight, _)| weight).sum::<f64>();
     for (weight, kind) in &kinds {
-        left -= weight;
-        if left < 0.0 {
+        remaining -= weight;
+        if remaining < 0.0 {
             return *kind;
         }
     }

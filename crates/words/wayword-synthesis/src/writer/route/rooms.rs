@@ -1,4 +1,7 @@
 //! Plans the change from one room into another, with the turn before it.
+//!
+//! Several kinds of clauses can describe a change ("leave the kitchen", "go through the door"). One is drawn by how
+//! often the style uses it, times a factor for the situation.
 
 use super::{MAIN_WEIGHT, OfferRole, SIDE_WEIGHT, ThingOffer, WayClause, WayPlanner, usable_room};
 use crate::{style::way::ClauseKind, writer::phrases::draw_option};
@@ -7,9 +10,9 @@ use wayword_checks::memory::{RoomOpening, WalkBend};
 use wayword_core::{Side, motion};
 use wayword_language::lexicon::{ThingClass, find_thing, room_name};
 
-/// The start room counts as left soon if the path leaves it within this many hops.
+/// The start room counts as left soon if the path leaves it after at most this many hops.
 const LEFT_SOON: usize = 2;
-/// Share of texts that then begin with leaving it.
+/// Share of texts that begin with leaving the start room, where the path leaves it soon.
 const LEFT_AT_ONCE: f64 = 0.6;
 
 /// Greatest distance from a door at which the walker counts as being in it, metres.
@@ -132,9 +135,9 @@ impl WayPlanner<'_> {
                 return self.enter_room(to.as_deref());
             }
         }
-        let told =
+        let names_new_room =
             !matches!(kind, ClauseKind::Leave | ClauseKind::LeaveByDoor | ClauseKind::ThroughDoor | ClauseKind::ToDoor);
-        self.enter_room(to.as_deref().filter(|_| told));
+        self.enter_room(to.as_deref().filter(|_| names_new_room));
     }
 
     /// Whether the walker is in a door or doorway at a frame, so that a turn there happens behind the door.
@@ -144,7 +147,8 @@ impl WayPlanner<'_> {
         doors.filter_map(|door| self.memory.distance_m(door, at)).any(|distance_m| distance_m <= IN_DOOR_M)
     }
 
-    /// Whether a hallway ends where the walk leaves it: it went straight along it, and straight on into the room behind.
+    /// Whether a hallway ends where the walk leaves it: the walk went along the hallway, and straight on into the room
+    /// behind it.
     fn is_end_of_hall(&self, opening: &RoomOpening) -> bool {
         let stay = self.memory.stay_at(opening.before);
         let is_walked = stay.is_some_and(|stay| stay.left > stay.entered);
@@ -154,6 +158,8 @@ impl WayPlanner<'_> {
         is_walked && opening.before > 0 && is_straight(opening.before)
     }
 
+    /// Plans a turn at the frame where the walk changes rooms: in one clause ("turn left into the kitchen") or in two,
+    /// or the change alone where the turn needs no mention.
     pub(super) fn turn_and_change(&mut self, bend: WalkBend, opening: &RoomOpening) {
         let (at, side) = (bend.first, bend.side());
         let to = usable_room(&opening.to);
@@ -211,9 +217,9 @@ impl WayPlanner<'_> {
                 self.enter_room(None);
             }
             Some(kind) => {
-                let told = !matches!(kind, ClauseKind::DoorOnSide | ClauseKind::TurnThroughDoor);
+                let names_room = !matches!(kind, ClauseKind::DoorOnSide | ClauseKind::TurnThroughDoor);
                 self.push(WayClause::new(kind, at, MAIN_WEIGHT).with_side(side).with_room(&opening.to));
-                self.enter_room(to.as_deref().filter(|_| told));
+                self.enter_room(to.as_deref().filter(|_| names_room));
             }
             None => self.change_room(opening),
         }

@@ -5,7 +5,7 @@ use crate::{style::way::ClauseKind, writer::phrases::draw_option};
 use wayword_core::ClimbDirection;
 use wayword_language::lexicon::{names_agree, room_name};
 
-/// Factor for naming the last room a second time.
+/// Factor on the weight of "stop in the room" where the text has just named the room.
 const NAMED_AGAIN: f64 = 0.1;
 
 impl WayPlanner<'_> {

@@ -66,7 +66,7 @@ impl WayPlanner<'_> {
         before.is_some_and(|before| !before.is_bare() && before.at + 1 >= at)
     }
 
-    /// Number of hops in the room of a frame before it.
+    /// Number of hops that the walk has made in the room of a frame when it arrives there.
     fn walked_in(&self, at: usize) -> usize {
         self.memory.stay_at(at).map_or(0, |stay| at - stay.entered)
     }
@@ -128,7 +128,7 @@ impl WayPlanner<'_> {
     }
 }
 
-/// Smaller turns may be left out, degrees.
+/// Turns of a smaller angle may be left out, degrees.
 const HARDLY_DEG: f64 = 40.0;
-/// Share of them that is left out.
+/// Share of these small turns that is left out.
 const LEFT_OUT: f64 = 0.6;

@@ -1,6 +1,16 @@
 //! Output data of the build: one frame for each kind of data that a command asked for. A frame is a FlatBuffer with a
 //! four-letter id. Slots and defaults are those of the classes in `tdw/FBOutput` of the Python client, version 1.13.0.0.
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 mod read;
 
 use super::flatbuffer_reader::FlatBufferError;

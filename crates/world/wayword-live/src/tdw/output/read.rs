@@ -60,11 +60,9 @@ fn has_length(
 
 /// A colour as three bytes; an error that names the field if a channel is out of range.
 fn byte_colour((table, slot): (&FlatBufferTable<'_>, usize), rgb: [i32; 3]) -> Result<[u8; 3], FlatBufferError> {
-    if rgb.iter().all(|channel| (0..256).contains(channel)) {
-        Ok(rgb.map(|channel| channel as u8))
-    } else {
-        Err(table.field_error(slot, "colour channels of 0 to 255"))
-    }
+    let byte = |channel: i32| u8::try_from(channel).map_err(|_| table.field_error(slot, "colour channels of 0 to 255"));
+    let [red, green, blue] = rgb;
+    Ok([byte(red)?, byte(green)?, byte(blue)?])
 }
 
 fn read_images<'a>(table: &FlatBufferTable<'a>) -> Result<AvatarImages<'a>, FlatBufferError> {
@@ -118,21 +116,21 @@ fn read_regions(table: &FlatBufferTable<'_>) -> Result<Vec<TdwRegion>, FlatBuffe
     let raw = table.read_vector(0, 28)?.raw_bytes();
     let region = |region: &[u8; 28]| {
         let [id, x, y, z, w, h, d] = little_endian_floats(region);
-        TdwRegion { id: id.to_bits() as i32, centre: [x, y, z], size: [w, h, d] }
+        TdwRegion { id: id.to_bits().cast_signed(), centre: [x, y, z], size: [w, h, d] }
     };
     Ok(raw.as_chunks().0.iter().map(region).collect())
 }
 
 fn read_occupancy(table: &FlatBufferTable<'_>) -> Result<TdwOccupancyMap, FlatBufferError> {
     let expected = "a shape of two sides";
-    let [columns, rows] = table.read_i32s(2)?[..] else { return Err(table.field_error(2, expected)) };
+    let &[columns, rows] = table.read_i32s(2)?.as_slice() else { return Err(table.field_error(2, expected)) };
     let side = |side: i32| usize::try_from(side).map_err(|_| table.field_error(2, expected));
-    let shape = [side(rows)?, side(columns)?];
-    let cells: Vec<i8> = table.read_bytes(0)?.iter().map(|cell| *cell as i8).collect();
-    has_length((table, 0), cells.len(), shape[0].saturating_mul(shape[1]), "as many cells as the shape has")?;
+    let (rows, columns) = (side(rows)?, side(columns)?);
+    let cells: Vec<i8> = table.read_bytes(0)?.iter().map(|cell| cell.cast_signed()).collect();
+    has_length((table, 0), cells.len(), rows.saturating_mul(columns), "as many cells as the shape has")?;
     let positions = table.read_f32s(1)?.as_chunks().0.to_vec();
     has_length((table, 1), positions.len(), cells.len(), "a position for each cell")?;
-    Ok(TdwOccupancyMap { shape, cells, positions })
+    Ok(TdwOccupancyMap { shape: [rows, columns], cells, positions })
 }
 
 fn read_avatar<'a>(table: &FlatBufferTable<'a>) -> Result<AvatarPose<'a>, FlatBufferError> {
@@ -150,14 +148,14 @@ fn read_transforms(table: &FlatBufferTable<'_>) -> Result<Vec<TdwObjectTransform
     has_length((table, 1), positions.len(), 3 * ids.len(), "a position for each id")?;
     has_length((table, 2), rotations.len(), 4 * ids.len(), "a rotation for each id")?;
     has_length((table, 3), forwards.len(), 3 * ids.len(), "a direction for each id")?;
-    let (positions, rotations) = (positions.as_chunks().0, rotations.as_chunks().0);
-    let transform = |(index, id)| TdwObjectTransform {
+    let rows = ids.into_iter().zip(positions.as_chunks().0).zip(rotations.as_chunks().0).zip(forwards.as_chunks().0);
+    let transforms = rows.map(|(((id, position), rotation), forward)| TdwObjectTransform {
         id,
-        position: positions[index],
-        rotation: rotations[index],
-        forward: forwards.as_chunks().0[index],
-    };
-    Ok(ids.into_iter().enumerate().map(transform).collect())
+        position: *position,
+        rotation: *rotation,
+        forward: *forward,
+    });
+    Ok(transforms.collect())
 }
 
 fn read_bounds(table: &FlatBufferTable<'_>) -> Result<Vec<TdwObjectBounds>, FlatBufferError> {

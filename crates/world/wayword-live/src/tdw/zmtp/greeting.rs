@@ -40,9 +40,10 @@ impl SocketRole {
 
 /// Sends our greeting, checks that of the peer, and finishes in the revision of ZMTP that both know.
 pub(super) fn exchange_greetings(peer: &mut ZmtpPeer, role: SocketRole) -> Result<(), WireError> {
-    peer.write_bytes(&[&SIGNATURE[..], &[3]].concat(), GREETING_ACTION)?;
+    peer.write_bytes(&[SIGNATURE.as_slice(), &[3]].concat(), GREETING_ACTION)?;
     let theirs: [u8; 10] = peer.take_bytes(GREETING_ACTION)?;
-    if theirs[0] != 0xff || theirs[9] & 1 == 0 {
+    let [first, .., last] = theirs;
+    if first != 0xff || last & 1 == 0 {
         return Err(peer.malformed_error(10, "the signature of a ZeroMQ socket (ff .. 7f)", hex_text(&theirs)));
     }
     match peer.take_bytes::<1>(GREETING_ACTION)? {
@@ -66,11 +67,14 @@ fn finish_zmtp2(peer: &mut ZmtpPeer, role: SocketRole) -> Result<(), WireError> 
 /// ZMTP 3.0: the rest of the greeting, then READY from both.
 fn finish_zmtp3(peer: &mut ZmtpPeer, role: SocketRole) -> Result<(), WireError> {
     let mut rest = [0; 53];
-    rest[1..5].copy_from_slice(b"NULL");
+    for (place, letter) in rest.iter_mut().skip(1).zip(b"NULL") {
+        *place = *letter;
+    }
     peer.write_bytes(&rest, GREETING_ACTION)?;
     let theirs: [u8; 53] = peer.take_bytes(GREETING_ACTION)?;
-    if theirs[1..21] != rest[1..21] {
-        return Err(peer.malformed_error(52, "the mechanism NULL", hex_text(&theirs[1..21])));
+    let mechanism = theirs.get(1..21).unwrap_or_default();
+    if Some(mechanism) != rest.get(1..21) {
+        return Err(peer.malformed_error(52, "the mechanism NULL", hex_text(mechanism)));
     }
     peer.write_bytes(&ready_command(role), GREETING_ACTION)?;
     let header = peer.read_header()?;
@@ -82,11 +86,11 @@ fn finish_zmtp3(peer: &mut ZmtpPeer, role: SocketRole) -> Result<(), WireError> 
         peer.malformed_error(
             body.len() as u64,
             "the command READY with a Socket-Type",
-            hex_text(&body[..body.len().min(24)]),
+            hex_text(body.get(..24).unwrap_or(&body)),
         )
     })?;
     if role.talks_to().iter().all(|(name, _)| name.as_bytes() != kind) {
-        let found = format!("a {} socket", String::from_utf8_lossy(&kind[..kind.len().min(16)]));
+        let found = format!("a {} socket", String::from_utf8_lossy(kind.get(..16).unwrap_or(kind)));
         return Err(peer.malformed_error(body.len() as u64, "a socket that fits (REQ talks to REP)", found));
     }
     Ok(())
@@ -96,12 +100,12 @@ fn finish_zmtp3(peer: &mut ZmtpPeer, role: SocketRole) -> Result<(), WireError> 
 fn ready_command(role: SocketRole) -> Vec<u8> {
     let mut body = b"\x05READY".to_vec();
     for (name, value) in [("Socket-Type", role.name()), ("Identity", "")] {
-        body.push(name.len() as u8);
+        body.push(u8::try_from(name.len()).unwrap_or(u8::MAX));
         body.extend_from_slice(name.as_bytes());
-        body.extend_from_slice(&(value.len() as u32).to_be_bytes());
+        body.extend_from_slice(&u32::try_from(value.len()).unwrap_or(u32::MAX).to_be_bytes());
         body.extend_from_slice(value.as_bytes());
     }
-    [&[4, body.len() as u8], &body[..]].concat()
+    [&[4, u8::try_from(body.len()).unwrap_or(u8::MAX)], body.as_slice()].concat()
 }
 
 /// The property Socket-Type of a READY command. Case does not matter in the names of properties (RFC 23).

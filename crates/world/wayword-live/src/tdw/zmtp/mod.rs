@@ -5,6 +5,16 @@
 //! of the frame has come, so nine bytes from an unknown peer can exhaust the memory. It refuses peers older than 3.0. It needs
 //! an async runtime. Tests check this module against it and against libzmq.
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::indexing_slicing,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_possible_wrap
+    )
+)]
+
 mod frames;
 mod greeting;
 
@@ -144,7 +154,7 @@ impl ZmtpPeer {
 
     /// Takes as many bytes as were announced. Memory grows with the bytes that really come.
     fn take_long(&mut self, length: u64, doing: &'static str) -> Result<Vec<u8>, WireError> {
-        let mut bytes = Vec::with_capacity(length.min(1 << 20) as usize);
+        let mut bytes = Vec::with_capacity(usize::try_from(length.min(1 << 20)).unwrap_or(0));
         let outcome = (&mut self.reader).take(length).read_to_end(&mut bytes);
         outcome.map_err(|source| WireError::from_io(source, doing))?;
         self.taken += bytes.len() as u64;

@@ -81,7 +81,12 @@ impl PageHeader {
         let mut number = 0;
         while let Some(kind) = thrift.next_field(&mut number)? {
             match (number, kind) {
-                (1..=6, thrift::KIND_I32) => self.numbers[number as usize - 1] = thrift.read_number()?,
+                (1..=6, thrift::KIND_I32) => {
+                    let value = thrift.read_number()?;
+                    if let Some((place, _)) = self.numbers.iter_mut().zip(1_i16..).find(|(_, field)| *field == number) {
+                        *place = value;
+                    }
+                }
                 (7, thrift::KIND_TRUE | thrift::KIND_FALSE) => self.folded = kind == thrift::KIND_TRUE,
                 _ => thrift.skip_value(kind)?,
             }
@@ -89,16 +94,21 @@ impl PageHeader {
         Ok(())
     }
 
+    /// Field `field` of this kind of header, counted from 1; -1 where the header does not have it.
+    fn number_at(&self, field: usize) -> i64 {
+        field.checked_sub(1).and_then(|at| self.numbers.get(at)).copied().unwrap_or(-1)
+    }
+
     /// Field `field` of this kind of header, which is a count or a length.
     fn count_at(&self, field: usize) -> Result<u32, String> {
-        let number = self.numbers[field - 1];
+        let number = self.number_at(field);
         u32::try_from(number).map_err(|_| format!("a page has the invalid count {number}"))
     }
 
     /// Field `field` of this kind of header, which is the encoding of values. Delta encodings of texts are refused, because
     /// the crate reserves memory for any number of texts that a page announces.
     fn encoding_at(&self, field: usize) -> Result<Encoding, String> {
-        match self.numbers[field - 1] {
+        match self.number_at(field) {
             0 => Ok(Encoding::PLAIN),
             2 => Ok(Encoding::PLAIN_DICTIONARY),
             5 => Ok(Encoding::DELTA_BINARY_PACKED),
@@ -143,8 +153,9 @@ impl ColumnPages {
         while !self.place.is_empty() {
             let wrong = |reason: String| format!("byte {}: not a page header: {reason}", self.place.start);
             let left_bytes = self.place.end - self.place.start;
-            let short = PageHeader::read(&self.peek_bytes(left_bytes.min(HEADER_BYTES[0]))?);
-            let read = short.or_else(|_| PageHeader::read(&self.peek_bytes(left_bytes.min(HEADER_BYTES[1]))?));
+            let [usual_bytes, most_bytes] = HEADER_BYTES;
+            let short = PageHeader::read(&self.peek_bytes(left_bytes.min(usual_bytes))?);
+            let read = short.or_else(|_| PageHeader::read(&self.peek_bytes(left_bytes.min(most_bytes))?));
             let (header, length) = read.map_err(wrong)?;
             if header.stored > left_bytes - length {
                 return Err(wrong(format!(
@@ -155,7 +166,7 @@ impl ColumnPages {
             }
             self.place.start += length;
             // The crate takes a page without values as the end, so it is skipped. Pages of other kinds hold no values.
-            if header.kind == 2 || (matches!(header.kind, 0 | 3) && header.numbers[0] != 0) {
+            if header.kind == 2 || (matches!(header.kind, 0 | 3) && header.number_at(1) != 0) {
                 return Ok(Some(header));
             }
             self.place.start += header.stored;
@@ -264,7 +275,7 @@ fn decompress_page(codec: CompressionCodec, stored: Vec<u8>, plain_length: usize
     if codec == CompressionCodec::UNCOMPRESSED {
         return Ok(stored);
     }
-    let (plain, compressed) = stored.split_at(plain_length);
+    let (plain, compressed) = stored.split_at_checked(plain_length).ok_or("levels are longer than their page")?;
     let max_bytes = USUAL_BYTES.max(compressed.len().saturating_mul(MAX_RATIO));
     let too_long = || format!("{} bytes decompress to more than {max_bytes}", compressed.len());
     let read_limited = |from: &mut dyn Read| {
@@ -281,8 +292,9 @@ fn decompress_page(codec: CompressionCodec, stored: Vec<u8>, plain_length: usize
                 return Err(too_long());
             }
             let mut unpacked = vec![0; plain.len() + length];
-            unpacked[..plain.len()].copy_from_slice(plain);
-            let read = snap::raw::Decoder::new().decompress(compressed, &mut unpacked[plain.len()..]);
+            let (levels, values) = unpacked.split_at_mut(plain.len());
+            levels.copy_from_slice(plain);
+            let read = snap::raw::Decoder::new().decompress(compressed, values);
             read.map(|_| unpacked).map_err(|error| error.to_string())
         }
         CompressionCodec::GZIP => read_limited(&mut flate2::read::MultiGzDecoder::new(compressed)),

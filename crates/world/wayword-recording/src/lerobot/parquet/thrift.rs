@@ -36,7 +36,9 @@ impl<'a> ThriftReader<'a> {
     }
 
     fn read_byte(&mut self) -> Result<u8, String> {
-        Ok(self.take_bytes(1)?[0])
+        let (first, rest) = self.rest.split_first().ok_or("1 bytes should follow, but only 0 do")?;
+        self.rest = rest;
+        Ok(*first)
     }
 
     /// A number without a sign: seven bits in each byte, the lowest first, until a byte without its highest bit.
@@ -55,7 +57,7 @@ impl<'a> ThriftReader<'a> {
     /// A whole number in zigzag form: its lowest bit is the sign.
     pub(super) fn read_number(&mut self) -> Result<i64, String> {
         let value = self.read_varint()?;
-        Ok((value >> 1) as i64 ^ -((value & 1) as i64))
+        Ok((value >> 1).cast_signed() ^ -(value & 1).cast_signed())
     }
 
     /// Bytes or a text.
