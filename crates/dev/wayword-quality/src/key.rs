@@ -8,7 +8,7 @@ use wayword_world::files;
 /// The format of a key, with its version.
 const KEY_FORMAT: &str = "wayword-corruptions/1";
 /// The largest key that is read, bytes; a larger one is refused.
-const MOST_BYTES: u64 = 256 << 20;
+const MAX_KEY_BYTES: u64 = 256 << 20;
 const KEY_HINT: &str = "give the key that was written with the texts";
 
 /// The changes in the texts of a file.
@@ -114,7 +114,7 @@ impl CorruptionKey {
 
     pub(crate) fn read(file: &Path) -> Result<Self, CommandError> {
         let wrong = |problem: String| CommandError::usage(format!("{}: {problem}", file.display()), KEY_HINT);
-        let bytes = files::json_if_there(file, MOST_BYTES, KEY_HINT)?;
+        let bytes = files::json_if_there(file, MAX_KEY_BYTES, KEY_HINT)?;
         let bytes = bytes.ok_or_else(|| wrong("there is no such file".to_owned()))?;
         let key: Self = serde_json::from_slice(&bytes).map_err(|error| wrong(error.to_string()))?;
         if key.format != KEY_FORMAT {

@@ -26,7 +26,7 @@ use wayword_testkit::provider::{
 /// How often the scripted text roles make mistakes, as a share.
 pub(super) const TEXT_ROLE_ERROR_SHARE: f64 = 0.2;
 /// Items that are made at a time; they mostly wait for calls.
-const AT_A_TIME: usize = 16;
+const MAX_ITEMS_AT_A_TIME: usize = 16;
 
 /// The platform of a measurement.
 #[derive(Debug, Clone, clap::Args)]
@@ -136,7 +136,7 @@ impl MeasurementStage {
         let plan = RunPlan::for_writing(job, &self.world)?;
         let calls = plan.models.open_calls(&fresh_id("measure"), &CommandOutput::new(false, true))?;
         let team = RoleTeam::new(&job.settings, calls.as_ref(), &self.world)?.with_lookout(lookout);
-        let threads = ThreadPoolBuilder::new().num_threads(AT_A_TIME).build();
+        let threads = ThreadPoolBuilder::new().num_threads(MAX_ITEMS_AT_A_TIME).build();
         let world = RunPlatform { platform: &self.world, data: None, scenes: &KnownScenes::new() };
         let make = |item| make_item(item, &job.settings, world, &team, &plan.styles, 1);
         let work = || plan.items.par_iter().map(make).collect();

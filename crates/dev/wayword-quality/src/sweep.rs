@@ -11,7 +11,7 @@ use wayword_metrics::{AgentTrajectory, TrajectoryMetric, TrajectorySuccessRule, 
 use wayword_navigation::{
     AgentView,
     agents::{AgentStart, BacktrackParameters, PhraseWalkParameters, walk_by_phrases},
-    directions::{ByRules, InstructionSplitter, SplitInstruction},
+    directions::{InstructionSplitter, RuleSplitter, SplitInstruction},
     grounders::{EncoderGrounder, GrounderScope, LexicalGrounder},
 };
 use wayword_run::{error::CommandError, output::CommandOutput, platforms};
@@ -170,7 +170,7 @@ fn of_episode(
     let start = AgentStart { scene: episode.scene.clone(), viewpoint: episode.viewpoints[0].clone(), heading };
     let agent_view = AgentView::new(platform, grounder, false, &episode.scene)?;
     let directions: Vec<SplitInstruction> =
-        ByRules.split_instructions(&[&episode.instructions[0]]).into_iter().collect::<Result<_, _>>()?;
+        RuleSplitter.split_instructions(&[&episode.instructions[0]]).into_iter().collect::<Result<_, _>>()?;
     let figures = |parameters: &PhraseWalkParameters| -> Result<[f64; 3], CommandError> {
         let walked = walk_by_phrases(&agent_view, &start, &directions[0], parameters)?;
         let viewpoints = walked.steps.into_iter().map(|step| step.viewpoint).collect();

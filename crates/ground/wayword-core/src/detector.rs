@@ -5,10 +5,10 @@ use crate::{ModelError, ObjectId, ObjectLabel, PhraseGrounder, View};
 use serde::{Deserialize, Serialize};
 
 /// The most boxes that a detector gives for a phrase in a view; it leaves out those with lower scores.
-pub const MOST_BOXES: usize = 100;
+pub const MAX_BOXES_PER_PHRASE: usize = 100;
 
 /// The least share of its union with an object's outline that a box must cover to be a box of that object.
-const LEAST_OVERLAP: f64 = 0.1;
+const MIN_OVERLAP_SHARE: f64 = 0.1;
 
 /// A place in a picture at which a phrase was found.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -53,16 +53,16 @@ pub struct DetectorScoring {
     /// The definition of a score, with the prompt that it belongs to, in words for provenance.
     pub means: &'static str,
     /// The score from which its makers count a box as a find.
-    pub found_from: f32,
+    pub find_threshold: f32,
     /// Whether the phrases that are looked for together change each other's scores. Then scores of different phrases
     /// can be compared only where each phrase was looked for by itself.
-    pub phrases_meet: bool,
+    pub phrases_interact: bool,
 }
 
 /// Finds things in pictures by phrases.
 ///
 /// Scores of one detector and phrase can be compared between views, because every view is looked at by itself. Between
-/// phrases they can be compared under the condition of [`DetectorScoring::phrases_meet`]; between detectors they cannot.
+/// phrases they can be compared under the condition of [`DetectorScoring::phrases_interact`]; between detectors they cannot.
 ///
 /// Blocking, object-safe and batching; threads belong to the caller.
 pub trait ObjectDetector: Send + Sync {
@@ -73,7 +73,7 @@ pub trait ObjectDetector: Send + Sync {
     fn scoring(&self) -> DetectorScoring;
 
     /// One result per view, in their order: for each phrase, in their order, where it was found, the best first, at most
-    /// [`MOST_BOXES`]. A phrase that was not found has none. A view that fails does not fail the others.
+    /// [`MAX_BOXES_PER_PHRASE`]. A phrase that was not found has none. A view that fails does not fail the others.
     fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>>;
 }
 
@@ -119,7 +119,7 @@ impl<D: ObjectDetector> PhraseGrounder for DetectorGrounder<D> {
 
     fn score_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<f32>, ModelError>> {
         let best_score = |boxes: &Vec<DetectedBox>| boxes.iter().map(|found| found.score).fold(0.0, f32::max);
-        let batch_size = if self.detector.scoring().phrases_meet { 1 } else { phrases.len().max(1) };
+        let batch_size = if self.detector.scoring().phrases_interact { 1 } else { phrases.len().max(1) };
         let mut scores: Vec<Result<Vec<f32>, ModelError>> = views.iter().map(|_| Ok(Vec::new())).collect();
         for batch in phrases.chunks(batch_size) {
             for (scores, detected) in scores.iter_mut().zip(self.detector.detect_phrases(views, batch)) {
@@ -148,7 +148,7 @@ impl<D: ObjectDetector> PhraseGrounder for DetectorGrounder<D> {
     }
 }
 
-/// The object of a view that a box covers best, judged by the outlines; `None` below [`LEAST_OVERLAP`].
+/// The object of a view that a box covers best, judged by the outlines; `None` below [`MIN_OVERLAP_SHARE`].
 fn best_outlined_object(view: &View, detection: DetectedBox) -> Option<ObjectId> {
     let overlap = |label: &ObjectLabel| {
         label.box_px.map_or(0.0, |[x, y, width, height]| {
@@ -156,7 +156,7 @@ fn best_outlined_object(view: &View, detection: DetectedBox) -> Option<ObjectId>
         })
     };
     let best = view.outlined_labels().map(|label| (overlap(label), label)).max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (best.0 >= LEAST_OVERLAP).then(|| best.1.object.clone())
+    (best.0 >= MIN_OVERLAP_SHARE).then(|| best.1.object.clone())
 }
 
 /// The area that two boxes share, as a share of the area that they cover together. Each is given by its left, top, right and
@@ -186,7 +186,7 @@ mod tests {
         }
 
         fn scoring(&self) -> DetectorScoring {
-            DetectorScoring { means: "made up", found_from: 0.5, phrases_meet: self.meets }
+            DetectorScoring { means: "made up", find_threshold: 0.5, phrases_interact: self.meets }
         }
 
         fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {

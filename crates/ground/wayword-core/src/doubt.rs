@@ -91,16 +91,16 @@ pub struct TextDoubt {
     pub cause: DoubtCause,
     /// Why, in a sentence.
     pub reason: String,
-    /// Replacements, the best first; at most [`MOST_ALTERNATIVES`].
+    /// Replacements, the best first; at most [`MAX_ALTERNATIVES`].
     pub alternatives: Vec<DoubtAlternative>,
 }
 
 /// Most alternatives of a doubt; the best are kept.
-pub const MOST_ALTERNATIVES: usize = 3;
+pub const MAX_ALTERNATIVES: usize = 3;
 /// Most doubts of a text; the strongest are kept.
-pub const MOST_DOUBTS: usize = 40;
+pub const MAX_DOUBTS: usize = 40;
 /// The longest words of an alternative, bytes. An alternative with longer words is dropped.
-const LONGEST_WORDS: usize = 200;
+const MAX_ALTERNATIVE_BYTES: usize = 200;
 
 impl TextDoubt {
     /// The gain of its best alternative, natural logs; 0 where that is not known.
@@ -141,7 +141,7 @@ pub fn apart_in(text: &str, doubts: Vec<TextDoubt>) -> Vec<TextDoubt> {
     for doubt in doubts {
         if let Some(stronger) = kept.iter_mut().find(|other| spans_overlap(other.span, doubt.span)) {
             stronger.take_over(text, &doubt);
-        } else if kept.len() < MOST_DOUBTS {
+        } else if kept.len() < MAX_DOUBTS {
             kept.push(doubt);
         }
     }
@@ -192,7 +192,7 @@ fn trim_doubt(text: &str, doubt: TextDoubt) -> Option<TextDoubt> {
 }
 
 /// Sorts the alternatives of a doubt: first those with an unknown gain, then by gain, the best first. Drops
-/// duplicates, alternatives that repeat the doubted words, and all beyond [`MOST_ALTERNATIVES`].
+/// duplicates, alternatives that repeat the doubted words, and all beyond [`MAX_ALTERNATIVES`].
 fn tidy_alternatives(text: &str, doubt: &mut TextDoubt) {
     let doubted_words = text[doubt.span[0]..doubt.span[1]].to_lowercase();
     let mut seen: Vec<Option<String>> = vec![Some(doubted_words)];
@@ -200,12 +200,13 @@ fn tidy_alternatives(text: &str, doubt: &mut TextDoubt) {
     doubt.alternatives.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
     doubt.alternatives.retain(|DoubtAlternative { words, .. }| {
         let key = words.as_ref().map(|words| words.to_lowercase());
-        let is_fit = words.as_ref().is_none_or(|words| !words.trim().is_empty() && words.len() <= LONGEST_WORDS);
+        let is_fit =
+            words.as_ref().is_none_or(|words| !words.trim().is_empty() && words.len() <= MAX_ALTERNATIVE_BYTES);
         let is_new = is_fit && !seen.contains(&key);
         seen.push(key);
         is_new
     });
-    doubt.alternatives.truncate(MOST_ALTERNATIVES);
+    doubt.alternatives.truncate(MAX_ALTERNATIVES);
 }
 
 #[cfg(test)]
@@ -277,7 +278,7 @@ mod tests {
             let apart = apart_in(text, doubts);
             for doubt in &apart {
                 assert!(!text[doubt.span[0]..doubt.span[1]].trim().is_empty());
-                assert!(doubt.alternatives.len() <= MOST_ALTERNATIVES);
+                assert!(doubt.alternatives.len() <= MAX_ALTERNATIVES);
             }
             assert!(apart.windows(2).all(|pair| pair[0].span[1] <= pair[1].span[0]));
             let parts = split_at_doubts(text, &apart, |doubt| doubt.span);

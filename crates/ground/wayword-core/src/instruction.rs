@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// Longest text of an instruction, bytes, whether it comes from a dataset or from a model. An instruction is a few
 /// sentences. A longer text is refused unread.
-pub const LONGEST_TEXT_BYTES: usize = 20_000;
+pub const MAX_TEXT_BYTES: usize = 20_000;
 
 /// A wayfinding instruction, its provenance, and the findings of its checks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -58,7 +58,9 @@ pub use caption::{
 pub use condition::{GraphFit, GraphSize, RoomNames, SceneCondition, SceneLack};
 pub use contain_panics::run_contained;
 pub use depth::DepthImage;
-pub use detector::{DetectedBox, DetectorGrounder, DetectorScoring, MOST_BOXES, ObjectDetector, without_overlaps};
+pub use detector::{
+    DetectedBox, DetectorGrounder, DetectorScoring, MAX_BOXES_PER_PHRASE, ObjectDetector, without_overlaps,
+};
 pub use doubt::{DoubtAlternative, DoubtCause, DoubtGrade, TextDoubt};
 pub use encoder::{PhraseGrounder, TextEncoder};
 pub use failure::FailureKind;
@@ -69,9 +71,7 @@ pub use heading::{CompassPoint, Heading, Side};
 pub use hex::hex_text;
 pub use id::{ObjectId, SceneId, ViewpointId};
 pub use image::Image;
-pub use instruction::{
-    ChosenBy, Instruction, LONGEST_TEXT_BYTES, MentionKind, TextMention, TextProvenance, TextSelection,
-};
+pub use instruction::{ChosenBy, Instruction, MAX_TEXT_BYTES, MentionKind, TextMention, TextProvenance, TextSelection};
 pub use label::ObjectLabel;
 pub use model::{
     ChatMessage, FinishReason, LanguageModel, MessageRole, ModelError, ModelReply, ModelRequest, ModelTool, ModelUsage,

@@ -68,7 +68,7 @@ pub enum TurnKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ClimbDirection {
-    /// Less than [`CLIMB_M`] of rise.
+    /// Less than [`MIN_CLIMB_M`] of rise.
     Level,
     /// Upwards.
     Up,
@@ -95,7 +95,7 @@ pub const BEND_DEG: f64 = 60.0;
 /// straight stretch.
 pub const BEND_STEP_DEG: f64 = 10.0;
 /// Longest such bend, moves: a corner is rounded in two or three hops between viewpoints.
-pub const BEND_MOVES: usize = 3;
+pub const MAX_BEND_MOVES: usize = 3;
 
 impl PathMove {
     /// The move between two poses.
@@ -125,7 +125,7 @@ impl PathMove {
 const FLAT_M: f64 = 0.05;
 
 /// The flight of stairs that begins with the move `first`: its last move, and whether it goes up or down. The rises of
-/// consecutive moves in one direction add up; `None` where they come to less than [`CLIMB_M`].
+/// consecutive moves in one direction add up; `None` where they come to less than [`MIN_CLIMB_M`].
 #[must_use]
 pub fn flight_from(moves: &[PathMove], first: usize) -> Option<(usize, ClimbDirection)> {
     let direction = moves.get(first)?.rise_m.signum();

@@ -11,9 +11,9 @@ use std::{
 /// A cache of a few values by key, for several threads. When it is full, the value that was asked for least recently is
 /// dropped.
 pub struct RecentCache<K, V> {
-    shelf: Mutex<RecentEntries<K, V>>,
+    entries: Mutex<RecentEntries<K, V>>,
     /// The lock of the thread that makes a value, where one is made at a time.
-    alone: Option<Arc<Mutex<()>>>,
+    single_maker_lock: Option<Arc<Mutex<()>>>,
 }
 
 struct RecentEntries<K, V> {
@@ -27,13 +27,13 @@ impl<K: Clone + Eq + Hash, V> RecentCache<K, V> {
     #[must_use]
     pub fn new(capacity: usize) -> Self {
         let shelf = RecentEntries { kept: LruCache::new(capacity), making: HashMap::new() };
-        Self { shelf: Mutex::new(shelf), alone: None }
+        Self { entries: Mutex::new(shelf), single_maker_lock: None }
     }
 
     /// The same for values that take much memory to make: one is made at a time.
     #[must_use]
     pub fn one_at_a_time(capacity: usize) -> Self {
-        Self { alone: Some(Arc::default()), ..Self::new(capacity) }
+        Self { single_maker_lock: Some(Arc::default()), ..Self::new(capacity) }
     }
 
     /// The value of a key, if the cache has it.
@@ -58,7 +58,7 @@ impl<K: Clone + Eq + Hash, V> RecentCache<K, V> {
             if let Some(value) = shelf.kept.get(&key) {
                 return Ok(Arc::clone(value));
             }
-            match &self.alone {
+            match &self.single_maker_lock {
                 Some(alone) => Arc::clone(alone),
                 None => Arc::clone(shelf.making.entry(key.clone()).or_default()),
             }
@@ -79,7 +79,7 @@ impl<K: Clone + Eq + Hash, V> RecentCache<K, V> {
     }
 
     fn lock_entries(&self) -> MutexGuard<'_, RecentEntries<K, V>> {
-        self.shelf.lock().unwrap_or_else(PoisonError::into_inner)
+        self.entries.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

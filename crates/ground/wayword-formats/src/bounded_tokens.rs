@@ -4,7 +4,7 @@
 use crate::limits;
 use std::io::{self, Read};
 
-/// Passes JSON on, and fails where a text or number in it is longer than [`limits::TOKEN_BYTES`].
+/// Passes JSON on, and fails where a text or number in it is longer than [`limits::MAX_TOKEN_BYTES`].
 pub(crate) struct BoundedTokenReader<R> {
     inner: R,
     /// Bytes of the text or number that is being read.
@@ -32,7 +32,7 @@ impl<R> BoundedTokenReader<R> {
             b' ' | b'\n' | b'\r' | b'\t' | b',' | b':' | b'[' | b']' | b'{' | b'}' if !self.in_text => self.length = 0,
             _ => {}
         }
-        self.length <= limits::TOKEN_BYTES
+        self.length <= limits::MAX_TOKEN_BYTES
     }
 }
 
@@ -67,7 +67,7 @@ mod tests {
     #[test]
     fn the_longest_text_or_number_comes_through_and_no_longer_one() {
         let text = |bytes: usize| format!("[1, \"a\\\"\", \"{}\", 2.5]", "x".repeat(bytes));
-        let most = limits::TOKEN_BYTES;
+        let most = limits::MAX_TOKEN_BYTES;
         assert_eq!(read(&text(most)), Ok(text(most).len()));
         assert!(read(&text(most + 1)).unwrap_err().contains("longer than 1 MiB after 10485"));
         assert!(read(&"1".repeat(most + 1)).unwrap_err().contains("longer than 1 MiB"));

@@ -23,7 +23,7 @@ const SPLIT_HINT: &str = "split it into parts";
 /// Most bytes of a file that are read at a time.
 const BUFFER_BYTES: usize = 1 << 16;
 /// Most fields of a file's outer object beside the one with the list of items; a file with more is refused.
-const FIELDS_AROUND: usize = 20;
+const MAX_OTHER_FIELDS: usize = 20;
 
 /// Opens a file. It recognises gzip by the first bytes, not by the name, and skips the byte order mark that Windows
 /// editors put before UTF-8.
@@ -36,7 +36,7 @@ pub(crate) fn open_input(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
         return Err(FormatError::for_document(file, format!("it is not a file but {kind}"), "give a dataset file"));
     }
     let opened = File::open(file).map_err(failed)?;
-    if meta.len() > limits::FILE_BYTES {
+    if meta.len() > limits::MAX_FILE_BYTES {
         return Err(FormatError::for_document(file, TOO_LARGE, SPLIT_HINT));
     }
     let mut plain = BufReader::with_capacity(BUFFER_BYTES, opened);
@@ -44,7 +44,7 @@ pub(crate) fn open_input(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
         plain.fill_buf().map_err(|source| FormatError::from_io(file, "read", source))?.starts_with(&[0x1f, 0x8b]);
     // The file may grow while it is read, and gzip may expand to a thousand times its size.
     let input: Box<dyn Read> = if is_gzip { Box::new(MultiGzDecoder::new(plain)) } else { Box::new(plain) };
-    let input = BufReader::with_capacity(BUFFER_BYTES, BoundedReader { inner: input, left: limits::FILE_BYTES });
+    let input = BufReader::with_capacity(BUFFER_BYTES, BoundedReader { inner: input, left: limits::MAX_FILE_BYTES });
     without_mark(file, input)
 }
 
@@ -145,7 +145,7 @@ pub(crate) fn each_line(
     let mut line = Vec::new();
     for number in 1.. {
         line.clear();
-        let longest = limits::LINE_BYTES as u64 + 1;
+        let longest = limits::MAX_LINE_BYTES as u64 + 1;
         let read = input.by_ref().take(longest).read_until(b'\n', &mut line);
         if read.map_err(|source| FormatError::from_io(file, "read", source))? == 0 {
             break;
@@ -154,8 +154,8 @@ pub(crate) fn each_line(
             let problem = format!("it has more than {} lines", limits::group_digits(limits::MAX_ITEMS));
             return Err(FormatError::for_document(file, problem, SPLIT_HINT));
         }
-        if line.len() > limits::LINE_BYTES {
-            let problem = format!("line {number} is longer than {} MiB", limits::LINE_BYTES >> 20);
+        if line.len() > limits::MAX_LINE_BYTES {
+            let problem = format!("line {number} is longer than {} MiB", limits::MAX_LINE_BYTES >> 20);
             return Err(FormatError::for_document(file, problem, "write one JSON object per line"));
         }
         if !line.trim_ascii().is_empty() {
@@ -348,7 +348,7 @@ impl<'de> Visitor<'de> for ListInObject<'_, '_> {
             if rest.contains_key(&key) || (found && key == self.field) {
                 return Err(A::Error::custom(format_args!("field {key:?} is given twice")));
             }
-            if rest.len() > FIELDS_AROUND {
+            if rest.len() > MAX_OTHER_FIELDS {
                 return Err(A::Error::custom("it has too many fields"));
             }
             if key == self.field {

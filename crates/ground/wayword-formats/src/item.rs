@@ -80,7 +80,7 @@ impl<'a> DatasetItem<'a> {
         const WHAT: &str =
             "a whole number, or a text without path separators and control characters of at most 128 bytes";
         let name =
-            name_of(value).filter(|name| SceneId::new(name.as_str()).is_ok() && name.len() <= limits::NAME_BYTES);
+            name_of(value).filter(|name| SceneId::new(name.as_str()).is_ok() && name.len() <= limits::MAX_NAME_BYTES);
         name.ok_or_else(|| self.expected_kind(field, WHAT, value, "change it, because names become file names later"))
     }
 
@@ -144,7 +144,7 @@ impl<'a> DatasetItem<'a> {
 
     /// The nodes of a path: at least one.
     pub(crate) fn checked_viewpoints(&self, field: &str, value: &Value) -> Result<Vec<ViewpointId>, FormatError> {
-        let list = self.checked_list(field, value, limits::PATH_NODES)?;
+        let list = self.checked_list(field, value, limits::MAX_PATH_NODES)?;
         if list.is_empty() {
             return Err(self.wrong_field(field, "it is empty", "add at least one viewpoint"));
         }
@@ -158,8 +158,8 @@ impl<'a> DatasetItem<'a> {
 
     pub(crate) fn checked_instruction(&self, field: &str, value: &Value) -> Result<String, FormatError> {
         let text = self.checked_text(field, value)?;
-        if text.len() > limits::INSTRUCTION_BYTES {
-            let problem = format!("it has {} bytes, more than {}", text.len(), limits::INSTRUCTION_BYTES);
+        if text.len() > limits::MAX_INSTRUCTION_BYTES {
+            let problem = format!("it has {} bytes, more than {}", text.len(), limits::MAX_INSTRUCTION_BYTES);
             return Err(self.wrong_field(field, problem, "shorten it: an instruction is a few sentences"));
         }
         Ok(text.to_owned())

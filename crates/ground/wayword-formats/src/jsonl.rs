@@ -165,7 +165,8 @@ fn take_path(item: &mut DatasetItem<'_>) -> Result<Path, FormatError> {
     let path = item.take_field("path")?;
     let id = item.checked_name("path.id", path.get("id").unwrap_or(&Value::Null))?;
     item.set_id(&id);
-    let frames = item.checked_list("path.frames", path.get("frames").unwrap_or(&Value::Null), limits::PATH_NODES)?;
+    let frames =
+        item.checked_list("path.frames", path.get("frames").unwrap_or(&Value::Null), limits::MAX_PATH_NODES)?;
     if frames.is_empty() {
         return Err(item.wrong_field("path.frames", "it is empty", "add at least one frame"));
     }

@@ -1,5 +1,5 @@
 //! Keeps two rules while a file is read: no two items have the same name, and the values that stay in memory are no more
-//! than [`limits::VALUES_KEPT`].
+//! than [`limits::MAX_VALUES_IN_MEMORY`].
 
 use crate::{DatasetItem, Episode, FormatError, limits};
 use serde_json::{Map, Value};
@@ -44,7 +44,7 @@ impl ReadTally {
         let file = item.file();
         let rest = item.into_rest();
         self.values += kept + values_in(&rest);
-        if self.values > limits::VALUES_KEPT {
+        if self.values > limits::MAX_VALUES_IN_MEMORY {
             let problem = "it holds more than 20,000,000 values, more than is kept in memory";
             return Err(FormatError::for_document(file, problem, "split it into parts"));
         }
@@ -81,7 +81,7 @@ mod tests {
     fn take_rest_limits_the_values_in_memory() {
         let mut tally = ReadTally::default();
         let item = || DatasetItem::new(Path::new("big.json"), ItemPlace::Item(0), json!({"a": [0, 0]})).unwrap();
-        assert_eq!(tally.take_rest(item(), limits::VALUES_KEPT - 3).unwrap().len(), 1);
+        assert_eq!(tally.take_rest(item(), limits::MAX_VALUES_IN_MEMORY - 3).unwrap().len(), 1);
         let error = tally.take_rest(item(), 0).unwrap_err().to_string();
         assert!(error.starts_with("big.json: it holds more than 20,000,000 values"), "{error}");
     }

@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use std::{collections::BTreeSet, path::Path};
 
 /// Fields that describe the text: they are written back only while the text is unchanged.
-const OF_THE_TEXT: [&str; 4] = ["annotator_id", "language", "timed_instruction", "edit_distance"];
+const TEXT_FIELDS: [&str; 4] = ["annotator_id", "language", "timed_instruction", "edit_distance"];
 
 /// The field with the ids of the instruction's tokens, for agents that load them.
 const ENCODING_FIELD: &str = "instr_encoding";
@@ -40,7 +40,7 @@ pub fn read_rxr_file(file: &Path) -> Result<Vec<Episode>, FormatError> {
 
 /// Takes the fields that annotations by a model may lack.
 fn take_text_fields(item: &mut DatasetItem<'_>, episode: &mut Episode) -> Result<(), FormatError> {
-    for field in OF_THE_TEXT {
+    for field in TEXT_FIELDS {
         let Some(value) = item.take_optional(field) else { continue };
         match field {
             "annotator_id" => drop(item.checked_name(field, &value)?),
@@ -57,7 +57,7 @@ fn take_text_fields(item: &mut DatasetItem<'_>, episode: &mut Episode) -> Result
 
 /// Checks that every entry of `timed_instruction` has a word.
 fn timed_words(item: &DatasetItem<'_>, field: &str, value: &Value) -> Result<(), FormatError> {
-    for (index, timed) in item.checked_list(field, value, limits::INSTRUCTION_BYTES)?.iter().enumerate() {
+    for (index, timed) in item.checked_list(field, value, limits::MAX_INSTRUCTION_BYTES)?.iter().enumerate() {
         let word_field = format!("{field}[{index}].word");
         let Some(word) = timed.get("word") else {
             return Err(item.wrong_field(&word_field, "it is missing", "each entry is an object with a word"));

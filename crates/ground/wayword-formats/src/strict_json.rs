@@ -19,9 +19,9 @@ impl<'de> DeserializeSeed<'de> for StrictJson<'_> {
     type Value = Value;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
-        let (mut track, values_left) = (Track::new(), Cell::new(limits::VALUES_PER_ITEM));
-        let bytes_left = Cell::new(limits::LINE_BYTES);
-        let part = StrictPart { left: &values_left, bytes: &bytes_left, is_twice: false };
+        let (mut track, values_left) = (Track::new(), Cell::new(limits::MAX_VALUES_PER_ITEM));
+        let bytes_left = Cell::new(limits::MAX_LINE_BYTES);
+        let part = StrictPart { values_left: &values_left, bytes_left: &bytes_left, is_twice: false };
         let read = part.deserialize(serde_path_to_error::Deserializer::new(deserializer, &mut track));
         read.inspect_err(|_| *self.0.borrow_mut() = field_path(&track.path()))
     }
@@ -47,9 +47,9 @@ fn field_path(path: &Path) -> String {
 #[derive(Clone, Copy)]
 struct StrictPart<'l> {
     /// How many more JSON values the whole value may have.
-    left: &'l Cell<usize>,
+    values_left: &'l Cell<usize>,
     /// How many more bytes of text it may have.
-    bytes: &'l Cell<usize>,
+    bytes_left: &'l Cell<usize>,
     /// Whether the part is the value of a key that its object had before.
     is_twice: bool,
 }
@@ -57,8 +57,8 @@ struct StrictPart<'l> {
 impl StrictPart<'_> {
     /// Counts the bytes of a text towards the limit.
     fn count_bytes<E: Error>(self, text: &str) -> Result<(), E> {
-        let left = self.bytes.get().checked_sub(text.len());
-        self.bytes.set(left.ok_or_else(|| E::custom("it has more than 16 MiB of text"))?);
+        let left = self.bytes_left.get().checked_sub(text.len());
+        self.bytes_left.set(left.ok_or_else(|| E::custom("it has more than 16 MiB of text"))?);
         Ok(())
     }
 }
@@ -70,8 +70,9 @@ impl<'de> DeserializeSeed<'de> for StrictPart<'_> {
         if self.is_twice {
             return Err(D::Error::custom("it is given twice"));
         }
-        let left = self.left.get().checked_sub(1).ok_or_else(|| D::Error::custom("it has more than 200,000 values"))?;
-        self.left.set(left);
+        let left =
+            self.values_left.get().checked_sub(1).ok_or_else(|| D::Error::custom("it has more than 200,000 values"))?;
+        self.values_left.set(left);
         deserializer.deserialize_any(self)
     }
 }

@@ -145,7 +145,7 @@ fn take_positions(item: &mut DatasetItem<'_>, episode: &mut Episode) -> Result<(
 }
 
 fn checked_positions(item: &DatasetItem<'_>, field: &str, value: &Value) -> Result<Vec<DVec3>, FormatError> {
-    let list = item.checked_list(field, value, limits::PATH_NODES)?;
+    let list = item.checked_list(field, value, limits::MAX_PATH_NODES)?;
     if list.is_empty() {
         return Err(item.wrong_field(field, "it is empty", "add at least one position"));
     }
@@ -163,7 +163,7 @@ fn goal_positions(item: &DatasetItem<'_>, value: &Value) -> Result<Vec<DVec3>, F
             goal.get("position").ok_or_else(|| item.wrong_field(&field, "it is missing", "each goal has one"))?;
         item.checked_position(&field, position)
     };
-    item.checked_list("goals", value, limits::PATH_NODES)?.iter().enumerate().map(goal).collect()
+    item.checked_list("goals", value, limits::MAX_PATH_NODES)?.iter().enumerate().map(goal).collect()
 }
 
 /// Takes the text. Its tokens go into `tokens` by the text, so that an unchanged text keeps them.
@@ -179,7 +179,7 @@ fn take_instruction(
         None | Some(Value::Null) => {}
         Some(numbers) => {
             let field = "instruction.instruction_tokens";
-            let numbers = item.checked_list(field, numbers, limits::INSTRUCTION_BYTES)?.iter().map(Value::as_u64);
+            let numbers = item.checked_list(field, numbers, limits::MAX_INSTRUCTION_BYTES)?.iter().map(Value::as_u64);
             let numbers = numbers.collect::<Option<Vec<_>>>();
             let wrong =
                 || item.wrong_field(field, "expected whole numbers", "leave them out, and Wayword makes new ones");

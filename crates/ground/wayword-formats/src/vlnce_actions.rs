@@ -14,7 +14,7 @@ use wayword_core::{AgentAction, DVec3};
 const MAX_ACTIONS: usize = 25_000;
 
 /// Most actions of all episodes together that are kept in memory; a file with more is refused.
-const ACTIONS_KEPT: usize = 20_000_000;
+const MAX_ACTIONS_IN_MEMORY: usize = 20_000_000;
 
 /// The actions of an agent in an episode, and the places that they lead to.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,7 +67,7 @@ pub fn read_actions(file: &Path) -> Result<BTreeMap<String, EpisodeActions>, For
     input::each_entry(file, |episode, mut item| {
         let acted = take_actions(&mut item)?;
         kept += acted.actions.len();
-        if kept > ACTIONS_KEPT {
+        if kept > MAX_ACTIONS_IN_MEMORY {
             let problem = "its episodes have more than 20,000,000 actions";
             return Err(FormatError::for_document(file, problem, "split it into parts"));
         }

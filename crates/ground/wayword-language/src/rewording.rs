@@ -11,9 +11,9 @@ crate::data::lists! {
 
 /// Most words between the verb of a turn and its side, as "a sharp" in "take a sharp right". A verb farther away does not
 /// belong to the turn.
-const TURN_REACH: usize = 6;
+const TURN_REACH_WORDS: usize = 6;
 /// The words for the way past a place are looked for among this many tokens before it.
-const WAY_REACH: usize = 5;
+const WAY_REACH_TOKENS: usize = 5;
 
 /// A text with its tokens. The methods take byte ranges of it, and find no words in a range that does not fit it.
 #[derive(Debug)]
@@ -56,7 +56,8 @@ impl<'a> TokenisedText<'a> {
     #[must_use]
     pub fn turn_words(&self, step: [usize; 2], side: [usize; 2]) -> [usize; 2] {
         let before = self.tokens_within([step[0], side[0]]);
-        let between = before.iter().rev().take_while(|token| BEFORE_TURN.contains(&&*token.word)).take(TURN_REACH);
+        let between =
+            before.iter().rev().take_while(|token| BEFORE_TURN.contains(&&*token.word)).take(TURN_REACH_WORDS);
         let at = before.len() - between.count();
         let verb = before[..at].last().filter(|token| TURNING.contains(&&*token.word));
         let from = verb.map_or_else(|| side_beginning(&before[at..], side[0]), |verb| verb.span[0]);
@@ -99,7 +100,7 @@ impl<'a> TokenisedText<'a> {
     #[must_use]
     pub fn way_words(&self, step: [usize; 2], place: [usize; 2]) -> Option<WayWords> {
         let before = self.tokens_within([step[0], place[0]]);
-        let near = &before[before.len().saturating_sub(WAY_REACH)..];
+        let near = &before[before.len().saturating_sub(WAY_REACH_TOKENS)..];
         let is_in = |list: &[&str], token: &TextToken| list.contains(&&*token.word);
         let last = near.iter().rposition(|token| is_in(&PREPOSITIONS, token) || is_in(&WAY_VERBS, token))?;
         if is_in(&WAY_VERBS, &near[last]) {

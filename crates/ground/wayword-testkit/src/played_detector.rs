@@ -77,7 +77,7 @@ impl ObjectDetector for PlayedDetector {
     }
 
     fn scoring(&self) -> DetectorScoring {
-        DetectorScoring { means: "drawn by labels", found_from: 0.5, phrases_meet: false }
+        DetectorScoring { means: "drawn by labels", find_threshold: 0.5, phrases_interact: false }
     }
 
     fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {

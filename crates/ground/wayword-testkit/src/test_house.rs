@@ -9,7 +9,7 @@ pub const SCAN: &str = "madeUpHouse";
 /// Height of the camera above the floor, metres.
 pub(crate) const CAMERA_HEIGHT_M: f64 = 1.5;
 /// Height of the upper storey's floor above the lower one's, metres.
-const UPPER_M: f64 = 2.9;
+const UPPER_FLOOR_M: f64 = 2.9;
 
 /// A room: a box on one storey.
 pub(crate) struct TestHouseRoom {
@@ -78,12 +78,12 @@ pub(crate) const VIEWPOINTS: &[TestHouseViewpoint] = &[
     make_viewpoint(3, 8.5, 7.5, 0.0),
     make_viewpoint(4, 8.6, 1.5, 0.3),
     make_viewpoint(4, 10.2, 1.5, 1.4),
-    make_viewpoint(5, 8.5, 1.5, UPPER_M),
-    make_viewpoint(5, 5.5, 1.5, UPPER_M),
-    make_viewpoint(6, 3.5, 4.5, UPPER_M),
-    make_viewpoint(6, 3.0, 7.5, UPPER_M),
-    make_viewpoint(7, 8.5, 5.0, UPPER_M),
-    make_viewpoint(8, 2.0, 1.5, UPPER_M),
+    make_viewpoint(5, 8.5, 1.5, UPPER_FLOOR_M),
+    make_viewpoint(5, 5.5, 1.5, UPPER_FLOOR_M),
+    make_viewpoint(6, 3.5, 4.5, UPPER_FLOOR_M),
+    make_viewpoint(6, 3.0, 7.5, UPPER_FLOOR_M),
+    make_viewpoint(7, 8.5, 5.0, UPPER_FLOOR_M),
+    make_viewpoint(8, 2.0, 1.5, UPPER_FLOOR_M),
 ];
 
 /// Pairs of viewpoints between which one can walk straight.
@@ -165,7 +165,7 @@ pub(crate) fn camera_position(viewpoint: &TestHouseViewpoint) -> DVec3 {
 
 /// Height of a storey's floor, metres.
 pub(crate) fn floor_m(level: usize) -> f64 {
-    if level == 0 { 0.0 } else { UPPER_M }
+    if level == 0 { 0.0 } else { UPPER_FLOOR_M }
 }
 
 /// The centre of an object.

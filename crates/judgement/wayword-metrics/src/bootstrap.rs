@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use wayword_core::seeded_rng;
 
 /// Resamples at most. If more are asked for, this many are drawn, because more would not change the digits that reports show.
-const MOST_RESAMPLES: usize = 100_000;
+const MAX_RESAMPLES: usize = 100_000;
 
 /// How intervals and random pairs are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,7 +48,7 @@ pub fn clustered_interval<C: Ord>(
 ) -> Option<MeanEstimate> {
     let mut rng = seeded_rng(seed, &["bootstrap"]);
     let draw = move |clusters: usize| (0..clusters).map(|_| rng.random_range(0..clusters)).collect();
-    clustered_interval_of(values, resamples.clamp(1, MOST_RESAMPLES), level, draw)
+    clustered_interval_of(values, resamples.clamp(1, MAX_RESAMPLES), level, draw)
 }
 
 /// As [`clustered_interval`], but the caller draws the resamples: `draw` gets the number of clusters and returns the indices of
@@ -92,7 +92,7 @@ pub(crate) fn interval_of<const N: usize>(
     mut figures: impl FnMut(&[usize]) -> [f64; N],
 ) -> [(f64, f64); N] {
     let mut rng = seeded_rng(drawing.seed, &["bootstrap"]);
-    let resamples = drawing.resamples.clamp(1, MOST_RESAMPLES);
+    let resamples = drawing.resamples.clamp(1, MAX_RESAMPLES);
     let mut drawn_values = [(); N].map(|()| Vec::with_capacity(resamples));
     let mut drawn = vec![0; clusters];
     for _ in 0..resamples {

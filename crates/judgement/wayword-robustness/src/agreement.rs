@@ -6,7 +6,7 @@ use wayword_language::lexicon::names_agree;
 
 /// Landmarks of two texts match if their names agree and their frames are at most this far apart: one writer may mention a thing when
 /// it comes into view, and another one when the walker passes it.
-const FRAMES_APART: usize = 1;
+const MAX_FRAMES_APART: usize = 1;
 
 /// The agreement of two texts, from 0 to 1 for each kind of statement; `None` where neither has that kind.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -44,7 +44,7 @@ impl TextAgreement {
 fn landmark_f1(a: &TextFacts, b: &TextFacts) -> Option<f64> {
     let all = a.landmarks.len() + b.landmarks.len();
     let is_same = |(name, frame): &(String, usize), (other_name, other_frame): &(String, usize)| {
-        frame.abs_diff(*other_frame) <= FRAMES_APART && names_agree(name, other_name)
+        frame.abs_diff(*other_frame) <= MAX_FRAMES_APART && names_agree(name, other_name)
     };
     // For each landmark of `a`, the matching ones of `b`.
     let partners: Vec<Vec<usize>> = a

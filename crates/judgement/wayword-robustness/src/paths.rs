@@ -5,10 +5,10 @@ use crate::draws::draw_uniform;
 use wayword_core::{Frame, Heading, Path, Pose, path::PathStop};
 
 /// A new frame at most this far along the path from an existing one, metres, is that frame.
-const SAME_M: f64 = 1e-6;
+const SAME_POSITION_M: f64 = 1e-6;
 
 /// Smallest distance between two frames, metres. A request for less is raised to it.
-const LEAST_SPACING_M: f64 = 0.05;
+const MIN_SPACING_M: f64 = 0.05;
 
 /// A changed path.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,10 +39,10 @@ pub fn reverse_path(path: &Path) -> ChangedPath {
 pub fn space_frames(path: &Path, spacing_m: f64) -> ChangedPath {
     let at_m = along_m(path);
     let length_m = at_m.last().copied().unwrap_or(0.0);
-    if !path.motion.is_known() || length_m <= SAME_M || !spacing_m.is_finite() {
+    if !path.motion.is_known() || length_m <= SAME_POSITION_M || !spacing_m.is_finite() {
         return unchanged_path(path);
     }
-    let steps = libm::ceil(length_m / spacing_m.max(LEAST_SPACING_M) - 1e-9).max(1.0) as usize;
+    let steps = libm::ceil(length_m / spacing_m.max(MIN_SPACING_M) - 1e-9).max(1.0) as usize;
     let places: Vec<f64> = (0..=steps).map(|step| length_m * step as f64 / steps as f64).collect();
     let base_frame_of: Vec<usize> = places.iter().map(|place_m| nearest_frame(&at_m, *place_m)).collect();
     let stops = places.iter().zip(&base_frame_of).map(|(place_m, base)| stop_at(path, &at_m, *place_m, *base));
@@ -57,7 +57,7 @@ pub fn thin_frames(path: &Path, spacing_m: f64) -> ChangedPath {
     let last = path.frames.len().saturating_sub(1);
     let mut kept: Vec<usize> = Vec::new();
     for frame in 0..path.frames.len() {
-        let is_far = kept.last().is_none_or(|before| at_m[frame] - at_m[*before] >= spacing_m - SAME_M);
+        let is_far = kept.last().is_none_or(|before| at_m[frame] - at_m[*before] >= spacing_m - SAME_POSITION_M);
         if is_far || frame == last {
             kept.push(frame);
         }
@@ -123,7 +123,7 @@ fn rejoin_stops(path: &Path, stops: Vec<PathStop>, base_frame_of: Vec<usize>) ->
     let start = path.frames.first().map(|frame| frame.pose.heading);
     let mut after = Path { frames: Path::frames_along(stops, start), ..path.clone() };
     if let (Some(before), Some(now), Some(target)) = (path.frames.last(), after.frames.last(), &mut after.target)
-        && before.pose.heading.turn_to(now.pose.heading).abs() > SAME_M
+        && before.pose.heading.turn_to(now.pose.heading).abs() > SAME_POSITION_M
     {
         // The tolerance, in metres, serves for the turn too, in radians. A walker who arrives from another direction sees the target on
         // another side.
@@ -159,7 +159,7 @@ fn nearest_frame(at_m: &[f64], place_m: f64) -> usize {
 /// The stop at a position along the path. `at_m` has the position of each frame, and `base` is the nearest frame.
 fn stop_at(path: &Path, at_m: &[f64], place_m: f64, base: usize) -> PathStop {
     let here = stop_from_frame(&path.frames[base]);
-    if (at_m[base] - place_m).abs() <= SAME_M {
+    if (at_m[base] - place_m).abs() <= SAME_POSITION_M {
         return here;
     }
     let to = at_m.partition_point(|at_m| *at_m < place_m).clamp(1, at_m.len() - 1);

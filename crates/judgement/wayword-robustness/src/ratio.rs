@@ -10,9 +10,9 @@ use wayword_core::seed::derive_seed;
 use wayword_metrics::{MeanEstimate, percentile_interval};
 
 /// Fewest paths for which R is computed.
-pub const LEAST_PATHS: usize = 30;
+pub const MIN_RATIO_PATHS: usize = 30;
 /// Smallest difference between the two anchors for which R is computed. With nearly equal anchors the ratio would be noise.
-pub const LEAST_GAP: f64 = 0.1;
+pub const MIN_ANCHOR_GAP: f64 = 0.1;
 
 /// The kinds of statements in the order of [`TextAgreement::by_kind`], and the mean of all.
 pub const STATEMENT_KINDS: [&str; 5] = ["landmarks", "turns", "rooms", "floors", "mean"];
@@ -84,11 +84,11 @@ fn of_kind(paths: &[PathAgreements], kind: usize, name: &str, drawing: Bootstrap
     let gap = all.mean(1) - all.mean(2);
     let reason = match all.paths {
         0 => Some("no path has such statements".to_owned()),
-        few if few < LEAST_PATHS => {
-            Some(format!("only {few} paths have such statements, and {LEAST_PATHS} are needed"))
+        few if few < MIN_RATIO_PATHS => {
+            Some(format!("only {few} paths have such statements, and {MIN_RATIO_PATHS} are needed"))
         }
-        _ if gap < LEAST_GAP => Some(format!(
-            "asking again agrees in {:.2} and another path in {:.2}; they have to be {LEAST_GAP} apart",
+        _ if gap < MIN_ANCHOR_GAP => Some(format!(
+            "asking again agrees in {:.2} and another path in {:.2}; they have to be {MIN_ANCHOR_GAP} apart",
             all.mean(1),
             all.mean(2)
         )),
@@ -122,21 +122,21 @@ fn three_agreements(path: &PathAgreements, kind: usize) -> Option<[f64; 3]> {
 #[derive(Debug, Clone, Copy, Default)]
 struct AgreementSum {
     /// The sums of the agreements with the changed, the repeated and the other path's text.
-    of: [f64; 3],
+    sums: [f64; 3],
     paths: usize,
 }
 
 impl AgreementSum {
     fn add_path(&mut self, three: &[f64; 3]) {
-        *self = self.plus(&Self { of: *three, paths: 1 });
+        *self = self.plus(&Self { sums: *three, paths: 1 });
     }
 
     fn plus(&self, other: &Self) -> Self {
-        Self { of: std::array::from_fn(|at| self.of[at] + other.of[at]), paths: self.paths + other.paths }
+        Self { sums: std::array::from_fn(|at| self.sums[at] + other.sums[at]), paths: self.paths + other.paths }
     }
 
     fn mean(&self, at: usize) -> f64 {
-        self.of[at] / self.paths.max(1) as f64
+        self.sums[at] / self.paths.max(1) as f64
     }
 
     fn ratio(&self) -> f64 {

@@ -8,7 +8,7 @@ use crate::{
 use std::path::{Path, PathBuf};
 
 /// Most personal links that one command makes. A request for more is refused.
-const MOST_LINKS: u32 = 100_000;
+const MAX_LINKS_PER_COMMAND: u32 = 100_000;
 
 impl Study {
     /// Writes a new study. Its folder `pictures` already has the pictures. The plan is written last, so a folder without a plan is not
@@ -48,10 +48,10 @@ impl Study {
             let problem = "study.toml: participants come from a recruiter, whose links name them";
             return Err(StudyError::refused_request(problem, "for personal links set [recruiter] kind = \"links\""));
         }
-        if count > MOST_LINKS {
+        if count > MAX_LINKS_PER_COMMAND {
             return Err(StudyError::refused_request(
                 format!("{count} links at once"),
-                format!("give at most {MOST_LINKS}"),
+                format!("give at most {MAX_LINKS_PER_COMMAND}"),
             ));
         }
         self.run_transaction(|transaction| transaction.invite_participants(count))

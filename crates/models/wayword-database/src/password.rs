@@ -11,7 +11,7 @@ use std::{
 };
 
 /// Largest password file, bytes. A larger file is refused.
-const MOST_BYTES: u64 = 1 << 20;
+const MAX_PASSWORD_FILE_BYTES: u64 = 1 << 20;
 
 /// The password of a connection; `None` if no source has one for it. `variable` is the environment variable that the user names.
 pub(crate) fn find_password(config: &Config, variable: Option<&str>) -> Result<Option<String>, DatabaseError> {
@@ -34,7 +34,7 @@ pub(crate) fn find_password(config: &Config, variable: Option<&str>) -> Result<O
 fn in_file(config: &Config, path: &Path) -> Result<Option<String>, DatabaseError> {
     let failed = |problem: String, hint| DatabaseError::File { path: path.to_owned(), problem, hint };
     let metadata = fs::metadata(path).map_err(|error| failed(error.to_string(), "check PGPASSFILE"))?;
-    if !metadata.is_file() || metadata.len() > MOST_BYTES {
+    if !metadata.is_file() || metadata.len() > MAX_PASSWORD_FILE_BYTES {
         return Err(failed("this is no password file".to_owned(), "check PGPASSFILE"));
     }
     #[cfg(unix)]

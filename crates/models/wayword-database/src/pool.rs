@@ -15,7 +15,7 @@ const MAX_RETRY_TIME: Duration = Duration::from_secs(120);
 /// Pause before the second try. Each further pause is twice the one before.
 const FIRST_PAUSE: Duration = Duration::from_millis(50);
 /// Longest pause between two tries.
-const LAST_PAUSE: Duration = Duration::from_secs(2);
+const MAX_PAUSE: Duration = Duration::from_secs(2);
 
 /// A connection, with the statements that it has prepared.
 pub struct PooledConnection {
@@ -109,7 +109,7 @@ impl ConnectionPool {
                 return Err(lost);
             }
             thread::sleep(pause);
-            pause = LAST_PAUSE.min(pause * 2);
+            pause = MAX_PAUSE.min(pause * 2);
         }
     }
 

@@ -13,7 +13,7 @@ use std::{
 /// Pause before the second check whether another program is done. Each further pause is twice as long as the one before.
 const FIRST_PAUSE: Duration = Duration::from_millis(10);
 /// Longest pause between two checks.
-const LAST_PAUSE: Duration = Duration::from_millis(250);
+const MAX_PAUSE: Duration = Duration::from_millis(250);
 
 /// How long to wait for a program that has claimed a call and neither sends another request for it nor releases it, because it is
 /// suspended or hangs. The timeouts of all requests are shorter.
@@ -112,7 +112,7 @@ fn wait_for_holder(
         }
         last_holder = Some(holder);
         thread::sleep(pause);
-        pause = LAST_PAUSE.min(pause * 2);
+        pause = MAX_PAUSE.min(pause * 2);
     }
 }
 

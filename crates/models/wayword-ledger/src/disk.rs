@@ -35,7 +35,7 @@ const FUSE_TYPE_NUMBER: u32 = 0x6573_5546;
 
 /// Mount types of FUSE network file systems, without `fuse.`. Any other type counts as local, as encrypted folders and
 /// NTFS are. 9p counts as local too, because sandboxes and virtual machines use it for the machine's own disk.
-const NETWORKS_BY_FUSE: [&str; 19] = [
+const FUSE_NETWORK_TYPES: [&str; 19] = [
     "sshfs",
     "glusterfs",
     "ceph",
@@ -73,7 +73,7 @@ fn network_file_system(number: u32, mounted_as: Option<&str>) -> Option<&'static
         return NETWORK_FILE_SYSTEM_TYPES.iter().find(|(known, _)| *known == number).map(|(_, name)| *name);
     }
     let served = mounted_as.map(|name| name.strip_prefix("fuse.").unwrap_or(name))?;
-    NETWORKS_BY_FUSE.iter().find(|known| **known == served).copied()
+    FUSE_NETWORK_TYPES.iter().find(|known| **known == served).copied()
 }
 
 #[cfg(target_os = "linux")]

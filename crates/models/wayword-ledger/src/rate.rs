@@ -6,7 +6,7 @@ use std::{
 };
 
 /// A waiting thread checks at this interval whether it was stopped.
-const LOOK_UP: Duration = Duration::from_millis(100);
+const STOP_CHECK_INTERVAL: Duration = Duration::from_millis(100);
 
 /// The rates for a provider that the user has set.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -23,7 +23,7 @@ pub(crate) fn wait_until(due: Instant, stopped: impl Fn() -> bool) -> bool {
         match due.saturating_duration_since(Instant::now()) {
             Duration::ZERO => return true,
             _ if stopped() => return false,
-            remaining => thread::sleep(remaining.min(LOOK_UP)),
+            remaining => thread::sleep(remaining.min(STOP_CHECK_INTERVAL)),
         }
     }
 }

@@ -8,7 +8,7 @@ use std::{
 };
 
 /// Longest line of a recording, bytes. A longer line is refused when it is read or written.
-pub(crate) const MOST_LINE_BYTES: u64 = 16 << 20;
+pub(crate) const MAX_LINE_BYTES: u64 = 16 << 20;
 
 /// Passes every call of a recording to `take`. The lines may come from a run, an export or a worker.
 pub(crate) fn read_recording(path: &Path, take: impl Fn(LedgerEntry)) -> Result<(), LedgerError> {
@@ -19,14 +19,14 @@ pub(crate) fn read_recording(path: &Path, take: impl Fn(LedgerEntry)) -> Result<
     for line in 1.. {
         let broken = |reason: String| LedgerError::Recording { path: path.to_owned(), line, reason };
         bytes.clear();
-        reader.by_ref().take(MOST_LINE_BYTES + 1).read_until(b'\n', &mut bytes).map_err(&failed)?;
+        reader.by_ref().take(MAX_LINE_BYTES + 1).read_until(b'\n', &mut bytes).map_err(&failed)?;
         // A chunk's file may end in the middle of a line, because its worker crashed or is still writing. That line is not used.
         let is_torn = is_chunk && bytes.last() != Some(&b'\n');
         if bytes.is_empty() || is_torn {
             break;
         }
-        if bytes.len() as u64 > MOST_LINE_BYTES {
-            return Err(broken(format!("it is longer than {} MiB", MOST_LINE_BYTES >> 20)));
+        if bytes.len() as u64 > MAX_LINE_BYTES {
+            return Err(broken(format!("it is longer than {} MiB", MAX_LINE_BYTES >> 20)));
         }
         if ChunkEntry::is_line(&bytes) {
             is_chunk = true;

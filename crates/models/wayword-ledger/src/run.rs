@@ -19,7 +19,7 @@ use std::{
 
 /// How many turns in a row a request may miss, because the database answered after the turn was over. If it misses more, the
 /// database is too slow for a common rate.
-const MOST_MISSED: usize = 100;
+const MAX_MISSED_TURNS: usize = 100;
 
 /// A run's use of a ledger: its limits, its spending, and whether it was stopped. Clones share one run.
 #[derive(Debug, Clone)]
@@ -251,7 +251,7 @@ impl LedgerRun {
         stopped: impl Fn() -> bool,
     ) -> Result<bool, LedgerError> {
         let store = self.ledger.store();
-        for _ in 0..MOST_MISSED {
+        for _ in 0..MAX_MISSED_TURNS {
             if stopped() {
                 return Ok(false);
             }

@@ -12,7 +12,7 @@ use wayword_ledger::{CallAnswer, LedgerRun, ModelCall, OnceError, RequestRefused
 
 /// An in-process model behind the ledger: a request that was answered before gets the answer from there.
 pub struct LocalModel {
-    kept: CallLedger,
+    calls: CallLedger,
     /// The model itself. An "eye" is a model that looks at pictures (the role `see`).
     eye: Arc<dyn PictureModel>,
 }
@@ -24,7 +24,7 @@ pub(crate) struct CallLedger {
     /// The identity of the weights and their precision. It is part of a call's key, because it may change the answer.
     pub(crate) origin: String,
     /// Locked during a call: each call uses all threads, and two at once would need twice the memory.
-    turn: Mutex<()>,
+    call_lock: Mutex<()>,
     run: LedgerRun,
 }
 
@@ -41,7 +41,7 @@ enum LocalCallError {
 
 impl LocalModel {
     pub(crate) fn new(name: &str, origin: String, eye: Arc<dyn PictureModel>, run: LedgerRun) -> Self {
-        Self { kept: CallLedger::new(name, origin, run), eye }
+        Self { calls: CallLedger::new(name, origin, run), eye }
     }
 
     /// The form of request that the model takes.
@@ -53,13 +53,13 @@ impl LocalModel {
     /// The identity of the weights, and their precision.
     #[must_use]
     pub fn origin(&self) -> &str {
-        &self.kept.origin
+        &self.calls.origin
     }
 
     /// The reply to one request, from the ledger or from the model.
     fn complete_one(&self, request: &ModelRequest) -> Result<ModelReply, ModelError> {
-        let answer = self.kept.answer_once(request_json(request), request.replicate, || {
-            let failed = |reason| ModelError::Failed { model: self.kept.name.clone(), reason };
+        let answer = self.calls.answer_once(request_json(request), request.replicate, || {
+            let failed = |reason| ModelError::Failed { model: self.calls.name.clone(), reason };
             self.eye.reply_to(request).map_err(|error| failed(error.to_string()))
         });
         answer.map(reply_from_answer)
@@ -84,7 +84,7 @@ fn request_json(request: &ModelRequest) -> Value {
 
 impl CallLedger {
     pub(crate) fn new(name: &str, origin: String, run: LedgerRun) -> Self {
-        Self { name: name.to_owned(), origin, turn: Mutex::new(()), run }
+        Self { name: name.to_owned(), origin, call_lock: Mutex::new(()), run }
     }
 
     /// The answer to a request: the one in the ledger, or else a computed one, which the ledger then keeps.
@@ -96,7 +96,7 @@ impl CallLedger {
     ) -> Result<CallAnswer, ModelError> {
         let call = ModelCall { model: self.name.clone(), base_url: self.origin.clone(), request, replicate };
         let answer = self.run.answer_once(&call, |attempts| {
-            let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
+            let _turn = self.call_lock.lock().unwrap_or_else(PoisonError::into_inner);
             attempts.begin_request(Some(0.0)).map_err(LocalCallError::Refused)?;
             let begun = Instant::now();
             Ok(ledger_answer(compute().map_err(LocalCallError::Failed)?, begun))
@@ -125,7 +125,7 @@ impl CallLedger {
 
 impl LanguageModel for LocalModel {
     fn name(&self) -> &str {
-        &self.kept.name
+        &self.calls.name
     }
 
     fn complete_requests(&self, requests: &[ModelRequest]) -> Vec<Result<ModelReply, ModelError>> {

@@ -38,12 +38,12 @@ pub(crate) fn read_if_there<T: DeserializeOwned>(folder: &Path, name: &str) -> R
 
 /// The largest size that a configuration may have, such as a number of words or of channels. Larger ones could overflow
 /// computations.
-const LARGEST_SIZE: usize = 1 << 20;
+const MAX_CONFIG_SIZE: usize = 1 << 20;
 
 /// The problem with the sizes of a configuration, if one is 0 or too large. Each size comes with its name.
 pub(crate) fn size_problem(sizes: &[(&str, usize)]) -> Option<String> {
-    let (name, size) = sizes.iter().find(|(_, size)| !(1..=LARGEST_SIZE).contains(size))?;
-    Some(format!("{name}: {size} is not from 1 to {LARGEST_SIZE}"))
+    let (name, size) = sizes.iter().find(|(_, size)| !(1..=MAX_CONFIG_SIZE).contains(size))?;
+    Some(format!("{name}: {size} is not from 1 to {MAX_CONFIG_SIZE}"))
 }
 
 #[cfg(test)]

@@ -16,15 +16,15 @@ const BASE_MEMORY_BYTES: u64 = 300 << 20;
 #[derive(Debug, Default)]
 pub(crate) struct MemoryBudget {
     /// The user's limit for all models together, bytes.
-    most: Option<u64>,
+    limit_bytes: Option<u64>,
     /// What the models loaded so far need together, bytes.
-    taken: u64,
+    taken_bytes: u64,
 }
 
 impl MemoryBudget {
     /// A budget of `most` bytes. Without a number, the limit is the free memory of the machine when a model is loaded.
     pub(crate) fn new(most: Option<u64>) -> Self {
-        Self { most, taken: 0 }
+        Self { limit_bytes: most, taken_bytes: 0 }
     }
 
     /// Reserves the memory for a checkpoint with `weights` bytes of weights. Fails if the rest of the budget is too
@@ -33,8 +33,8 @@ impl MemoryBudget {
         let needed = weights
             .saturating_add(weights / WORKING_MEMORY_SHARE.1 * WORKING_MEMORY_SHARE.0)
             .saturating_add(BASE_MEMORY_BYTES);
-        let available = match self.most {
-            Some(most) => most.saturating_sub(self.taken),
+        let available = match self.limit_bytes {
+            Some(most) => most.saturating_sub(self.taken_bytes),
             // Earlier models have already reduced the free memory, so `taken` is not subtracted.
             None => free_memory_bytes().unwrap_or(u64::MAX),
         };
@@ -46,7 +46,7 @@ impl MemoryBudget {
             );
             return Err(LocalError::Compute { model: name.to_owned(), problem });
         }
-        self.taken = self.taken.saturating_add(needed);
+        self.taken_bytes = self.taken_bytes.saturating_add(needed);
         Ok(())
     }
 }

@@ -9,7 +9,7 @@ use wayword_core::{Image, ModelRequest};
 
 /// The most tokens of an answer, also where a request allows more. These models were trained on short answers, and
 /// repeat themselves in longer ones.
-const MOST_TOKENS: u32 = 40;
+const MAX_ANSWER_TOKENS: u32 = 40;
 
 /// The question that asks for a description, for a model that only answers questions.
 const DESCRIBE_QUESTION: &str = "what is in the picture?";
@@ -46,7 +46,7 @@ impl PictureModel for BlipEye {
 
     fn reply_to(&self, request: &ModelRequest) -> Result<String, LocalError> {
         let (picture, words) = picture_and_words(&self.name, request)?;
-        let max_tokens = request.sampling.max_tokens.min(MOST_TOKENS) as usize;
+        let max_tokens = request.sampling.max_tokens.min(MAX_ANSWER_TOKENS) as usize;
         match (&self.answers, &self.describes, words.is_empty()) {
             (_, Some(describes), true) => describes.describe_picture(picture, "", max_tokens),
             (Some(answers), _, false) => answers.answer_question(picture, words, max_tokens),
@@ -78,7 +78,7 @@ impl PictureModel for Blip2Eye {
 
     fn reply_to(&self, request: &ModelRequest) -> Result<String, LocalError> {
         let (picture, words) = picture_and_words(&self.name, request)?;
-        let max_tokens = request.sampling.max_tokens.min(MOST_TOKENS) as usize;
+        let max_tokens = request.sampling.max_tokens.min(MAX_ANSWER_TOKENS) as usize;
         self.model.continue_prompt(picture, words, max_tokens)
     }
 }

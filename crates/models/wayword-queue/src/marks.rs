@@ -12,7 +12,7 @@ use std::{
 /// The folder of chunks and their marks in a run folder.
 pub(crate) const CHUNKS_FOLDER: &str = "chunks";
 /// Largest mark that is read, bytes. A larger file is an error.
-const MOST_BYTES: u64 = 1 << 20;
+const MAX_MARK_BYTES: u64 = 1 << 20;
 
 /// The record of a finished chunk. Times, names and costs are here and not in the results, so that the
 /// results do not depend on the worker that made them.
@@ -95,7 +95,7 @@ pub(crate) fn to_bytes(path: &Path, value: &impl Serialize) -> Result<Vec<u8>, Q
 pub(crate) fn from_file<T: serde::de::DeserializeOwned>(path: &Path) -> Result<Option<T>, QueueError> {
     let broken = |problem: String| QueueError::Broken { path: path.to_owned(), problem };
     match fs::metadata(path) {
-        Ok(about) if about.len() > MOST_BYTES => return Err(broken("it is larger than 1 MiB".to_owned())),
+        Ok(about) if about.len() > MAX_MARK_BYTES => return Err(broken("it is larger than 1 MiB".to_owned())),
         Ok(_) => {}
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(source) => return Err(QueueError::Io { path: path.to_owned(), doing: "read", source }),

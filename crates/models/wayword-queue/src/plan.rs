@@ -12,7 +12,7 @@ pub const WORKERS_FILE: &str = "workers.json";
 /// The version of the plan's format that this program writes and reads.
 const PLAN_FORMAT: u32 = 1;
 /// Largest plan that is read, bytes: enough for ten million items.
-const MOST_BYTES: u64 = 1 << 30;
+const MAX_PLAN_BYTES: u64 = 1 << 30;
 
 /// Everything that all workers of a run must agree on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -65,7 +65,7 @@ impl ChunkPlan {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(source) => return Err(QueueError::Io { path, doing: "read", source }),
         };
-        if !about.is_file() || about.len() > MOST_BYTES {
+        if !about.is_file() || about.len() > MAX_PLAN_BYTES {
             return Err(broken("this is no plan, or one of more than 1 GiB".to_owned()));
         }
         let bytes = fs::read(&path).map_err(QueueError::for_file(&path, "read"))?;

@@ -87,16 +87,16 @@ UPDATE wayword_queue.chunks SET state = 'done', done = $4, since = now()
 WHERE run = $1 AND chunk = $2 AND epoch = $3 AND state = 'running'";
 
 /// Whether a chunk was finished under epoch `$3`.
-const IS_DONE: &str = "
+const IS_DONE_SQL: &str = "
 SELECT 1 FROM wayword_queue.chunks WHERE run = $1 AND chunk = $2 AND epoch = $3 AND state = 'done'";
 
 /// Opens a chunk again, without counting the try, if epoch `$3` is still its latest claim.
-const HAND_BACK: &str = "
+const HAND_BACK_SQL: &str = "
 UPDATE wayword_queue.chunks SET state = 'open', tries = tries - 1
 WHERE run = $1 AND chunk = $2 AND epoch = $3 AND state = 'running'";
 
 /// Opens a chunk again after a failure, or gives it up after `$4` tries, if epoch `$3` is still its latest claim.
-const GIVE_UP: &str = "
+const GIVE_UP_SQL: &str = "
 UPDATE wayword_queue.chunks SET state = CASE WHEN tries >= $4 THEN 'dead' ELSE 'open' END, reason = $5, retries = retries + 1
 WHERE run = $1 AND chunk = $2 AND epoch = $3 AND state = 'running'";
 
@@ -372,7 +372,7 @@ impl ChunkBoard for ChunkQueue {
         // No row changed. Perhaps an earlier try of this statement was carried out, and its answer got lost.
         let chunk = chunk_number(claimed.chunk);
         let done_rows = self.pool.with_connection("ask for a chunk", |connection| {
-            connection.query_rows(IS_DONE, &[&self.run, &chunk, &claimed.epoch])
+            connection.query_rows(IS_DONE_SQL, &[&self.run, &chunk, &claimed.epoch])
         })?;
         if done_rows.is_empty() {
             return Ok(false);
@@ -382,11 +382,11 @@ impl ChunkBoard for ChunkQueue {
     }
 
     fn hand_back(&self, claimed: ChunkClaim) -> Result<(), QueueError> {
-        self.change_chunk("hand a chunk back", HAND_BACK, claimed, &[]).map(drop)
+        self.change_chunk("hand a chunk back", HAND_BACK_SQL, claimed, &[]).map(drop)
     }
 
     fn give_up(&self, claimed: ChunkClaim, reason: &str) -> Result<(), QueueError> {
-        self.change_chunk("give a chunk up", GIVE_UP, claimed, &[&MAX_CHUNK_TRIES, &reason]).map(drop)
+        self.change_chunk("give a chunk up", GIVE_UP_SQL, claimed, &[&MAX_CHUNK_TRIES, &reason]).map(drop)
     }
 
     fn count_remaining(&self) -> Result<RemainingChunks, QueueError> {

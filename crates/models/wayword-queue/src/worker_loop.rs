@@ -4,9 +4,9 @@ use crate::{ChunkBoard, ChunkClaim, ChunkRecord, QueueError};
 use std::{thread, time::Duration};
 
 /// How often a worker asks again while others still have chunks, which come back if they die.
-const ASK_AGAIN: Duration = Duration::from_secs(2);
+const ASK_AGAIN_INTERVAL: Duration = Duration::from_secs(2);
 /// How often a waiting worker checks whether it has to stop.
-const LOOK_UP: Duration = Duration::from_millis(100);
+const STOP_CHECK_INTERVAL: Duration = Duration::from_millis(100);
 
 /// How a worker's attempt to make a chunk ended. `S` is the reason for which a worker stops, as the caller defines it.
 #[derive(Debug)]
@@ -73,11 +73,11 @@ pub fn work_chunks<S, E: From<QueueError>>(
     }
 }
 
-/// Waits for [`ASK_AGAIN`], or until the worker has to stop.
+/// Waits for [`ASK_AGAIN_INTERVAL`], or until the worker has to stop.
 fn wait_or_stop<S>(stopped: &impl Fn() -> Option<S>) {
-    let mut remaining = ASK_AGAIN;
+    let mut remaining = ASK_AGAIN_INTERVAL;
     while !remaining.is_zero() && stopped().is_none() {
-        thread::sleep(LOOK_UP);
-        remaining = remaining.saturating_sub(LOOK_UP);
+        thread::sleep(STOP_CHECK_INTERVAL);
+        remaining = remaining.saturating_sub(STOP_CHECK_INTERVAL);
     }
 }

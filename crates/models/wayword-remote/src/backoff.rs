@@ -4,17 +4,17 @@ use std::time::Duration;
 use wayword_core::seed;
 
 /// Wait before the second attempt, seconds. It doubles with each further attempt.
-const FIRST_S: f64 = 0.3;
+const FIRST_WAIT_S: f64 = 0.3;
 
 /// Longest wait that the program chooses itself, seconds. A server may ask for a longer one.
-const LONGEST_S: f64 = 30.0;
+const MAX_WAIT_S: f64 = 30.0;
 
 /// A wait that doubles with each attempt, minus up to half of it. The reduction depends only on the call's key and the
 /// attempt, so that a run is repeatable and calls that failed together are not repeated together.
 pub(crate) fn backoff_wait(key: &str, attempt: u32) -> Duration {
     // 16 doublings are far beyond the longest wait, and keep the power from overflowing.
-    let whole = FIRST_S * f64::from(2_u32.saturating_pow(attempt.saturating_sub(1).min(16)));
-    Duration::from_secs_f64(whole.min(LONGEST_S) * (1.0 - 0.5 * wait_fraction(key, attempt)))
+    let whole = FIRST_WAIT_S * f64::from(2_u32.saturating_pow(attempt.saturating_sub(1).min(16)));
+    Duration::from_secs_f64(whole.min(MAX_WAIT_S) * (1.0 - 0.5 * wait_fraction(key, attempt)))
 }
 
 /// A wait that is up to a quarter of a second longer than the server asked for, so that not all calls are repeated at

@@ -19,15 +19,15 @@ use std::{
 use wayword_ledger::{CallAnswer, CallAttempts, LedgerError, LedgerRun, RequestRefusedError};
 
 /// How often a thread that waits for its next attempt checks whether the run was stopped.
-const LOOK_UP: Duration = Duration::from_millis(100);
+const STOP_CHECK_INTERVAL: Duration = Duration::from_millis(100);
 
 /// How many times the program asks again after an empty answer.
-const EMPTY_AGAIN: u32 = 1;
+const MAX_EMPTY_ANSWER_RETRIES: u32 = 1;
 
 /// More tokens than any model takes or gives at once. A service that reports more is wrong, and the program estimates
 /// the tokens instead. If it believed the service, all money would count as spent, and the limit on tokens would delay
 /// every request for years.
-const MOST_TOKENS: u64 = 20_000_000;
+const MAX_PLAUSIBLE_TOKENS: u64 = 20_000_000;
 
 /// A call that is ready to be sent.
 pub(crate) struct PreparedCall<'a> {
@@ -152,11 +152,15 @@ impl PreparedCall<'_> {
                 }
             };
             let retry = self.give_up_or(fault, attempts)?;
-            if attempt >= self.attempts || empty > EMPTY_AGAIN {
+            if attempt >= self.attempts || empty > MAX_EMPTY_ANSWER_RETRIES {
                 let times = if attempt == 1 { "1 attempt".to_owned() } else { format!("{attempt} attempts") };
                 let reason = format!("{} ({times})", retry.reason);
                 // A service that gives empty answers is there, so the call is not lost.
-                return Err(if empty > EMPTY_AGAIN { CallError::Failed(reason) } else { CallError::Lost(reason) });
+                return Err(if empty > MAX_EMPTY_ANSWER_RETRIES {
+                    CallError::Failed(reason)
+                } else {
+                    CallError::Lost(reason)
+                });
             }
             // Even if the service asks for short waits, the waits become longer and longer.
             let requested = retry.after.map_or(Duration::ZERO, |requested| wait_after(requested, self.key, attempt));
@@ -195,7 +199,7 @@ impl PreparedCall<'_> {
         while !self.run.is_stopped() && self.endpoint.closed_reason().is_none() {
             match until.saturating_duration_since(Instant::now()) {
                 Duration::ZERO => return,
-                remaining => thread::sleep(remaining.min(LOOK_UP)),
+                remaining => thread::sleep(remaining.min(STOP_CHECK_INTERVAL)),
             }
         }
     }
@@ -275,7 +279,7 @@ impl PreparedCall<'_> {
 
     /// Tokens in and out. Estimated where the service reports no number, or an impossible one.
     fn count_tokens(&self, reply: &DialectReply) -> (u64, u64) {
-        let plausible = |tokens: Option<u64>| tokens.filter(|tokens| *tokens <= MOST_TOKENS);
+        let plausible = |tokens: Option<u64>| tokens.filter(|tokens| *tokens <= MAX_PLAUSIBLE_TOKENS);
         let tokens_out = || reply.text.chars().count() as u64 / 4;
         (
             plausible(reply.tokens_in).unwrap_or_else(|| self.size.tokens_in()),

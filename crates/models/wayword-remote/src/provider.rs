@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 const BUILT_IN: &str = include_str!("provider.toml");
 
 /// Longest name of a model, bytes. A longer one is refused.
-const LONGEST_NAME: usize = 200;
+const MAX_NAME_BYTES: usize = 200;
 
 /// A provider with all its settings. The fields are those of [`ProviderConfig`], with defaults filled in.
 #[derive(Debug, Clone)]
@@ -48,8 +48,10 @@ pub(crate) fn built_in() -> BTreeMap<String, ProviderConfig> {
 pub(crate) fn split_name(name: &str) -> Result<(&str, &str), ConfigError> {
     let odd = |part: &str| part.is_empty() || part.chars().any(|c| c.is_whitespace() || c.is_control());
     match name.split_once('/') {
-        Some((provider, model)) if name.len() <= LONGEST_NAME && !odd(provider) && !odd(model) => Ok((provider, model)),
-        _ => Err(ConfigError::Name(name.chars().take(LONGEST_NAME).collect())),
+        Some((provider, model)) if name.len() <= MAX_NAME_BYTES && !odd(provider) && !odd(model) => {
+            Ok((provider, model))
+        }
+        _ => Err(ConfigError::Name(name.chars().take(MAX_NAME_BYTES).collect())),
     }
 }
 

@@ -7,7 +7,7 @@ const KEY_MASK: &str = "***";
 
 /// The shortest key that is removed from texts, bytes. Shorter keys are placeholders of local servers ("none",
 /// "EMPTY"). Removing them from every text would damage the text.
-const SHORTEST_SCRUBBED: usize = 8;
+const MIN_SCRUBBED_KEY_BYTES: usize = 8;
 
 /// A key. Neither `Debug` nor `Display` shows it.
 #[derive(Clone, PartialEq, Eq)]
@@ -48,7 +48,11 @@ impl ServiceSecret {
 
     /// A text with the key removed.
     pub(crate) fn scrub_key(&self, text: String) -> String {
-        if self.0.len() >= SHORTEST_SCRUBBED && text.contains(&self.0) { text.replace(&self.0, KEY_MASK) } else { text }
+        if self.0.len() >= MIN_SCRUBBED_KEY_BYTES && text.contains(&self.0) {
+            text.replace(&self.0, KEY_MASK)
+        } else {
+            text
+        }
     }
 }
 

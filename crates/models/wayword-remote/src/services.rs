@@ -15,13 +15,13 @@ use std::{
 use wayword_ledger::LedgerRun;
 
 /// Longest timeout of an attempt that a user may set, seconds.
-const LONGEST_TIMEOUT_S: f64 = 3600.0;
+const MAX_TIMEOUT_S: f64 = 3600.0;
 
 /// The most requests at once that a user may set.
-const MOST_CONCURRENCY: usize = 4096;
+const MAX_CONCURRENCY: usize = 4096;
 
 /// The longest side of a picture that a user may set, pixels.
-const LARGEST_PICTURE_PX: u32 = 8192;
+const MAX_PICTURE_PX: u32 = 8192;
 
 /// Finds models by their names. Models of one provider share its connections and limits.
 pub struct ModelServices {
@@ -42,14 +42,14 @@ impl ModelServices {
         let max_in_flight = match config.concurrency {
             RequestConcurrency::Fixed(most) | RequestConcurrency::Adaptive { most } => most,
         };
-        if !(1..=MOST_CONCURRENCY).contains(&max_in_flight) {
+        if !(1..=MAX_CONCURRENCY).contains(&max_in_flight) {
             return wrong("concurrency", "must be from 1 to 4096");
         }
-        if !(1..=LARGEST_PICTURE_PX).contains(&config.picture_px) {
+        if !(1..=MAX_PICTURE_PX).contains(&config.picture_px) {
             return wrong("picture_px", "must be from 1 to 8192");
         }
         // NaN is not above 0 either.
-        if !(config.timeout_s > 0.0 && config.timeout_s <= LONGEST_TIMEOUT_S) {
+        if !(config.timeout_s > 0.0 && config.timeout_s <= MAX_TIMEOUT_S) {
             return wrong("timeout_s", "must be above 0 and at most 3600");
         }
         if config.attempts == 0 {

@@ -9,7 +9,7 @@ use ureq::{
 };
 
 /// Largest body that is read, bytes; a larger one is an error. A reply of text has about a thousandth of this.
-pub(crate) const LARGEST_BODY: u64 = 8 << 20;
+pub(crate) const MAX_BODY_BYTES: u64 = 8 << 20;
 
 /// Longest wait for a connection, after which the request fails.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
@@ -74,6 +74,6 @@ impl HttpTransport {
 /// Reads status, headers and body. An error in the body leaves status and headers readable.
 fn read_response(response: Response<ureq::Body>) -> HttpResponse {
     let (head, mut body) = response.into_parts();
-    let body = body.with_config().limit(LARGEST_BODY).read_to_vec();
+    let body = body.with_config().limit(MAX_BODY_BYTES).read_to_vec();
     HttpResponse { status: head.status.as_u16(), headers: head.headers, body }
 }

@@ -1,7 +1,7 @@
 //! Follows a text through a building with the rules of `wayword-follower`. Finds turns that are wrong, whether the text leads to
 //! another place than its path, and how many places it may mean.
 
-use crate::{error::CommandError, platforms::SCENES_KEPT};
+use crate::{error::CommandError, platforms::MAX_KEPT_SURVEYS};
 use serde::Serialize;
 use std::{
     collections::BTreeSet,
@@ -27,11 +27,11 @@ pub(crate) struct KnownScene {
     /// Its viewpoints.
     pub(crate) survey: ViewpointSurvey,
     /// Its listed objects, for the checks.
-    pub(crate) listed: Arc<wayword_checks::BuildingInventory>,
+    pub(crate) inventory: Arc<wayword_checks::BuildingInventory>,
     /// The same list, for the description of a target.
     pub(crate) listing: BuildingListing,
     /// The building as the follower knows it: viewpoints, rooms and things.
-    pub(crate) followed: KnownBuilding,
+    pub(crate) building: KnownBuilding,
 }
 
 /// A cache of the scenes that were surveyed last.
@@ -41,7 +41,7 @@ impl KnownScenes {
     /// An empty cache.
     #[must_use]
     pub fn new() -> Self {
-        Self(RecentCache::new(SCENES_KEPT))
+        Self(RecentCache::new(MAX_KEPT_SURVEYS))
     }
 
     /// A scene, surveyed if it is not known. It has no viewpoints where the platform has no graph.
@@ -55,7 +55,7 @@ impl KnownScenes {
             let listed = Arc::new(wayword_checks::BuildingInventory::from_survey(&survey));
             let followed = KnownBuilding::from_survey(&survey);
             let listing = BuildingListing::from_survey(&survey);
-            Ok(KnownScene { survey, listed, listing, followed })
+            Ok(KnownScene { survey, inventory: listed, listing, building: followed })
         })
     }
 }
@@ -126,7 +126,7 @@ impl<'a> FollowedPath<'a> {
     /// With the reason, where its motion is unknown, or it goes nowhere.
     pub(crate) fn new(scene: Option<&'a KnownScene>, path: &Path, evidence: &Evidence) -> Result<Self, &'static str> {
         if !path.motion.is_known() {
-            return Err(GOES_UNKNOWN);
+            return Err(UNKNOWN_MOTION_REASON);
         }
         let [first, _, ..] = &path.frames[..] else { return Err("its path is one place, so it goes nowhere") };
         let heading_rad = first.pose.heading.rad();
@@ -185,7 +185,7 @@ impl<'a> FollowedPath<'a> {
 
     pub(crate) fn known_path(&self) -> KnownWalk<'_> {
         let building = match &self.place {
-            FollowedPlace::Graph(scene) => &scene.followed,
+            FollowedPlace::Graph(scene) => &scene.building,
             FollowedPlace::PathAlone(building) => building,
         };
         KnownWalk { building, walk: &self.walk, heading_rad: self.heading_rad }
@@ -235,7 +235,7 @@ fn is_understood(reading: &TextReading, tag: Option<&str>) -> bool {
 }
 
 /// The reason that is given for a path without poses, which cannot be followed.
-pub(crate) const GOES_UNKNOWN: &str = "it is not known how its path goes";
+pub(crate) const UNKNOWN_MOTION_REASON: &str = "it is not known how its path goes";
 
 fn unknown_route(why: &str) -> CheckFinding {
     let reason = format!("the program cannot check whether the text leads elsewhere: {why}");

@@ -16,9 +16,9 @@ pub fn core_count() -> usize {
 }
 
 /// Calls its function if it is dropped during a panic.
-struct AtTheEnd<'a>(&'a dyn Fn());
+struct PanicAction<'a>(&'a dyn Fn());
 
-impl Drop for AtTheEnd<'_> {
+impl Drop for PanicAction<'_> {
     fn drop(&mut self) {
         if thread::panicking() {
             (self.0)();
@@ -70,13 +70,13 @@ pub fn in_order<I: Sync, R: Send, E>(
     let stop = || update(&|progress| progress.stopped = true);
     thread::scope(|scope| {
         // Workers must not wait for room after `keep` has panicked.
-        let _last = AtTheEnd(&stop);
+        let _last = PanicAction(&stop);
         let (sender, results) = mpsc::channel();
         for _ in 0..workers {
             let (sender, take, make, stop) = (sender.clone(), &take, &make, &stop);
             scope.spawn(move || {
                 // Without this, a panic in one worker would leave the others waiting for its item for ever.
-                let _last = AtTheEnd(stop);
+                let _last = PanicAction(stop);
                 while let Some(at) = take() {
                     // The receiver is gone once `keep` has returned `false`.
                     let _ = sender.send((at, make(&items[at])));

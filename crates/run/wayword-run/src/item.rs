@@ -107,7 +107,7 @@ fn random_items(settings: &RunSettings, platform: &dyn Platform) -> Result<Vec<R
     };
     let number_of_scenes = scenes.len();
     let items: Vec<RunItem> = (0..settings.paths).map(item).collect();
-    if platform.name() == RECORDING_PLATFORM && number_of_scenes <= MOST_LOOKED_AT {
+    if platform.name() == RECORDING_PLATFORM && number_of_scenes <= MAX_COMPARED_RECORDINGS {
         return Ok(without_repeats(items, settings, platform));
     }
     Ok(items)
@@ -116,7 +116,7 @@ fn random_items(settings: &RunSettings, platform: &dyn Platform) -> Result<Vec<R
 /// The platform with random paths that may all be equal: of a short recording, each path is the whole.
 const RECORDING_PLATFORM: &str = "recording";
 /// With more recordings than this, equal paths are not searched for, because all recordings would have to be opened.
-const MOST_LOOKED_AT: usize = 8;
+const MAX_COMPARED_RECORDINGS: usize = 8;
 
 /// Removes items with the same path as an earlier item. Items without a path stay, so that the run reports the reason.
 fn without_repeats(items: Vec<RunItem>, settings: &RunSettings, platform: &dyn Platform) -> Vec<RunItem> {

@@ -88,7 +88,7 @@ impl DetectorLookout {
 
     /// Roughly how many calls a view takes: one if all names go into one prompt, else one for each name.
     pub(crate) fn calls_per_view(&self) -> u64 {
-        if self.detector.scoring().phrases_meet { 1 } else { (self.nouns.len() + CAPTION_NAMES_PER_PATH) as u64 }
+        if self.detector.scoring().phrases_interact { 1 } else { (self.nouns.len() + CAPTION_NAMES_PER_PATH) as u64 }
     }
 
     /// The detector's name.
@@ -126,7 +126,7 @@ pub(crate) fn proposed_names(settings: &RunSettings, styles: &[MeasuredStyle]) -
 
 /// The measured figures of a detector, or assumed ones if there is no file.
 fn figures_or_assumed(file: Option<&Path>, detector: &dyn ObjectDetector) -> Result<DetectorFigures, CommandError> {
-    let (name, found_from) = (detector.name(), detector.scoring().found_from);
+    let (name, found_from) = (detector.name(), detector.scoring().find_threshold);
     Ok(read_figures(file, name)?.unwrap_or_else(|| DetectorFigures::for_unmeasured(name, found_from)))
 }
 

@@ -46,7 +46,7 @@ impl fmt::Debug for CommandOutput {
 
 /// Longest error that is printed, characters, because parsers quote the whole line that they fail on. The rest is cut
 /// off.
-const MOST_ERROR_CHARS: usize = 1000;
+const MAX_ERROR_CHARS: usize = 1000;
 
 /// A text without control characters. Every text from a model, a server, a child process or a file goes through here before it is
 /// printed.
@@ -56,8 +56,8 @@ pub(crate) fn tame_text(text: &str) -> String {
 
 /// As [`tame_text`], for an error; a long one is cut.
 fn tame_error(text: &str) -> String {
-    let mut tamed = tame_text(&text.chars().take(MOST_ERROR_CHARS).collect::<String>());
-    if text.chars().nth(MOST_ERROR_CHARS).is_some() {
+    let mut tamed = tame_text(&text.chars().take(MAX_ERROR_CHARS).collect::<String>());
+    if text.chars().nth(MAX_ERROR_CHARS).is_some() {
         tamed.push_str(" ...");
     }
     tamed
@@ -240,7 +240,7 @@ mod tests {
     #[test]
     fn errors_are_fit_for_a_terminal() {
         assert_eq!(tame_text("a\x1b[31mb\nc"), "a\u{fffd}[31mb\nc");
-        assert_eq!(tame_error(&"x".repeat(5000)).chars().count(), MOST_ERROR_CHARS + 4);
+        assert_eq!(tame_error(&"x".repeat(5000)).chars().count(), MAX_ERROR_CHARS + 4);
     }
 
     #[test]

@@ -55,10 +55,10 @@ pub fn picture_file(folder: &Path, item: &str, frame: usize) -> PathBuf {
 }
 
 /// Largest picture that is read, bytes. A larger one counts as missing.
-pub const MOST_BYTES: u64 = 4 << 20;
+pub const MAX_PICTURE_BYTES: u64 = 4 << 20;
 /// Largest side of a picture that is read, pixels, because a small file can hold a picture that fills the memory. A
 /// larger picture counts as missing.
-pub const MOST_SIDE_PX: u32 = 4096;
+pub const MAX_PICTURE_SIDE_PX: u32 = 4096;
 
 /// A picture as it lies in a run's folder.
 pub struct StoredPicture {
@@ -75,14 +75,14 @@ pub fn read_picture(folder: &Path, item: &str, frame: usize, most_bytes: u64) ->
     let path = file_inside(folder, &format!("{item}_{frame}.jpg"))?;
     // Links are not followed, because one could lead out of the folder.
     let found = fs::symlink_metadata(&path).ok()?;
-    if !found.is_file() || found.len() > MOST_BYTES.min(most_bytes) {
+    if !found.is_file() || found.len() > MAX_PICTURE_BYTES.min(most_bytes) {
         return None;
     }
     let mut jpeg = Vec::new();
-    File::open(&path).ok()?.take(MOST_BYTES).read_to_end(&mut jpeg).ok()?;
+    File::open(&path).ok()?.take(MAX_PICTURE_BYTES).read_to_end(&mut jpeg).ok()?;
     let (width_px, height_px) =
         ImageReader::with_format(Cursor::new(&jpeg), ImageFormat::Jpeg).into_dimensions().ok()?;
-    let is_fit = |side: u32| (1..=MOST_SIDE_PX).contains(&side);
+    let is_fit = |side: u32| (1..=MAX_PICTURE_SIDE_PX).contains(&side);
     (is_fit(width_px) && is_fit(height_px)).then_some(StoredPicture { jpeg, width_px, height_px })
 }
 

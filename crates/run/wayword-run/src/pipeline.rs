@@ -2,7 +2,7 @@
 
 use crate::{
     error::CommandError,
-    follow::{FollowedPath, FollowerFindings, GOES_UNKNOWN, KnownScenes, ambiguity_rejection},
+    follow::{FollowedPath, FollowerFindings, KnownScenes, UNKNOWN_MOTION_REASON, ambiguity_rejection},
     item::RunItem,
     lookout::DetectorLookout,
     parallel::at_once,
@@ -132,11 +132,11 @@ pub fn write_item(
         _ => None,
     };
     if let Some(scene) = &scene {
-        evidence.beyond = scene.listed.beyond_end(&walk.path);
+        evidence.beyond = scene.inventory.beyond_end(&walk.path);
     }
     let followed = match scene.as_deref() {
         None if evidence.motion.is_known() => Err("the texts are not checked against labels"),
-        None => Err(GOES_UNKNOWN),
+        None => Err(UNKNOWN_MOTION_REASON),
         scene => FollowedPath::new(scene, &walk.path, &evidence),
     };
     let follower = PathFollower { followed, evidence: &evidence, rejects_ambiguous: settings.reject_ambiguous };
@@ -185,7 +185,7 @@ fn write_texts(team: &RoleTeam, order: InstructionOrder<'_>, number: usize) -> R
 
 /// The most pictures that a writer is shown. From a longer path these are the first, the last, and others at equal distances
 /// between them.
-pub(crate) const MOST_SHOWN: usize = 16;
+pub(crate) const MAX_SHOWN_PICTURES: usize = 16;
 
 /// The pictures that a writer is shown.
 ///
@@ -201,7 +201,7 @@ fn shown_pictures(ahead: &[View], writer: &str) -> Result<Vec<FramePicture>, Mod
             hint: "use a platform or data folder with pictures, or leave --write-sees out",
         });
     }
-    let kept = all.len().min(MOST_SHOWN);
+    let kept = all.len().min(MAX_SHOWN_PICTURES);
     let places = (0..kept).map(|at| at * (all.len() - 1) / (kept - 1).max(1));
     Ok(places.map(|at| all[at].clone()).collect())
 }

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{Platform, PlatformError, SceneCondition, SceneId, SceneLack};
 
 /// Most scenes that are examined at the same time, because one may take some hundred megabytes of memory.
-const AT_A_TIME: usize = 4;
+const MAX_CONCURRENT_SCENES: usize = 4;
 /// From this number of scenes on, a message announces that they are being examined, because that takes a while.
 const MIN_ANNOUNCED_SCENES: usize = 20;
 /// Most scenes that an error names; it counts the others.
@@ -113,7 +113,7 @@ pub fn examine_scenes(
             Err(error) => Err(CommandError::from(error)),
         }
     };
-    in_order(scenes, core_count().min(AT_A_TIME), examine, |_, found| {
+    in_order(scenes, core_count().min(MAX_CONCURRENT_SCENES), examine, |_, found| {
         conditions.extend(found?);
         Ok::<bool, CommandError>(true)
     })?;

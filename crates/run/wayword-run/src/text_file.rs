@@ -9,7 +9,7 @@ use std::{
 use wayword_world::files;
 
 /// Largest file that is read, bytes. A larger one is refused.
-const MOST_BYTES: u64 = 4 << 20;
+const MAX_TEXT_FILE_BYTES: u64 = 4 << 20;
 
 /// The text of a file, without a byte order mark. `what` is what the program was doing, for the error ("read the settings").
 ///
@@ -23,8 +23,8 @@ pub fn read_text_file(path: &Path, what: &'static str) -> Result<String, Command
     }
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(CommandError::io(path, what))?;
-    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(CommandError::io(path, what))?;
-    if bytes.len() as u64 > MOST_BYTES {
+    file.take(MAX_TEXT_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(CommandError::io(path, what))?;
+    if bytes.len() as u64 > MAX_TEXT_FILE_BYTES {
         return Err(refusal("is larger than 4 MiB", "check that this is the right file"));
     }
     files::decode_utf8(bytes).map_err(|reason| refusal(reason, "check that this is the right file"))

@@ -6,7 +6,7 @@ use crate::{
 };
 use serde::Serialize;
 use wayword_core::{Heading, Platform, PlatformError, SceneId, ViewpointId};
-use wayword_follower::{FeatureWeights, GuideTrial, MOST_WORK, WalkFit, WalkPrior, WalkTree, walk_shares};
+use wayword_follower::{FeatureWeights, GuideTrial, MAX_FOLLOW_WORK, WalkFit, WalkPrior, WalkTree, walk_shares};
 
 /// A walk that a text may mean.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -38,11 +38,11 @@ impl KnownScenes {
             CommandError::usage(format!("the text cannot be followed: {why}"), hint)
         };
         let guide = read_guide(text, None).map_err(unfollowed)?;
-        let tree = WalkTree::from_prior(&known.followed, place, heading.rad(), WalkPrior::default());
-        if guide.len().saturating_mul(tree.len()) > MOST_WORK {
+        let tree = WalkTree::from_prior(&known.building, place, heading.rad(), WalkPrior::default());
+        if guide.len().saturating_mul(tree.len()) > MAX_FOLLOW_WORK {
             return Err(unfollowed("it has too many steps"));
         }
-        let fit = WalkFit::new(&GuideTrial::new(&guide, &known.followed), &tree, FeatureWeights::fitted());
+        let fit = WalkFit::new(&GuideTrial::new(&guide, &known.building), &tree, FeatureWeights::fitted());
         // Place 0 of the tree is the start alone, which is no walk.
         let mut by_share: Vec<(usize, f64)> = walk_shares(&fit, &tree).into_iter().enumerate().skip(1).collect();
         by_share.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));

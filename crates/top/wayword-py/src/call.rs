@@ -27,9 +27,9 @@ use wayword_run::{
 };
 
 /// How often a call checks for Ctrl-C and reports its progress.
-const LOOK_EVERY: Duration = Duration::from_millis(50);
+const LOOK_INTERVAL: Duration = Duration::from_millis(50);
 /// How long the end of the interpreter waits for a command of another thread. Then it ends without it.
-const FINISHED_WITHIN: Duration = Duration::from_secs(20);
+const FINISH_LIMIT: Duration = Duration::from_secs(20);
 /// Stack of the thread that runs a command, bytes: as much as the main thread of a program has.
 const THREAD_STACK_BYTES: usize = 8 << 20;
 
@@ -43,7 +43,7 @@ impl CommandTurn {
     /// Waits for other commands to end. A signal that Python received is raised here.
     fn wait_for_turn(py: Python<'_>) -> PyResult<Self> {
         while IS_COMMAND_RUNNING.swap(true, Ordering::Acquire) {
-            py.detach(|| thread::sleep(LOOK_EVERY));
+            py.detach(|| thread::sleep(LOOK_INTERVAL));
             py.check_signals()?;
         }
         Ok(Self)
@@ -74,7 +74,7 @@ pub(crate) fn call(py: Python<'_>, arguments: Vec<OsString>, hears: Py<PyAny>) -
     let output = CommandOutput::heard_by(Arc::clone(&heard) as Arc<dyn CommandOutputListener>);
     let exit = run_in_turn(py, &heard, &hears, || commands::run_command(cli.command, &output))?
         .map_err(|error| exception_for(py, error))?;
-    Ok((exit as u8, lock_mutex(&heard.data).take().unwrap_or_default()))
+    Ok((exit as u8, lock_mutex(&heard.result_json).take().unwrap_or_default()))
 }
 
 /// An error of the command line's parser as problem, place and hint. The usage is cut off, because Python's users type
@@ -95,20 +95,20 @@ pub(crate) fn guarded_by(program: PathBuf, arguments: Vec<OsString>) {
 #[derive(Default)]
 struct CommandListener {
     /// The result, as JSON.
-    data: Mutex<Option<String>>,
+    result_json: Mutex<Option<String>>,
     /// Messages that Python did not get yet.
-    said: Mutex<Vec<String>>,
+    messages: Mutex<Vec<String>>,
     /// The progress bar that was begun last.
     bar: Mutex<Option<ProgressBar>>,
 }
 
 impl CommandOutputListener for CommandListener {
     fn take_result(&self, json: String) {
-        *lock_mutex(&self.data) = Some(json);
+        *lock_mutex(&self.result_json) = Some(json);
     }
 
     fn take_message(&self, text: String) {
-        lock_mutex(&self.said).push(text);
+        lock_mutex(&self.messages).push(text);
     }
 
     fn take_bar(&self, bar: &ProgressBar) {
@@ -131,7 +131,7 @@ enum PythonOutcome {
 impl CommandListener {
     /// Passes the messages since the last call, and the progress, to Python.
     fn pass_to_python(&self, hears: Option<&Py<PyAny>>) -> PythonOutcome {
-        let messages = std::mem::take(&mut *lock_mutex(&self.said));
+        let messages = std::mem::take(&mut *lock_mutex(&self.messages));
         let bar = lock_mutex(&self.bar).clone();
         let outcome = Python::try_attach(|py| {
             if let Err(error) = py.check_signals() {
@@ -197,7 +197,7 @@ fn in_thread<T: Send>(
             let Ok(worker) = worker else { return (None, None) };
             let mut raised: Option<PyErr> = None;
             let mut is_ended = false;
-            while ended.recv_timeout(LOOK_EVERY) == Err(RecvTimeoutError::Timeout) {
+            while ended.recv_timeout(LOOK_INTERVAL) == Err(RecvTimeoutError::Timeout) {
                 // After an exception no more messages are passed on.
                 match heard.pass_to_python(hears.filter(|_| raised.is_none())) {
                     PythonOutcome::Well => {}
@@ -239,9 +239,9 @@ fn in_thread<T: Send>(
 #[pyfunction]
 pub(crate) fn finish(py: Python<'_>) {
     let begun = Instant::now();
-    while IS_COMMAND_RUNNING.load(Ordering::Acquire) && begun.elapsed() < FINISHED_WITHIN {
+    while IS_COMMAND_RUNNING.load(Ordering::Acquire) && begun.elapsed() < FINISH_LIMIT {
         interrupt::ask_to_stop();
-        py.detach(|| thread::sleep(LOOK_EVERY));
+        py.detach(|| thread::sleep(LOOK_INTERVAL));
     }
     py.detach(process::end_all);
 }

@@ -36,7 +36,7 @@ struct AlignmentProgress {
 #[derive(Debug, Clone, Copy)]
 struct AlignmentState {
     /// How far the text has got.
-    state: AlignmentProgress,
+    progress: AlignmentProgress,
     /// The index, in the layer before, of the state that this one continues.
     before: usize,
     /// The frame of the step; `None` for a step that needs none.
@@ -47,13 +47,14 @@ struct AlignmentState {
 /// steps before it can go on.
 pub(super) fn align_steps(steps: &[AlignmentStep], evidence: &Evidence) -> Result<Vec<Option<usize>>, usize> {
     let bends = PathBends::from_evidence(evidence);
-    let start = AlignmentState { state: AlignmentProgress { place: 0, turn: 0, next_move: 0 }, before: 0, frame: None };
+    let start =
+        AlignmentState { progress: AlignmentProgress { place: 0, turn: 0, next_move: 0 }, before: 0, frame: None };
     let mut layers: Vec<Vec<AlignmentState>> = vec![vec![start]];
     for (at, step) in steps.iter().enumerate() {
         let now = layers.last().map_or(&[][..], Vec::as_slice);
         let next = now.iter().enumerate().flat_map(|(before, reached)| {
-            states_after(reached.state, step, &bends).into_iter().map(move |(state, frame)| AlignmentState {
-                state,
+            states_after(reached.progress, step, &bends).into_iter().map(move |(state, frame)| AlignmentState {
+                progress: state,
                 before,
                 frame,
             })
@@ -83,11 +84,11 @@ pub(super) fn align_steps(steps: &[AlignmentStep], evidence: &Evidence) -> Resul
 /// square of the path's length.
 fn drop_dominated(mut reached: Vec<AlignmentState>) -> Vec<AlignmentState> {
     // A state that dominates another one comes before it.
-    reached.sort_by_key(|reached| reached.state);
+    reached.sort_by_key(|reached| reached.progress);
     let mut kept: Vec<AlignmentState> = Vec::new();
     for candidate in reached {
         let dominates = |other: &AlignmentState| {
-            let (a, b) = (other.state, candidate.state);
+            let (a, b) = (other.progress, candidate.progress);
             a.place <= b.place && a.turn <= b.turn && a.next_move <= b.next_move
         };
         if !kept.iter().any(dominates) {
@@ -144,8 +145,9 @@ impl PathBends {
     fn from_evidence(evidence: &Evidence) -> Self {
         let deg: Vec<f64> = evidence.moves.iter().map(|step| step.turn_rad.to_degrees()).collect();
         let turns_to = |side: Side| {
-            let spans = (0..deg.len())
-                .flat_map(|first| (first..(first + motion::BEND_MOVES).min(deg.len())).map(move |last| (first, last)));
+            let spans = (0..deg.len()).flat_map(|first| {
+                (first..(first + motion::MAX_BEND_MOVES).min(deg.len())).map(move |last| (first, last))
+            });
             spans.filter(|(first, last)| is_turn(side, &deg[*first..=*last])).collect()
         };
         Self {
@@ -166,7 +168,8 @@ impl PathBends {
         };
         let rest = &all[all.partition_point(|(first, _)| *first < from)..];
         // The bends ascend by their first move and have few moves, so the one that ends soonest is among the first few.
-        let soonest_end = rest.iter().map(|(_, last)| *last).take(motion::BEND_MOVES * motion::BEND_MOVES).min();
+        let soonest_end =
+            rest.iter().map(|(_, last)| *last).take(motion::MAX_BEND_MOVES * motion::MAX_BEND_MOVES).min();
         rest.iter().copied().take_while(|(first, _)| soonest_end.is_some_and(|end| *first <= end)).collect()
     }
 }
@@ -215,7 +218,7 @@ mod tests {
                 .filter(|frame| **frame >= state.place && **frame >= state.turn)
                 .any(|frame| fits(rest, AlignmentProgress { place: *frame, ..state }, turns_deg)),
             AlignmentStep::Turn(side) => (state.next_move..moves)
-                .flat_map(|first| (first..moves.min(first + motion::BEND_MOVES)).map(move |last| (first, last)))
+                .flat_map(|first| (first..moves.min(first + motion::MAX_BEND_MOVES)).map(move |last| (first, last)))
                 .filter(|(first, last)| first + 1 >= state.place && is_turn(*side, &turns_deg[*first..=*last]))
                 .any(|(first, last)| {
                     fits(rest, AlignmentProgress { turn: first, next_move: last + 1, ..state }, turns_deg)

@@ -11,7 +11,7 @@ use wayword_language::{
 
 /// "Stop by the sofa" fails where the sofa's centre is farther than this from the eye at the end, metres. For things on
 /// the floor that is 2 m along the floor.
-const NEAR_M: f64 = 2.5;
+const MAX_STOP_DISTANCE_M: f64 = 2.5;
 
 /// The mistake at the end of a text, if there is one. The event `object` is left out: it names the object of the
 /// task, which has a check of its own.
@@ -88,7 +88,7 @@ fn too_far(name: &str, last: &FrameEvidence, reading: &TextReading) -> Option<(V
     let is_wide = matches!(class, ThingClass::Stairs | ThingClass::Fabric | ThingClass::Floor | ThingClass::Unknown);
     let alike = last.things.iter().filter(|thing| names_agree(&thing.name, name));
     let far_m = alike.map(|thing| thing.distance_m.unwrap_or(0.0)).min_by(f64::total_cmp)?;
-    let is_far = stops && !is_wide && far_m > NEAR_M;
+    let is_far = stops && !is_wide && far_m > MAX_STOP_DISTANCE_M;
     is_far.then(|| (Verdict::Fail, format!("the nearest {name:?} is {far_m:.1} m from where the path ends")))
 }
 

@@ -213,7 +213,8 @@ pub fn objects_meant(text: &str, evidence: &Evidence) -> usize {
     let meant = alike.iter().filter(is_meant).count();
     let has_neighbour = reading.events.get(at + 1).is_some_and(|next| {
         let between = text.get(reading.events[at].span[1]..next.span[0]);
-        let is_joined = between.is_some_and(|words| words.len() <= MOST_BETWEEN && !words.contains(['.', ',', ';']));
+        let is_joined =
+            between.is_some_and(|words| words.len() <= MAX_NEIGHBOUR_GAP_BYTES && !words.contains(['.', ',', ';']));
         let is_there = |name: &str| things.iter().any(|thing| names_agree(&thing.name, name));
         matches!(&next.what, EventContent::Place(other) if is_joined && other.is_thing && is_there(&other.name))
     });
@@ -222,7 +223,7 @@ pub fn objects_meant(text: &str, evidence: &Evidence) -> usize {
 
 /// An object and the neighbour that identifies it have at most this many bytes between them, as in " that is closest to
 /// the ". Farther apart, they are two statements.
-const MOST_BETWEEN: usize = 24;
+const MAX_NEIGHBOUR_GAP_BYTES: usize = 24;
 
 /// The names of all objects that are known along a path. The reader has to recognise them.
 fn known_names(evidence: &Evidence) -> BTreeSet<String> {

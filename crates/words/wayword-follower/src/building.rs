@@ -37,7 +37,7 @@ pub struct PathPlace {
 /// Assumed distance of an object that is seen from a path, metres.
 const NEARBY_M: f64 = 1.5;
 /// Shorter hops count as staying at the place, metres: some graphs have two viewpoints at one place.
-const SHORT_M: f64 = 0.3;
+const MIN_HOP_M: f64 = 0.3;
 /// The least slope (rise over run) of a hop that counts as stairs.
 const STAIRS_SLOPE: f64 = 0.25;
 
@@ -181,7 +181,7 @@ impl KnownBuilding {
     pub(crate) fn turns_from(&self, viewpoint: usize, heading_rad: f64) -> Vec<f64> {
         let turn = |to: &usize| {
             let (bearing_rad, length_m) = self.hop_between(viewpoint, *to);
-            bearing_rad.filter(|_| length_m > SHORT_M).map(|rad| wrap_angle(rad - heading_rad))
+            bearing_rad.filter(|_| length_m > MIN_HOP_M).map(|rad| wrap_angle(rad - heading_rad))
         };
         self.viewpoints[viewpoint].neighbours.iter().filter_map(turn).collect()
     }

@@ -3,7 +3,7 @@
 //! once.
 
 use crate::{
-    features::{MOST_HOPS, WalkStretch, ending_features, stretch_features},
+    features::{MAX_STEP_HOPS, WalkStretch, ending_features, stretch_features},
     guide::GuideTrial,
     tree::WalkTree,
     weights::FeatureWeights,
@@ -11,7 +11,7 @@ use crate::{
 
 /// Largest product of the number of a text's steps and the number of walks. Beyond it the text should not be followed, because the
 /// tables would fill the memory.
-pub const MOST_WORK: usize = 2_000_000;
+pub const MAX_FOLLOW_WORK: usize = 2_000_000;
 
 /// The scores of an instruction for all walks of a tree.
 #[derive(Debug, Clone)]
@@ -36,14 +36,17 @@ impl WalkFit {
             // A text without steps fits every walk: only the endings count.
             sums[0].fill(0.0);
         }
-        let mut stretches = vec![f64::NEG_INFINITY; steps * nodes * (MOST_HOPS + 1)];
+        let mut stretches = vec![f64::NEG_INFINITY; steps * nodes * (MAX_STEP_HOPS + 1)];
         let mut found = Vec::new();
         for step in 0..steps {
             let (before, after) = sums.split_at_mut(step + 1);
             let (before, after) = (&before[step], &mut after[0]);
             for end in 0..nodes {
-                let reached =
-                    tree.nodes_back(end).take(MOST_HOPS + 1).enumerate().filter(|(_, from)| before[*from].is_finite());
+                let reached = tree
+                    .nodes_back(end)
+                    .take(MAX_STEP_HOPS + 1)
+                    .enumerate()
+                    .filter(|(_, from)| before[*from].is_finite());
                 for (hops, from) in reached {
                     found.clear();
                     stretch_features(trial, step, &WalkStretch::to_node(tree, end, hops), &mut found);
@@ -96,7 +99,7 @@ impl WalkFit {
         for step in (0..trial.guide.len()).rev() {
             let mut by_sum_before = vec![0.0; nodes];
             for (end, by_sum) in by_sum.iter().enumerate().filter(|(_, by_sum)| by_sum.abs() > NEGLIGIBLE_SHARE) {
-                for (hops, from) in tree.nodes_back(end).take(MOST_HOPS + 1).enumerate() {
+                for (hops, from) in tree.nodes_back(end).take(MAX_STEP_HOPS + 1).enumerate() {
                     let weight = self.stretches[stretch_index(nodes, step, end, hops)];
                     if weight == f64::NEG_INFINITY {
                         continue;
@@ -123,7 +126,7 @@ const NEGLIGIBLE_SHARE: f64 = 1e-6;
 
 /// The index in [`WalkFit::stretches`] of a step over the stretch of `hops` hops that ends at the node `end`.
 fn stretch_index(nodes: usize, step: usize, end: usize, hops: usize) -> usize {
-    (step * nodes + end) * (MOST_HOPS + 1) + hops
+    (step * nodes + end) * (MAX_STEP_HOPS + 1) + hops
 }
 
 /// The log of the sum of two numbers, from their logs.

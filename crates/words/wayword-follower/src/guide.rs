@@ -241,9 +241,9 @@ pub struct GuideTrial<'a> {
     pub(crate) guide: &'a Guide,
     pub(crate) building: &'a KnownBuilding,
     /// For each step, those of its mentions that the building has.
-    pub(crate) found: Vec<Vec<LocatedMention<'a>>>,
+    pub(crate) located: Vec<Vec<LocatedMention<'a>>>,
     /// For each viewpoint, whether the text names its room; `None` where the room has no name.
-    pub(crate) tells_room: Vec<Option<bool>>,
+    pub(crate) is_room_named: Vec<Option<bool>>,
 }
 
 /// A mention, and the distance of each viewpoint from it.
@@ -283,7 +283,7 @@ impl<'a> GuideTrial<'a> {
         let found = guide.steps.iter().map(|step| step.mentions.iter().filter_map(find).collect()).collect();
         let room = |at: usize| building.viewpoints[at].room.as_deref();
         let tells_room = (0..building.len()).map(|at| Some(guide.tells_room(room(at)?))).collect();
-        Self { guide, building, found, tells_room }
+        Self { guide, building, located: found, is_room_named: tells_room }
     }
 }
 

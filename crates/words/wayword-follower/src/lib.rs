@@ -37,7 +37,7 @@ mod tree;
 mod weights;
 
 pub use building::{KnownBuilding, PathPlace};
-pub use fit::{MOST_WORK, WalkFit};
+pub use fit::{MAX_FOLLOW_WORK, WalkFit};
 pub use guide::{Guide, GuideTrial};
 pub use posterior::{best_walk, walk_shares};
 pub use tree::{WalkPrior, WalkTree};

@@ -121,7 +121,7 @@ impl PlaceNearness {
 }
 
 /// The distance over ground to the nearest of these places, metres, and its position. A place that is seen from here,
-/// or at a height above `from` between the limits, is on this storey. Other places are farther by [`STOREY_M`].
+/// or at a height above `from` between the limits, is on this storey. Other places are farther by [`MIN_STOREY_HEIGHT_M`].
 fn nearest_place(
     from: DVec3,
     places: impl Iterator<Item = (DVec3, bool)>,

@@ -88,7 +88,7 @@ impl UnfollowedReason {
 }
 
 /// Most steps of a text that is followed; a longer text is not judged. People's texts have 20 at most.
-pub(crate) const MOST_STEPS: usize = 60;
+pub(crate) const MAX_FOLLOWED_STEPS: usize = 60;
 
 /// The comparison of an instruction with all walks from the same start.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,7 +109,7 @@ const APART_M: f64 = 3.0;
 /// Another walk fits about as well as the known one if its share is at least this fraction of the known walk's share. Of
 /// people's texts in R2R's train split that the follower takes to the right place, 5 % have a second place that near to the
 /// best (15 % at a half); of those that it takes to a wrong one, 21 % (50 %): `wayword-measure reader-figures`.
-const AS_WELL: f64 = 0.8;
+const AS_WELL_FRACTION: f64 = 0.8;
 
 /// Judges an instruction by the walk that it was written for.
 #[must_use]
@@ -119,7 +119,7 @@ pub fn judge_steps(
     weights: &FeatureWeights,
     thresholds: GainThresholds,
 ) -> WalkJudgement {
-    if guide.len() > MOST_STEPS {
+    if guide.len() > MAX_FOLLOWED_STEPS {
         return WalkJudgement { wrong: Vec::new(), turn_gain: None };
     }
     let changes = known.walk_changes(guide, weights);
@@ -182,7 +182,7 @@ impl WalkPosterior {
         prior: Option<WalkPrior>,
         weights: &FeatureWeights,
     ) -> Result<Self, UnfollowedReason> {
-        if guide.len() > MOST_STEPS {
+        if guide.len() > MAX_FOLLOWED_STEPS {
             return Err(UnfollowedReason::TooManySteps);
         }
         let prior = prior.ok_or(UnfollowedReason::NoGraph)?;
@@ -245,7 +245,7 @@ pub fn judge_route(
     let mut ends = vec![*own];
     for walk in walks {
         let is_new = ends.iter().all(|end| posterior.are_apart(known.building, *end, walk));
-        if shares[walk] >= AS_WELL * share && is_new {
+        if shares[walk] >= AS_WELL_FRACTION * share && is_new {
             ends.push(walk);
         }
     }

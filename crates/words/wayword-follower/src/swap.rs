@@ -21,7 +21,7 @@ pub struct PlaceSwap {
 }
 
 /// Most places of a text that are examined, because the work grows with their square. Later places are ignored.
-const MOST_PLACES: usize = 14;
+const MAX_SWAPPED_PLACES: usize = 14;
 
 /// The two places with the highest gain; `None` if the building has fewer than two of the named places.
 ///
@@ -88,12 +88,12 @@ fn met_places(guide: &Guide, building: &KnownBuilding) -> Vec<GuidePlace> {
     let mut places = Vec::new();
     for (step, content) in guide.steps.iter().enumerate() {
         for (place, mention) in content.mentions.iter().enumerate() {
-            let is_found = trial.found[step].iter().any(|found| std::ptr::eq(found.mention, mention));
+            let is_found = trial.located[step].iter().any(|found| std::ptr::eq(found.mention, mention));
             let is_met = is_found && is_met(mention.relation);
             places.extend(mention.span.filter(|_| is_met).map(|span| GuidePlace { step, place, span }));
         }
     }
-    places.truncate(MOST_PLACES);
+    places.truncate(MAX_SWAPPED_PLACES);
     places
 }
 

@@ -64,7 +64,7 @@ impl Default for WalkPrior {
 }
 
 /// Most nodes of a tree, because a large building has very many walks of two pieces. Beyond it no more of these are added.
-const MOST_NODES: usize = 20_000;
+const MAX_NODES: usize = 20_000;
 
 impl NodeWays {
     /// Records the ways out of a viewpoint, by their turns (radians, positive right).
@@ -174,7 +174,7 @@ impl WalkTree {
                 });
                 whole.push(at);
             }
-            if tree.nodes.len() > MOST_NODES {
+            if tree.nodes.len() > MAX_NODES {
                 break;
             }
         }

@@ -24,7 +24,7 @@ pub enum ObserveError {
 }
 
 /// Limit for the description of a panorama, words: it has fewer than this (arXiv 2403.11487).
-pub(crate) const CONDENSED_WORDS: usize = 20;
+pub(crate) const CONDENSED_WORD_LIMIT: usize = 20;
 
 /// A view that still needs its caption.
 #[derive(Debug, Clone)]
@@ -231,7 +231,7 @@ fn summarise_looks(
     // A structured answer costs one call of a model, and its caption none: so the summary has to cost none either.
     let uses_rules = matches!(observers.mode, DialogueMode::Structured { .. });
     let summariser: &dyn CaptionSummariser = if uses_rules { &RulesSummariser } else { observers.summariser };
-    summariser.condense(&looks.iter().map(directed).collect::<Vec<_>>(), CONDENSED_WORDS)
+    summariser.condense(&looks.iter().map(directed).collect::<Vec<_>>(), CONDENSED_WORD_LIMIT)
 }
 
 /// The direction of a look in words, as seen by the walker.

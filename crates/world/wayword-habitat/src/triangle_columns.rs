@@ -7,14 +7,14 @@ use glam::Vec3;
 use wayword_core::DVec3;
 
 /// Smallest side of a cell, metres.
-const FINEST_M: f32 = 0.25;
+const MIN_CELL_SIDE_M: f32 = 0.25;
 /// Most cells per triangle, on average. If a grid would need more, it is made coarser.
 const CELLS_PER_TRIANGLE: u64 = 8;
 /// Cells that any scene may use in addition to these, however few triangles it has.
 const FREE_CELLS: u64 = 1 << 20;
 /// A surface nearer to the feet than this is the ground itself, metres: a navmesh lies up to one voxel above or below
 /// the floor, and runs straight over the treads of stairs.
-const FEET_M: f64 = 0.5;
+const GROUND_TOLERANCE_M: f64 = 0.5;
 /// Room that a standing person needs, metres.
 const HEADROOM_M: f64 = 1.8;
 
@@ -74,7 +74,7 @@ impl TriangleColumns {
         let low = corners().reduce(glam::Vec2::min).unwrap_or_default();
         let high = corners().reduce(glam::Vec2::max).unwrap_or_default();
         let (starts, members) = (Vec::new(), Vec::new());
-        let mut columns = Self { triangles, tags, corner: low, side_m: FINEST_M, size: [1, 1], starts, members };
+        let mut columns = Self { triangles, tags, corner: low, side_m: MIN_CELL_SIDE_M, size: [1, 1], starts, members };
         let extent = high - low;
         loop {
             // Casts saturate; the additional cell takes the triangles on the far edge.
@@ -207,7 +207,7 @@ impl TriangleColumns {
     /// The cover above a position on the ground.
     pub(crate) fn cover_over(&self, ground: DVec3) -> OverheadCover {
         let surfaces = self.surfaces_at(ground);
-        if let Some((height_m, _)) = surfaces.iter().find(|(height_m, _)| *height_m > ground.z + FEET_M) {
+        if let Some((height_m, _)) = surfaces.iter().find(|(height_m, _)| *height_m > ground.z + GROUND_TOLERANCE_M) {
             return OverheadCover::Ceiling(height_m - ground.z);
         }
         // A person could stand on a surface below if it faces up and has enough room above it.
@@ -305,7 +305,7 @@ mod tests {
     #[test]
     fn a_large_scene_of_large_triangles_takes_a_coarse_grid() {
         let wide = columns(&[sheet(5e5, 0.0, true), sheet(5e5, 3.0, false)]);
-        assert!(wide.members.len() < 4_000_000 && wide.side_m > FINEST_M);
+        assert!(wide.members.len() < 4_000_000 && wide.side_m > MIN_CELL_SIDE_M);
         assert_eq!(wide.cover_over(DVec3::new(4e5, -4e5, 0.0)), OverheadCover::Ceiling(3.0));
         assert_eq!(TriangleColumns::new(std::iter::empty()).cover_over(DVec3::ZERO), OverheadCover::Sky);
     }

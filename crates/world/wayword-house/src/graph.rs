@@ -12,11 +12,11 @@ use wayword_core::{DVec3, ViewpointGraph, ViewpointId, graph::GraphError};
 /// Height of the eye above the ground, metres.
 pub const EYE_M: f64 = 1.5;
 /// Least distance between two viewpoints, except in doorways and on stairs, metres.
-const APART_M: f64 = 1.8;
+const MIN_VIEWPOINT_DISTANCE_M: f64 = 1.8;
 /// Least distance to walls and furniture, so that they do not fill the view: cells beyond the walker's radius.
-const LEAST_OPEN: u32 = 4;
+const MIN_CLEARANCE_CELLS: u32 = 4;
 /// Longest edge, metres: long enough to join two rows of viewpoints.
-const REACH_M: f64 = 3.0;
+const MAX_EDGE_M: f64 = 3.0;
 
 /// The graph has a viewpoint in every opening, on the stairs and in every room, and others between them. Two viewpoints
 /// are joined where one can walk straight from one to the other.
@@ -94,15 +94,16 @@ impl HouseRoadMap<'_> {
         }
     }
 
-    /// Adds further cells, the most open ones first, each at least `APART_M` from the others.
+    /// Adds further cells, the most open ones first, each at least `MIN_VIEWPOINT_DISTANCE_M` from the others.
     fn fill_open_floor(&mut self, clearances: &[Vec<u32>]) {
-        let is_open = |cell: &GroundCell| clearances[cell.layer][cell.index] >= LEAST_OPEN;
+        let is_open = |cell: &GroundCell| clearances[cell.layer][cell.index] >= MIN_CLEARANCE_CELLS;
         let mut cells: Vec<GroundCell> = self.ground.free_cells().filter(is_open).collect();
         cells.sort_by_key(|cell| (std::cmp::Reverse(clearances[cell.layer][cell.index]), *cell));
         for cell in cells {
             let place = self.ground.middle_of_cell(cell);
-            let far =
-                |(_, other): &(GroundCell, DVec3)| (other.z - place.z).abs() > 1.0 || other.distance(place) >= APART_M;
+            let far = |(_, other): &(GroundCell, DVec3)| {
+                (other.z - place.z).abs() > 1.0 || other.distance(place) >= MIN_VIEWPOINT_DISTANCE_M
+            };
             if self.nodes.iter().all(far) {
                 self.nodes.push((cell, place));
             }
@@ -114,7 +115,7 @@ impl HouseRoadMap<'_> {
         let mut edges = Vec::new();
         for (a, (from, place)) in self.nodes.iter().enumerate() {
             for (b, (to, other)) in self.nodes.iter().enumerate().skip(a + 1) {
-                if place.distance(*other) <= REACH_M && self.ground.is_straight(*from, *to) {
+                if place.distance(*other) <= MAX_EDGE_M && self.ground.is_straight(*from, *to) {
                     edges.push((a, b));
                 }
             }

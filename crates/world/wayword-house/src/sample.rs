@@ -9,9 +9,9 @@ use wayword_core::{
 use wayword_world::open_ground::{OpenGroundScene, no_such_walk, sample_open_path};
 
 /// A corner nearer than this to the frame before it gets no frame of its own, metres.
-const CROWDED_M: f64 = 0.4;
+const MIN_CORNER_DISTANCE_M: f64 = 0.4;
 /// Upper bound of the length of a route over the length of the exact shortest way.
-const GEODESIC_EXCESS: f64 = 1.03;
+const MAX_ROUTE_EXCESS_FACTOR: f64 = 1.03;
 /// Largest distance of a target from the last frame, to the nearest side of its box along the floor, metres.
 const TARGET_REACH_M: f64 = 2.5;
 
@@ -26,7 +26,7 @@ pub(super) fn sample_house_path(
     seed: u64,
     interval_m: f64,
 ) -> Result<Path, PlatformError> {
-    if home.longest_m() * GEODESIC_EXCESS < *request.length_m.start() {
+    if home.longest_m() * MAX_ROUTE_EXCESS_FACTOR < *request.length_m.start() {
         return Err(no_such_walk(scene, request));
     }
     let dice = HouseDice::new(derive_seed(seed, &["house path"]), &[scene.as_str()]);
@@ -71,7 +71,7 @@ fn stops_along(way: &HouseRoute, interval_m: f64) -> Vec<PathStop> {
     for corner in &way.corners {
         let at = nearest_index(&way.places, *corner);
         let before = marks.last().copied().unwrap_or(0);
-        let far = |a: usize, b: usize| way.places[a].distance(way.places[b]) >= CROWDED_M;
+        let far = |a: usize, b: usize| way.places[a].distance(way.places[b]) >= MIN_CORNER_DISTANCE_M;
         if at > before && far(at, before) && far(at, last) {
             marks.push(at);
         }

@@ -10,19 +10,19 @@ use wayword_world::files;
 /// H.264 and AV1 could be copied, and few videos hold these.
 pub(crate) const ENCODE_HINT: &str =
     "if a video player shows it, convert it: ffmpeg -i IN -c:v libx264 -pix_fmt yuv420p -an OUT.mp4";
-const CONVERT_HINT: &str = "convert it: ffmpeg -i IN -frames:v 1 OUT.png";
-const CONVERT_HEIC: &str = "convert it: heif-convert IN OUT.jpg (package libheif-examples), \
+const CONVERT_PICTURE_HINT: &str = "convert it: ffmpeg -i IN -frames:v 1 OUT.png";
+const CONVERT_HEIC_HINT: &str = "convert it: heif-convert IN OUT.jpg (package libheif-examples), \
                             or on macOS: sips -s format jpeg IN --out OUT.jpg";
-const BAG_1: &str =
+const ROS1_BAG_HINT: &str =
     "convert it: rosbags-convert --src IN.bag --dst OUT --dst-storage mcap --dst-typestore ros2_humble (PyPI rosbags)";
-const BAG_2: &str = "convert it: rosbags-convert --src FOLDER --dst OUT --dst-storage mcap (PyPI rosbags)";
+const ROS2_BAG_HINT: &str = "convert it: rosbags-convert --src FOLDER --dst OUT --dst-storage mcap (PyPI rosbags)";
 const GIT_LFS_HINT: &str = "fetch the file itself: git lfs pull";
 const COPY_AGAIN_HINT: &str = "copy or record it again";
 
 /// Bytes that are read from the beginning of a file to recognise its kind.
 const HEAD_BYTES: u64 = 512;
 /// Most files of a folder that are looked into; the others are ignored.
-const MOST_LOOKED_INTO: usize = 200;
+const MAX_EXAMINED_FILES: usize = 200;
 
 /// The kind of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,7 +69,7 @@ impl RecordedFileKind {
             return Some(Self::recording_kind("a WebM video", ENCODE_HINT));
         }
         if begins(0, b"BM") && is_bitmap(head) {
-            return Some(Self::recording_kind("a BMP picture", CONVERT_HINT));
+            return Some(Self::recording_kind("a BMP picture", CONVERT_PICTURE_HINT));
         }
         let start_fits = |at: usize| match at {
             4 => is_box(head),
@@ -86,20 +86,20 @@ impl RecordedFileKind {
 const EMPTY_KIND: RecordedFileKind = RecordedFileKind::other_kind("empty", COPY_AGAIN_HINT);
 /// EBML's magic number, with which Matroska and WebM begin.
 const MATROSKA_MAGIC: &[u8] = &[0x1a, 0x45, 0xdf, 0xa3];
-const HEIC_KIND: RecordedFileKind = RecordedFileKind::recording_kind("an HEIC picture", CONVERT_HEIC);
+const HEIC_KIND: RecordedFileKind = RecordedFileKind::recording_kind("an HEIC picture", CONVERT_HEIC_HINT);
 const MP4_KIND: RecordedFileKind = RecordedFileKind::recording_kind("an MP4 video", "rename it to end in .mp4");
 /// Offset and bytes that show a kind; the first that fits counts. Bytes at offset 4 are the type of an MP4 box, and those
 /// at offset 8 the type of a RIFF file, so the start of the file has to fit as well.
 const KNOWN_STARTS: &[(usize, &[u8], RecordedFileKind)] = &[
     (0, b"\x89PNG\r\n\x1a\n", RecordedFileKind::recording_kind("a PNG picture", "rename it to end in .png")),
     (0, &[0xff, 0xd8, 0xff], RecordedFileKind::recording_kind("a JPEG picture", "rename it to end in .jpg")),
-    (0, b"GIF87a", RecordedFileKind::recording_kind("a GIF picture", CONVERT_HINT)),
-    (0, b"GIF89a", RecordedFileKind::recording_kind("a GIF picture", CONVERT_HINT)),
-    (0, b"II*\0", RecordedFileKind::recording_kind("a TIFF or raw picture", CONVERT_HINT)),
-    (0, b"MM\0*", RecordedFileKind::recording_kind("a TIFF or raw picture", CONVERT_HINT)),
-    (8, b"WEBP", RecordedFileKind::recording_kind("a WebP picture", CONVERT_HINT)),
-    (4, b"ftypavif", RecordedFileKind::recording_kind("an AVIF picture", CONVERT_HINT)),
-    (4, b"ftypavis", RecordedFileKind::recording_kind("an AVIF picture", CONVERT_HINT)),
+    (0, b"GIF87a", RecordedFileKind::recording_kind("a GIF picture", CONVERT_PICTURE_HINT)),
+    (0, b"GIF89a", RecordedFileKind::recording_kind("a GIF picture", CONVERT_PICTURE_HINT)),
+    (0, b"II*\0", RecordedFileKind::recording_kind("a TIFF or raw picture", CONVERT_PICTURE_HINT)),
+    (0, b"MM\0*", RecordedFileKind::recording_kind("a TIFF or raw picture", CONVERT_PICTURE_HINT)),
+    (8, b"WEBP", RecordedFileKind::recording_kind("a WebP picture", CONVERT_PICTURE_HINT)),
+    (4, b"ftypavif", RecordedFileKind::recording_kind("an AVIF picture", CONVERT_PICTURE_HINT)),
+    (4, b"ftypavis", RecordedFileKind::recording_kind("an AVIF picture", CONVERT_PICTURE_HINT)),
     (4, b"ftyphei", HEIC_KIND),
     (4, b"ftyphev", HEIC_KIND),
     (4, b"ftypmif1", HEIC_KIND),
@@ -121,8 +121,8 @@ const KNOWN_STARTS: &[(usize, &[u8], RecordedFileKind)] = &[
     (0, b"OggS", RecordedFileKind::recording_kind("an Ogg video", ENCODE_HINT)),
     (0, &[0, 0, 1, 0xba], RecordedFileKind::recording_kind("an MPEG video", ENCODE_HINT)),
     (0, &[0, 0, 0, 1], RecordedFileKind::recording_kind("a bare video stream", ENCODE_HINT)),
-    (0, b"#ROSBAG V", RecordedFileKind::recording_kind("a ROS 1 bag", BAG_1)),
-    (0, b"SQLite format 3\0", RecordedFileKind::recording_kind("an SQLite file, as ROS 2 bags are", BAG_2)),
+    (0, b"#ROSBAG V", RecordedFileKind::recording_kind("a ROS 1 bag", ROS1_BAG_HINT)),
+    (0, b"SQLite format 3\0", RecordedFileKind::recording_kind("an SQLite file, as ROS 2 bags are", ROS2_BAG_HINT)),
     (0, b"\x89MCAP0\r\n", RecordedFileKind::recording_kind("an MCAP file", "rename it to end in .mcap")),
     (0, &[0x1f, 0x8b], RecordedFileKind::other_kind("an archive", "unpack it")),
     (0, b"PK\x03\x04", RecordedFileKind::other_kind("an archive", "unpack it")),
@@ -192,7 +192,7 @@ pub(crate) fn find_unread(path: &Path, within: &[&str]) -> Result<Option<UnreadR
     let mut counts: BTreeMap<&str, (usize, String, &'static str)> = BTreeMap::new();
     for folder in folders.filter(|folder| folder.is_dir()) {
         let names = sorted_entries(&folder)?.into_iter().filter(|name| !name.starts_with('.'));
-        for name in names.take(MOST_LOOKED_INTO) {
+        for name in names.take(MAX_EXAMINED_FILES) {
             if let Some(kind) = RecordedFileKind::from_file(&folder.join(&name)).filter(|kind| kind.is_recording) {
                 counts.entry(kind.name).or_insert((0, name, kind.hint)).0 += 1;
             }

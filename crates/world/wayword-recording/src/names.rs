@@ -9,7 +9,7 @@ use wayword_world::files;
 
 const FOLDER_HINT: &str = "give a folder that can be read";
 /// Most recordings that an error names; three dots replace the others.
-const MOST_NAMED: usize = 12;
+const MAX_NAMED_SCENES: usize = 12;
 /// Most entries of a folder; more are an error.
 const MAX_ENTRIES: usize = 1_000_000;
 
@@ -54,8 +54,8 @@ pub(crate) fn plain_files(files: impl IntoIterator<Item = PathBuf>) -> Vec<PathB
 
 /// The error for a recording that is not among `known_scenes`.
 pub(crate) fn unknown_scene(scene: &SceneId, known_scenes: &[SceneId]) -> PlatformError {
-    let names: Vec<&str> = known_scenes.iter().map(SceneId::as_str).take(MOST_NAMED).collect();
-    let more = if known_scenes.len() > MOST_NAMED { ", ..." } else { "" };
+    let names: Vec<&str> = known_scenes.iter().map(SceneId::as_str).take(MAX_NAMED_SCENES).collect();
+    let more = if known_scenes.len() > MAX_NAMED_SCENES { ", ..." } else { "" };
     let hint = format!("--data holds {}{more}", names.join(", "));
     PlatformError::UnknownScene { scene: scene.to_string(), hint }
 }

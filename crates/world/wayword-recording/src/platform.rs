@@ -30,14 +30,14 @@ const MAX_CACHED_PICTURES: usize = 256;
 const READ_AHEAD_FRAMES: usize = 16;
 /// Pictures are scaled down until their longer side has at most this length, pixels. Other platforms draw pictures of about
 /// this size, and vision models take them.
-const LONGEST_PX: u32 = 640;
+const MAX_LONGER_SIDE_PX: u32 = 640;
 /// Horizontal field of view if neither the recording nor the user gives it, radians: that of a robot's or phone's usual
 /// camera.
 const USUAL_FOV_RAD: f64 = 70.0 * std::f64::consts::PI / 180.0;
 /// A recording with at most this many frames is one path, however short or long it is.
 pub(crate) const MAX_WHOLE_FRAMES: usize = 12;
 /// Most unreadable recordings that an error lists; it gives the number of the others.
-const MOST_TOLD: usize = 3;
+const MAX_LISTED_ERRORS: usize = 3;
 const INTERVAL_HINT: &str = "record more, or set interval_m or interval_s in a recording.toml (docs/RECORDINGS.md)";
 
 /// Folders of pictures, videos, MCAP files and LeRobot datasets.
@@ -334,8 +334,8 @@ impl SceneFiles for RecordingPlatform {
         if wrong.is_empty() {
             return Ok(());
         }
-        let listed: String = wrong.iter().take(MOST_TOLD).map(|error| format!("\n  {error}")).collect();
-        let more = wrong.len().saturating_sub(MOST_TOLD);
+        let listed: String = wrong.iter().take(MAX_LISTED_ERRORS).map(|error| format!("\n  {error}")).collect();
+        let more = wrong.len().saturating_sub(MAX_LISTED_ERRORS);
         let more = if more > 0 { format!("\n  and {more} more") } else { String::new() };
         let reason = format!(
             "{} of {} recordings cannot be read; move them away, or name the others with --scan:{listed}{more}",
@@ -370,16 +370,16 @@ fn chain_graph(
     Ok(graph)
 }
 
-/// A picture at most [`LONGEST_PX`] wide and high.
+/// A picture at most [`MAX_LONGER_SIDE_PX`] wide and high.
 fn scale_down(image: &Image) -> Image {
     let (width, height) = (image.width_px(), image.height_px());
     let longest = width.max(height);
-    if longest <= LONGEST_PX {
+    if longest <= MAX_LONGER_SIDE_PX {
         return image.clone();
     }
     let scaled = |side: u32| {
-        let scaled = u64::from(side) * u64::from(LONGEST_PX) / u64::from(longest);
-        u32::try_from(scaled.max(1)).unwrap_or(LONGEST_PX)
+        let scaled = u64::from(side) * u64::from(MAX_LONGER_SIDE_PX) / u64::from(longest);
+        u32::try_from(scaled.max(1)).unwrap_or(MAX_LONGER_SIDE_PX)
     };
     let (wide, high) = (scaled(width), scaled(height));
     let pixels = image::ImageBuffer::<image::Rgb<u8>, &[u8]>::from_raw(width, height, image.rgb_bytes());

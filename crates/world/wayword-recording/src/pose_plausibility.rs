@@ -12,16 +12,16 @@ use crate::{
 use wayword_core::DVec3;
 
 /// Shorter paths are not judged, metres.
-const LEAST_M: f64 = 3.0;
+const MIN_PATH_M: f64 = 3.0;
 /// Least length of a step of a path, metres: shorter ones are the tracker's noise.
-const STEP_M: f64 = 0.4;
+const MIN_STEP_M: f64 = 0.4;
 /// Steps that rise or fall by more than this share of their length are steeper than stairs and ramps (55 degrees).
 const STEEP_SHARE: f64 = 0.82;
 /// A path climbs if steep steps make up at least this share of its length. A single ladder makes up less.
 const CLIMBING_SHARE: f64 = 0.25;
 /// A path is level if it rises by at most this, metres, or by this share of its longest side.
-const PLANE_M: f64 = 0.5;
-const PLANE_SHARE: f64 = 0.08;
+const MAX_LEVEL_RISE_M: f64 = 0.5;
+const MAX_LEVEL_RISE_SHARE: f64 = 0.08;
 /// A camera is upright if its own up direction is within 60 degrees of the vertical (this is the cosine).
 const UPRIGHT_COSINE: f64 = 0.5;
 /// Cameras are upright in at least this share of the poses, if these are read with the right axes.
@@ -36,7 +36,7 @@ const LEAST_ORIENTED_SHARE: f64 = 0.8;
 pub(crate) struct PoseSample {
     pub(crate) position: DVec3,
     /// recorded_from_body by its columns, if the pose has an orientation.
-    pub(crate) held: Option<[DVec3; 3]>,
+    pub(crate) recorded_from_body: Option<[DVec3; 3]>,
 }
 
 /// Why poses are probably read with the wrong axes.
@@ -64,7 +64,7 @@ pub(crate) fn find_doubt(
     axes: PoseAxes,
     described: &RecordingDescription,
 ) -> Option<PoseDoubt> {
-    let walk = RecordedWalk::from_samples(samples).filter(|walk| walk.length_m >= LEAST_M)?;
+    let walk = RecordedWalk::from_samples(samples).filter(|walk| walk.length_m >= MIN_PATH_M)?;
     let climbs = walk.is_climbing(axes.world) && !walk.is_level(axes.world);
     let is_upright = walk.is_upright(axes);
     if is_upright == Some(true) && !climbs {
@@ -139,7 +139,7 @@ struct RecordedWalk {
     places: Vec<DVec3>,
     length_m: f64,
     /// Orientations at those places; empty if too few poses have one.
-    held: Vec<[DVec3; 3]>,
+    recorded_from_body: Vec<[DVec3; 3]>,
 }
 
 impl RecordedWalk {
@@ -147,16 +147,16 @@ impl RecordedWalk {
         let mut places: Vec<DVec3> = Vec::new();
         let mut orientations = Vec::new();
         for sample in samples.iter().filter(|sample| sample.position.is_finite()) {
-            if places.last().is_none_or(|last: &DVec3| last.distance(sample.position) >= STEP_M) {
+            if places.last().is_none_or(|last: &DVec3| last.distance(sample.position) >= MIN_STEP_M) {
                 places.push(sample.position);
-                orientations.extend(sample.held);
+                orientations.extend(sample.recorded_from_body);
             }
         }
         if (orientations.len() as f64) < LEAST_ORIENTED_SHARE * places.len() as f64 {
             orientations.clear();
         }
         let length_m = places.array_windows().map(|[from, to]| from.distance(*to)).sum();
-        (!places.is_empty()).then_some(Self { places, length_m, held: orientations })
+        (!places.is_empty()).then_some(Self { places, length_m, recorded_from_body: orientations })
     }
 
     /// The way from each place to the next.
@@ -166,23 +166,30 @@ impl RecordedWalk {
 
     /// The vertical component of the camera's up direction, pose by pose; empty if too few poses have an orientation.
     fn up_components(&self, axes: PoseAxes) -> impl Iterator<Item = f64> {
-        self.held.iter().map(move |held| axes.wayword_from_recorded(recorded_direction(held, axes.body_up())).z)
+        self.recorded_from_body
+            .iter()
+            .map(move |held| axes.wayword_from_recorded(recorded_direction(held, axes.body_up())).z)
     }
 
     /// The mean of [`RecordedWalk::up_components`].
     fn mean_up(&self, axes: PoseAxes) -> Option<f64> {
-        (!self.held.is_empty()).then(|| self.up_components(axes).sum::<f64>() / self.held.len() as f64)
+        (!self.recorded_from_body.is_empty())
+            .then(|| self.up_components(axes).sum::<f64>() / self.recorded_from_body.len() as f64)
     }
 
     /// Whether the camera is upright in most of the poses; `None` if too few of them have an orientation.
     fn is_upright(&self, axes: PoseAxes) -> Option<bool> {
         let upright = self.up_components(axes).filter(|up| *up >= UPRIGHT_COSINE).count();
-        (!self.held.is_empty()).then_some(upright as f64 >= UPRIGHT_POSES_SHARE * self.held.len() as f64)
+        (!self.recorded_from_body.is_empty())
+            .then_some(upright as f64 >= UPRIGHT_POSES_SHARE * self.recorded_from_body.len() as f64)
     }
 
     /// Distance that the steps cover in the camera's view direction, metres.
     fn distance_ahead(&self, axes: PoseAxes) -> f64 {
-        self.steps().zip(&self.held).map(|(step, held)| recorded_direction(held, axes.body_ahead()).dot(step)).sum()
+        self.steps()
+            .zip(&self.recorded_from_body)
+            .map(|(step, held)| recorded_direction(held, axes.body_ahead()).dot(step))
+            .sum()
     }
 
     /// Whether a large part of the path goes straight up or down.
@@ -202,7 +209,7 @@ impl RecordedWalk {
         let low = self.places.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let high = self.places.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
         let extent = high - low;
-        extent.dot(up_direction(world)).abs() <= PLANE_M.max(PLANE_SHARE * extent.max_element())
+        extent.dot(up_direction(world)).abs() <= MAX_LEVEL_RISE_M.max(MAX_LEVEL_RISE_SHARE * extent.max_element())
     }
 }
 

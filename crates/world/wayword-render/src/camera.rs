@@ -5,14 +5,14 @@ use glam::{DMat3, DVec3};
 use wayword_core::ViewGaze;
 
 /// Narrowest horizontal field of view of one flat picture, radians.
-const NARROWEST_RAD: f64 = 0.05;
+const MIN_FLAT_FOV_RAD: f64 = 0.05;
 /// Widest horizontal field of view of one flat picture, radians.
-const WIDEST_RAD: f64 = 2.6;
+const MAX_FLAT_FOV_RAD: f64 = 2.6;
 
 /// The gaze with its width limited to a field of view that one flat picture can show.
 #[must_use]
 pub fn to_flat_gaze(gaze: ViewGaze) -> ViewGaze {
-    ViewGaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(NARROWEST_RAD, WIDEST_RAD), ..gaze }
+    ViewGaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(MIN_FLAT_FOV_RAD, MAX_FLAT_FOV_RAD), ..gaze }
 }
 
 /// A pinhole camera without roll. Its axes in the world are forward = (sin h cos e, cos h cos e, sin e),

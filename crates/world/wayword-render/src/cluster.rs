@@ -4,7 +4,7 @@ use crate::mesh::Mesh;
 use glam::{Vec2, Vec3};
 
 /// Triangles per cluster, at most.
-pub(crate) const CLUSTER_TRIANGLES: usize = 256;
+pub(crate) const MAX_CLUSTER_TRIANGLES: usize = 256;
 
 /// Marks a vertex that is not stored yet.
 const NOT_STORED: u32 = u32::MAX;
@@ -53,7 +53,7 @@ impl TriangleSoup {
         let order = near_order(mesh);
         // Where each of the mesh's vertices was stored last.
         let mut stored = vec![NOT_STORED; mesh.positions.len()];
-        for group in order.chunks(CLUSTER_TRIANGLES) {
+        for group in order.chunks(MAX_CLUSTER_TRIANGLES) {
             self.add_cluster(mesh, group, first_source, surface, &mut stored);
         }
     }
@@ -94,7 +94,7 @@ impl TriangleSoup {
 /// centroids).
 fn near_order(mesh: &Mesh) -> Vec<u32> {
     let mut order: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
-    if order.len() <= CLUSTER_TRIANGLES {
+    if order.len() <= MAX_CLUSTER_TRIANGLES {
         return order;
     }
     let centroid = |triangle: &[u32; 3]| {
@@ -137,7 +137,7 @@ mod tests {
         let mut soup = TriangleSoup::default();
         soup.add_mesh(&Mesh { triangles: vec![[0, 1, 2]], ..mesh.clone() }, 0);
         soup.add_mesh(&mesh, 1);
-        assert_eq!(soup.clusters.len(), 1 + 900usize.div_ceil(CLUSTER_TRIANGLES));
+        assert_eq!(soup.clusters.len(), 1 + 900usize.div_ceil(MAX_CLUSTER_TRIANGLES));
         let mut sources: Vec<u32> = soup.triangles.iter().map(|t| t.source).collect();
         sources.sort_unstable();
         assert_eq!(sources, (0..901).collect::<Vec<u32>>());

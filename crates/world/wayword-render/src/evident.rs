@@ -5,15 +5,15 @@ use glam::DVec3;
 use std::cmp::Reverse;
 
 /// An id must cover at least this share of the picture's pixels: at 640 x 480, a patch of 21 x 21.
-const LEAST_SHARE: f64 = 0.0015;
+const MIN_PICTURE_SHARE: f64 = 0.0015;
 /// The box of its pixels must cover at least this share of the object's own box, as far as that lies within the
 /// picture.
-const LEAST_SHOWN: f64 = 0.22;
+const MIN_SHOWN_SHARE: f64 = 0.22;
 
 /// The ids on enough pixels to be named, the largest first.
 #[must_use]
 pub fn evident_objects(picture: &RenderedPicture) -> Vec<VisibleObject> {
-    let least = f64::from(picture.width) * f64::from(picture.height) * LEAST_SHARE;
+    let least = f64::from(picture.width) * f64::from(picture.height) * MIN_PICTURE_SHARE;
     let mut seen: Vec<VisibleObject> =
         visible_objects(picture).into_iter().filter(|each| f64::from(each.pixels) >= least).collect();
     seen.sort_by_key(|each| (Reverse(each.pixels), each.id));
@@ -25,7 +25,7 @@ impl VisibleObject {
     /// that reaches behind the eye never counts as a sliver, because its box cannot be projected.
     #[must_use]
     pub fn is_sliver(&self, camera: &PinholeCamera, corners: &[DVec3; 8]) -> bool {
-        self.shown_share(camera, corners).is_some_and(|share| share < LEAST_SHOWN)
+        self.shown_share(camera, corners).is_some_and(|share| share < MIN_SHOWN_SHARE)
     }
 
     /// Share of a box, as far as it lies in the picture, that the box of the visible pixels covers.

@@ -13,9 +13,9 @@ const CUT_M: f64 = 0.3;
 /// How far the picture reaches around the viewpoints, metres: about half a room beyond the outermost ones.
 const AROUND_M: f64 = 2.0;
 /// Longest side of the picture, pixels.
-const LONGEST_PX: f64 = 1600.0;
+const MAX_STOREY_SIDE_PX: f64 = 1600.0;
 /// Smallest side of a pixel, metres.
-const FINEST_M: f64 = 0.005;
+const MIN_PIXEL_M: f64 = 0.005;
 /// Each pixel is the mean of this many by this many finer ones, so that edges are smooth and fine patterns do not
 /// shimmer.
 const FINER_PIXELS_PER_SIDE: usize = 2;
@@ -38,7 +38,7 @@ pub fn draw_storey(scene: &RenderScene, graph: &ViewpointGraph, level: u32) -> R
     // The viewpoint of median height is on the floor, even if some are on stairs.
     eyes.sort_by(|a, b| a.z.total_cmp(&b.z));
     let cut_m = eyes[eyes.len() / 2].z + CUT_M;
-    let metres_per_px = ((high - low).max_element() / LONGEST_PX).max(FINEST_M);
+    let metres_per_px = ((high - low).max_element() / MAX_STOREY_SIDE_PX).max(MIN_PIXEL_M);
     // Whole pixels, each made of whole finer ones.
     let size = ((high - low) / metres_per_px).floor();
     let high = low + size * metres_per_px;

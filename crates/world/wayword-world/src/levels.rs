@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 /// as parts of a storey.
 const MIN_STOREY_M: f64 = 2.2;
 /// Floor heights within this distance support each other, metres: one or two steps.
-const REACH_M: f64 = 0.4;
+const SUPPORT_REACH_M: f64 = 0.4;
 /// Support that a height needs to be a storey: the viewpoint itself and about one more. On stairs each viewpoint has
 /// only its own.
 const MIN_SUPPORT: f64 = 2.0;
@@ -48,9 +48,9 @@ fn storey_heights(floors_m: &[f64]) -> Vec<f64> {
 
 /// The support of a height: how many of the (sorted) heights are near it. Each counts the less, the farther away it is.
 fn support_at(sorted: &[f64], floor_m: f64) -> f64 {
-    let first = sorted.partition_point(|other| *other < floor_m - REACH_M);
-    let near = sorted[first..].iter().take_while(|other| **other <= floor_m + REACH_M);
-    near.map(|other| 1.0 - (other - floor_m).abs() / REACH_M).sum()
+    let first = sorted.partition_point(|other| *other < floor_m - SUPPORT_REACH_M);
+    let near = sorted[first..].iter().take_while(|other| **other <= floor_m + SUPPORT_REACH_M);
+    near.map(|other| 1.0 - (other - floor_m).abs() / SUPPORT_REACH_M).sum()
 }
 
 /// The number of the storey that is nearest to a height, counted from 1; the lower of two equally near ones.

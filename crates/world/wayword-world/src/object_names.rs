@@ -43,7 +43,7 @@ const SPELLING_MISTAKES: &[(&str, &str)] = &[
 ];
 
 /// Words for parts of the building, and for objects that the annotators could not name. A task cannot be about these.
-const NO_ERRAND: &[&str] = &[
+const WORDS_WITHOUT_TASK: &[&str] = &[
     "arch",
     "archway",
     "baseboard",
@@ -88,7 +88,7 @@ const NO_ERRAND: &[&str] = &[
 ];
 
 /// Longest name, in characters; the rest is cut off.
-const MAX_CHARS: usize = 60;
+const MAX_NAME_CHARS: usize = 60;
 
 /// Turns an annotator's name into words as people would write them: `bathroom##sink` becomes "bathroom sink". `#` becomes
 /// a space. Stray marks are removed, as are remarks that the object is really elsewhere ("/ other room"), and spelling
@@ -97,7 +97,8 @@ const MAX_CHARS: usize = 60;
 /// Of two names joined by a slash with spaces around it, the first is used; without spaces ("stand/table"), the second.
 #[must_use]
 pub fn plain_name(raw: &str) -> Option<String> {
-    let spaced: String = raw.chars().take(4 * MAX_CHARS).map(|c| if c == '#' || c == '_' { ' ' } else { c }).collect();
+    let spaced: String =
+        raw.chars().take(4 * MAX_NAME_CHARS).map(|c| if c == '#' || c == '_' { ' ' } else { c }).collect();
     let lower = one_of_two(&spaced).to_lowercase();
     let kept: String = lower.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '\'')).collect();
     let bare = kept.split_whitespace().map(|word| word.trim_matches(['-', '\'']));
@@ -111,7 +112,7 @@ pub fn plain_name(raw: &str) -> Option<String> {
     {
         words = rest;
     }
-    let name: String = words.join(" ").chars().take(MAX_CHARS).collect();
+    let name: String = words.join(" ").chars().take(MAX_NAME_CHARS).collect();
     name.chars().any(char::is_alphabetic).then(|| name.trim().to_owned())
 }
 
@@ -133,7 +134,7 @@ fn correct_spelling(word: &str) -> &str {
 /// building.
 #[must_use]
 pub fn is_furnishing(name: &str) -> bool {
-    !name.split(' ').any(|word| NO_ERRAND.contains(&word))
+    !name.split(' ').any(|word| WORDS_WITHOUT_TASK.contains(&word))
 }
 
 #[cfg(test)]
@@ -182,7 +183,7 @@ mod tests {
         fn plain_name_leaves_no_odd_characters(raw in "\\PC{0,300}") {
             if let Some(name) = plain_name(&raw) {
                 prop_assert!(!name.contains(['#', '/', '\\', ';', '\n']) && !name.contains("  "));
-                prop_assert!(name.chars().count() <= MAX_CHARS);
+                prop_assert!(name.chars().count() <= MAX_NAME_CHARS);
                 prop_assert_eq!(name.trim(), &name);
             }
         }

@@ -102,7 +102,7 @@ impl PytorchOracle {
         let (Some(asks), Some(says)) = (child.stdin.take(), child.stdout.take()) else {
             return Err(script_error(&self.script));
         };
-        Ok(PytorchClock { child, asks, says: BufReader::new(says), script: self.script.clone() })
+        Ok(PytorchClock { child, stdin: asks, stdout: BufReader::new(says), script: self.script.clone() })
     }
 }
 
@@ -110,9 +110,9 @@ impl PytorchOracle {
 pub(super) struct PytorchClock {
     child: Child,
     /// A line asks for one picture.
-    asks: ChildStdin,
+    stdin: ChildStdin,
     /// A line has the numbers of one picture.
-    says: BufReader<ChildStdout>,
+    stdout: BufReader<ChildStdout>,
     script: PathBuf,
 }
 
@@ -120,8 +120,10 @@ impl PytorchClock {
     /// The cost of one picture.
     pub(super) fn time_picture(&mut self) -> Result<PictureCost, CommandError> {
         let mut line = String::new();
-        let asked = writeln!(self.asks).and_then(|()| self.asks.flush());
-        asked.and_then(|()| self.says.read_line(&mut line)).map_err(|source| io_error(&self.script, "ask", source))?;
+        let asked = writeln!(self.stdin).and_then(|()| self.stdin.flush());
+        asked
+            .and_then(|()| self.stdout.read_line(&mut line))
+            .map_err(|source| io_error(&self.script, "ask", source))?;
         let numbers: Vec<f64> = line.split_whitespace().filter_map(|number| number.parse().ok()).collect();
         match numbers[..] {
             [wall_s, cpu_s, peak_mib] => Ok(PictureCost { wall_s, cpu_s, peak_mib }),

@@ -21,7 +21,7 @@ pub(super) enum ParitySubject {
 }
 
 /// Boxes of two implementations with edges further apart than this, pixels, are different finds.
-const SAME_PX: f32 = 1.0;
+const MAX_SAME_FIND_PX: f32 = 1.0;
 
 impl ParitySubject {
     /// Loads a detector from a folder. `short_px` is the short edge of pictures, for models with no such setting of their own.
@@ -131,7 +131,7 @@ fn finds_off(ours: &[Vec<DetectedBox>], theirs: &[Vec<DetectedBox>]) -> f32 {
             ours.iter().map(|our| largest_difference(&our.box_px, &find.box_px)).fold(f32::INFINITY, f32::min)
         };
         let largest = theirs.iter().map(nearest).fold(0.0, f32::max);
-        if ours.len() == theirs.len() && largest <= SAME_PX { largest } else { f32::INFINITY }
+        if ours.len() == theirs.len() && largest <= MAX_SAME_FIND_PX { largest } else { f32::INFINITY }
     };
     ours.iter().zip(theirs).map(phrase_difference).fold(0.0, f32::max)
 }

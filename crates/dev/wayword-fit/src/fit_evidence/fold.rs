@@ -17,7 +17,7 @@ fn ridge_for_case(case: ClaimCase) -> f64 {
 /// The buildings are split into this many parts. For each part, the weights are fitted on the other parts and tried on this one.
 const FOLD_COUNT: usize = 5;
 /// A likelihood ratio below which no claim fails, however many true texts the budget would allow to fail.
-const LEAST_RATIO: f64 = 3.0;
+const MIN_FAILING_RATIO: f64 = 3.0;
 
 /// The kinds of claims that share a ratio: a text fails where any of them reaches it.
 pub(crate) struct ClaimCaseGroup {
@@ -67,7 +67,8 @@ pub(crate) fn fit_tables(
     let mut log_ratios: Vec<f64> = highest.into_values().collect();
     log_ratios.sort_by(|a, b| b.total_cmp(a));
     let allowed = (group.budget * text_count as f64) as usize;
-    let fails_at = log_ratios.get(allowed).map_or(LEAST_RATIO, |log_ratio| log_ratio.exp()).max(LEAST_RATIO);
+    let fails_at =
+        log_ratios.get(allowed).map_or(MIN_FAILING_RATIO, |log_ratio| log_ratio.exp()).max(MIN_FAILING_RATIO);
     // Rounded up to one digit after the point.
     let fails_at = (fails_at * 10.0).ceil() / 10.0;
     let table = |case: &ClaimCase| {
@@ -88,7 +89,7 @@ pub(crate) fn failing_miss(sample: &ClaimSample, case: ClaimCase) -> Option<&Mis
 
 /// Weights with the table of only one case.
 pub(crate) fn weights_with_table(case: ClaimCase, weights: BTreeMap<String, f64>) -> SilenceWeights {
-    let table = WeightTable { fails_at: LEAST_RATIO, weights };
+    let table = WeightTable { fails_at: MIN_FAILING_RATIO, weights };
     SilenceWeights { cases: [(case.name().to_owned(), table)].into(), ..SilenceWeights::default() }
 }
 

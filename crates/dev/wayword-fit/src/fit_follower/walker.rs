@@ -8,9 +8,9 @@ use wayword_follower::online::{
 };
 
 /// Hops of a walk in training at most; then the walk is cut off.
-const MOST_HOPS: usize = 16;
+const MAX_TRAINING_HOPS: usize = 16;
 /// Hops of a walk that is scored at most; then it counts as ending where it is.
-const MOST_WALKED: usize = 60;
+const MAX_SCORED_HOPS: usize = 60;
 
 /// The walker's viewpoint and heading.
 struct WalkerBody<'a> {
@@ -53,7 +53,7 @@ impl<'a> WalkerBody<'a> {
     fn shortest_way(&self, text: &WalkedText) -> Vec<usize> {
         let viewpoints = self.scene.survey.viewpoints();
         let (mut here, mut way) = (self.here, Vec::new());
-        while here != text.walk[text.walk.len() - 1] && way.len() < MOST_WALKED {
+        while here != text.walk[text.walk.len() - 1] && way.len() < MAX_SCORED_HOPS {
             let far_m = |hop: &usize| {
                 let to = viewpoints[here].neighbours[*hop];
                 text.to_goal_m[to] + self.scene.building.distance_m(here, to)
@@ -79,7 +79,7 @@ pub(super) fn teach_walker(
 ) {
     let mut reader = WalkingFollower::new(&text.guide, weights);
     let mut body = WalkerBody::at_start(scene, text);
-    for _ in 0..MOST_HOPS {
+    for _ in 0..MAX_TRAINING_HOPS {
         let sighting = body.current_sighting();
         reader.look_around(&sighting);
         let way = body.shortest_way(text);
@@ -107,7 +107,7 @@ pub(super) fn score_walker(scenes: &[FollowerScene], texts: &[WalkedText], weigh
         while let WalkerDecision::Go(hop) = reader.decide_next(&body.current_sighting()) {
             body.take_hop(hop);
             walked.push(body.here);
-            if walked.len() > MOST_WALKED {
+            if walked.len() > MAX_SCORED_HOPS {
                 break;
             }
         }

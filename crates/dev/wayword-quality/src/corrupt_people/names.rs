@@ -8,7 +8,7 @@ use super::{
 use wayword_core::DVec3;
 
 /// The most words that a name has; a longer one is not found.
-const LONGEST_NAME: usize = 3;
+const MAX_NAME_WORDS: usize = 3;
 
 /// A room or an object that a text names.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub(super) fn find_mentions(words: &[PlainWord], building: &LabelledBuilding) ->
     let mut names = Vec::new();
     let mut at = 0;
     while at < words.len() {
-        let longest = (1..=LONGEST_NAME).rev().find_map(|count| {
+        let longest = (1..=MAX_NAME_WORDS).rev().find_map(|count| {
             let part = words.get(at..at + count)?;
             let is_whole_name = part[1..].iter().all(|word| word.is_joined) && ends_name(words, at + count);
             let named = if is_whole_name {

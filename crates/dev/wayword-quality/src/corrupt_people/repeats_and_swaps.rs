@@ -11,15 +11,15 @@ use crate::key::WordEdit;
 use rand::{Rng, seq::IndexedRandom};
 
 /// A sentence needs at least this many words to be repeated.
-const SENTENCE_WORDS: usize = 4;
+const MIN_SENTENCE_WORDS: usize = 4;
 /// A room or an object is at a viewpoint if it is at most this far away, metres.
-const AT_M: f64 = 3.0;
+const AT_VIEWPOINT_M: f64 = 3.0;
 
 /// Repeats a sentence that commands a motion.
 pub(super) fn repeat_sentence(original: &CorruptibleText<'_>, rng: &mut impl Rng) -> Option<Vec<WordEdit>> {
     let moves = |sentence: &&[usize; 2]| {
         let words = split_words(&original.text[sentence[0]..sentence[1]]);
-        words.len() >= SENTENCE_WORDS && words.iter().any(|word| has_word(&MOTION_WORDS, "motion", &word.low))
+        words.len() >= MIN_SENTENCE_WORDS && words.iter().any(|word| has_word(&MOTION_WORDS, "motion", &word.low))
     };
     let all = split_sentences(original.text);
     let span = **all.iter().filter(moves).collect::<Vec<_>>().choose(rng)?;
@@ -55,7 +55,7 @@ pub(super) fn swap_mentions(original: &CorruptibleText<'_>, rng: &mut impl Rng) 
 /// The indices of the path's viewpoints at which the named room or object is.
 fn places_on_path(original: &CorruptibleText<'_>, named: &BuildingMention) -> Vec<usize> {
     let places = named.possible_positions(original.building);
-    let is_at = |at: &usize| nearest_m(&original.path[*at..=*at], &places).is_some_and(|off_m| off_m <= AT_M);
+    let is_at = |at: &usize| nearest_m(&original.path[*at..=*at], &places).is_some_and(|off_m| off_m <= AT_VIEWPOINT_M);
     (0..original.path.len()).filter(is_at).collect()
 }
 

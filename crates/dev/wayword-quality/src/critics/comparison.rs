@@ -50,7 +50,7 @@ pub(super) fn read_comparison(folder: &Path) -> Result<CriticMaterial, CommandEr
         who: agent.to_owned(),
         outcome: "success".to_owned(),
         answers: of_texts.len(),
-        of_texts,
+        text_means: of_texts,
     });
     Ok(CriticMaterial { outcomes: outcomes.collect(), texts })
 }

@@ -37,7 +37,7 @@ pub(super) fn correlate_critic(
     flags: &CriticsArgs,
 ) -> CriticCorrelation {
     let mut scenes: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
-    for (at, outcome) in &outcomes.of_texts {
+    for (at, outcome) in &outcomes.text_means {
         if let Some(figure) = critic.figures[*at] {
             scenes.entry(&texts[*at].scene).or_default().push((figure, *outcome));
         }

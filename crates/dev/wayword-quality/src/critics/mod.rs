@@ -64,7 +64,7 @@ struct TextOutcomes {
     /// The name of the measure, such as "success".
     outcome: String,
     /// Indices of texts in [`CriticMaterial::texts`], each with the mean over the answers to the text.
-    of_texts: Vec<(usize, f64)>,
+    text_means: Vec<(usize, f64)>,
     /// How many answers the texts have together.
     answers: usize,
 }

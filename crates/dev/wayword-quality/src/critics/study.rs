@@ -19,7 +19,7 @@ const ANSWERS_FILE: &str = "answers.csv";
 const RESULTS_FORMAT: &str = "wayword-study-results/1";
 /// The columns with figures of walks that are correlated. The ratings are correlated too; `results.json` names their
 /// questions and statements.
-const OF_WALKS: [&str; 3] = ["success", "spl", "ndtw"];
+const WALK_MEASURES: [&str; 3] = ["success", "spl", "ndtw"];
 /// The kind, in column `kind`, of items with a text that was written for another path.
 const OTHER_PATH: &str = "other-path";
 
@@ -43,7 +43,7 @@ struct ResultsScale {
 pub(super) fn read_results(folder: &Path, finished: bool) -> Result<CriticMaterial, CommandError> {
     let about = read_head(folder)?;
     let (texts, numbers, elsewhere) = read_texts(folder)?;
-    let walks: &[&str] = if about.mode == "follow" { &OF_WALKS } else { &[] };
+    let walks: &[&str] = if about.mode == "follow" { &WALK_MEASURES } else { &[] };
     let measures: Vec<&str> = walks.iter().copied().chain(about.scales.iter().map(|scale| &*scale.name)).collect();
     let answers = ResultsTable::read_csv(folder.join(ANSWERS_FILE))?;
     let taken = if finished { "in_finished" } else { "in_everybody" };
@@ -64,7 +64,7 @@ pub(super) fn read_results(folder: &Path, finished: bool) -> Result<CriticMateri
                 who: who.to_owned(),
                 outcome: measure.to_owned(),
                 answers: given.clone().map(|(_, values)| values.len()).sum(),
-                of_texts: given.map(|(number, values)| (*number, mean(values))).collect(),
+                text_means: given.map(|(number, values)| (*number, mean(values))).collect(),
             }
         };
         outcomes.push(outcomes_for("people", &|_| true));

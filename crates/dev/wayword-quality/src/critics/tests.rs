@@ -42,7 +42,7 @@ fn correlate_separates_a_critic_of_success_from_an_independent_one() {
     let outcomes = TextOutcomes {
         who: "reader".to_owned(),
         outcome: "success".to_owned(),
-        of_texts: (0..80).map(|at| (at, success(at))).collect(),
+        text_means: (0..80).map(|at| (at, success(at))).collect(),
         answers: 80,
     };
     let found = |figure: &dyn Fn(usize) -> Option<f64>| {

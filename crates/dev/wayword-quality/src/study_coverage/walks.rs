@@ -7,7 +7,7 @@ use std::f64::consts::SQRT_2;
 use wayword_metrics::StudyAnswer;
 
 /// The share of a person's or item's variance that both conditions have in common.
-const IN_COMMON: f64 = 0.5;
+const COMMON_VARIANCE_SHARE: f64 = 0.5;
 /// How much lower the logits of success are in the second condition than in the first.
 const SECOND_CONDITION_DROP_LOGITS: f64 = 0.8;
 /// The standard deviation of how good a way is, on the logit scale.
@@ -51,7 +51,7 @@ pub(super) fn draw_walks(slots: &[AnswerSlot], base: f64, sd: f64, rng: &mut imp
 
 /// Draws the effects of persons, or of items, on each of the two conditions, on the logit scale.
 fn draw_effects(count: usize, sd: f64, rng: &mut impl Rng) -> Vec<[f64; 2]> {
-    let (common, separate) = (sd * IN_COMMON.sqrt(), sd * (1.0 - IN_COMMON).sqrt());
+    let (common, separate) = (sd * COMMON_VARIANCE_SHARE.sqrt(), sd * (1.0 - COMMON_VARIANCE_SHARE).sqrt());
     let mut draw_effect = || {
         let both = common * draw_normal(rng);
         [both + separate * draw_normal(rng), both + separate * draw_normal(rng)]

@@ -6,9 +6,9 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The longest run of words that is a feature.
 const MAX_GRAM_WORDS: usize = 3;
 /// A run of words is a feature only if at least this many texts have it.
-const LEAST_TEXTS: usize = 2;
+const MIN_GRAM_TEXTS: usize = 2;
 /// The unit of the length feature, words.
-const LENGTH_UNIT: f64 = 20.0;
+const LENGTH_UNIT_WORDS: f64 = 20.0;
 
 /// A text in lower case, with letters and digits of ASCII alone, and one space between words.
 pub(super) fn to_plain(text: &str) -> String {
@@ -35,7 +35,7 @@ impl GramFeatures {
     pub(super) fn from_texts<'a>(texts: impl Iterator<Item = &'a BTreeSet<String>>) -> Self {
         let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
         texts.flatten().for_each(|gram| *counts.entry(gram).or_default() += 1);
-        let frequent = counts.into_iter().filter(|(_, count)| *count >= LEAST_TEXTS);
+        let frequent = counts.into_iter().filter(|(_, count)| *count >= MIN_GRAM_TEXTS);
         Self { places: frequent.enumerate().map(|(at, (gram, _))| (gram.to_owned(), at)).collect() }
     }
 
@@ -53,7 +53,7 @@ impl GramFeatures {
     pub(super) fn feature_row(&self, plain: &str, grams: &BTreeSet<String>) -> SparseRow {
         let words = plain.split_whitespace().count() as f64;
         let known = grams.iter().filter_map(|gram| Some((*self.places.get(gram)?, 1.0)));
-        known.chain([(self.places.len(), words / LENGTH_UNIT), (self.places.len() + 1, 1.0)]).collect()
+        known.chain([(self.places.len(), words / LENGTH_UNIT_WORDS), (self.places.len() + 1, 1.0)]).collect()
     }
 }
 

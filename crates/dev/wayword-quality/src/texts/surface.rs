@@ -8,7 +8,7 @@ use super::{
 use std::collections::BTreeSet;
 
 /// Word types, the different words, are counted over the first texts, at most this many.
-const TYPES_OVER: usize = 500;
+const WORD_TYPE_TEXTS: usize = 500;
 /// Percentiles of the number of words.
 const LENGTH_PERCENTILES: [usize; 3] = [5, 50, 95];
 /// How texts may begin.
@@ -65,9 +65,9 @@ fn begins_with(words: &[String], opener: &str) -> bool {
     opener.split(' ').eq(words.iter().map(String::as_str).take(opener.split(' ').count()))
 }
 
-/// The number of different words in the first [`TYPES_OVER`] texts.
+/// The number of different words in the first [`WORD_TYPE_TEXTS`] texts.
 fn count_word_types(texts: &[&str]) -> usize {
-    let lower = texts.iter().take(TYPES_OVER).map(|text| text.to_lowercase()).collect::<Vec<_>>().join("\n");
+    let lower = texts.iter().take(WORD_TYPE_TEXTS).map(|text| text.to_lowercase()).collect::<Vec<_>>().join("\n");
     let words: BTreeSet<&str> =
         lower.split(|c: char| !c.is_ascii_alphabetic()).filter(|word| !word.is_empty()).collect();
     words.len()

@@ -6,23 +6,23 @@ use crate::{FormatError, limits};
 #[derive(Debug, Default)]
 pub struct SubmissionProblems {
     /// The problems that are listed one by one.
-    pub told: Vec<FormatError>,
+    pub listed: Vec<FormatError>,
     /// The number of the others.
-    pub untold: usize,
+    pub unlisted_count: usize,
 }
 
 impl SubmissionProblems {
     /// How many there are.
     #[must_use]
     pub fn count(&self) -> usize {
-        self.told.len() + self.untold
+        self.listed.len() + self.unlisted_count
     }
 
     pub(super) fn add_problem(&mut self, problem: FormatError) {
-        if self.told.len() < limits::MAX_LISTED_PROBLEMS {
-            self.told.push(problem);
+        if self.listed.len() < limits::MAX_LISTED_PROBLEMS {
+            self.listed.push(problem);
         } else {
-            self.untold += 1;
+            self.unlisted_count += 1;
         }
     }
 

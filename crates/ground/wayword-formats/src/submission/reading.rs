@@ -7,7 +7,7 @@ use std::{collections::BTreeSet, path::Path};
 use wayword_core::{Heading, ViewpointId};
 
 /// Longest name of an item, bytes: its episode's name, an underscore, and a number of at most 20 digits.
-const INSTR_ID_BYTES: usize = limits::NAME_BYTES + 21;
+const MAX_INSTR_ID_BYTES: usize = limits::MAX_NAME_BYTES + 21;
 
 /// The usable items of a submission, and the problems of the others.
 #[derive(Debug)]
@@ -64,7 +64,7 @@ impl SubmissionReader {
         match (name, trajectory, object) {
             (Some(instr_id), Some(trajectory), Some(object)) if !is_flawed => {
                 self.poses += trajectory.len();
-                if self.poses > limits::POSES_KEPT {
+                if self.poses > limits::MAX_POSES_IN_MEMORY {
                     let problem = "its trajectories have more than 4,000,000 entries, more than is kept in memory";
                     return Err(FormatError::for_document(item.file(), problem, "split it into parts"));
                 }
@@ -82,7 +82,7 @@ impl SubmissionReader {
         let field = "instr_id";
         let value = self.problems.value_or_problem(item.take_field(field))?;
         let name = item::name_of(&value)
-            .filter(|name| !name.is_empty() && name.len() <= INSTR_ID_BYTES && !name.chars().any(char::is_control));
+            .filter(|name| !name.is_empty() && name.len() <= MAX_INSTR_ID_BYTES && !name.chars().any(char::is_control));
         let Some(name) = name else {
             self.problems.add_problem(item.expected_kind(field, WHAT, &value, HINT));
             return None;
@@ -99,7 +99,7 @@ impl SubmissionReader {
     fn take_trajectory(&mut self, item: &mut DatasetItem<'_>) -> Option<Vec<TrajectoryPose>> {
         let field = "trajectory";
         let value = self.problems.value_or_problem(item.take_field(field))?;
-        let entries = self.problems.value_or_problem(item.checked_list(field, &value, limits::TRAJECTORY_POSES))?;
+        let entries = self.problems.value_or_problem(item.checked_list(field, &value, limits::MAX_TRAJECTORY_POSES))?;
         if entries.is_empty() {
             self.problems.add_problem(item.wrong_field(field, "it is empty", "a trajectory has at least its start"));
             return None;

@@ -11,9 +11,9 @@ use std::{
 use wayword_core::hex_text;
 
 /// Largest picture that is read, bytes: 16 MiB. A larger one is an error.
-const PICTURE_BYTES: u64 = 16 << 20;
+const MAX_PICTURE_BYTES: u64 = 16 << 20;
 /// Most files of one shard that are looked at; pictures behind them count as missing.
-const SHARD_FILES: usize = 4_000_000;
+const MAX_SHARD_FILES: usize = 4_000_000;
 const REWRITE_HINT: &str = "write the trajectories again: the same command goes on where it stopped";
 
 /// The name of the n-th picture of a walk, from 0.
@@ -79,8 +79,8 @@ pub fn read_pictures(folder: &Path, trajectory: &ActionTrajectory) -> Result<Vec
 /// The bytes of a picture, which are bounded.
 fn picture_bytes(file: io::Result<impl Read>) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    file?.take(PICTURE_BYTES + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > PICTURE_BYTES {
+    file?.take(MAX_PICTURE_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MAX_PICTURE_BYTES {
         return Err(io::Error::new(io::ErrorKind::InvalidData, "a picture is larger than 16 MiB"));
     }
     Ok(bytes)
@@ -90,7 +90,7 @@ fn picture_bytes(file: io::Result<impl Read>) -> io::Result<Vec<u8>> {
 fn sample_pictures(file: &Path, key: &str, count: usize) -> io::Result<Vec<Vec<u8>>> {
     let mut archive = tar::Archive::new(io::BufReader::new(File::open(file)?));
     let mut pictures = Vec::new();
-    for entry in archive.entries()?.take(SHARD_FILES) {
+    for entry in archive.entries()?.take(MAX_SHARD_FILES) {
         let entry = entry?;
         let name = entry.path()?.to_string_lossy().into_owned();
         if pictures.len() >= count {

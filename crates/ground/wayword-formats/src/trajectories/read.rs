@@ -12,7 +12,7 @@ use wayword_core::{AgentAction, DVec3, Heading};
 /// Most actions of one walk; a file with a longer one is refused.
 const MAX_ACTIONS: usize = 25_000;
 /// Most actions of all walks together that are kept in memory; a file with more is refused.
-const ACTIONS_KEPT: usize = 20_000_000;
+const MAX_ACTIONS_IN_MEMORY: usize = 20_000_000;
 
 /// Reads `trajectories.jsonl`, plain or gzip.
 ///
@@ -27,7 +27,7 @@ pub fn read_trajectories(file: &Path) -> Result<Vec<ActionTrajectory>, FormatErr
             return Err(item.wrong_field("trajectory_id", problem, "give each walk its own name"));
         }
         kept += trajectory.actions.len();
-        if kept > ACTIONS_KEPT {
+        if kept > MAX_ACTIONS_IN_MEMORY {
             let problem = "its walks have more than 20,000,000 actions";
             return Err(FormatError::for_document(file, problem, "split it into parts"));
         }
@@ -118,7 +118,7 @@ fn take_poses(item: &mut DatasetItem<'_>, count: usize) -> Result<(Vec<DVec3>, V
 /// Takes, for each frame, the action before which the agent comes there.
 fn take_frame_steps(item: &mut DatasetItem<'_>, actions: usize) -> Result<Vec<usize>, FormatError> {
     let value = item.take_field("frame_steps")?;
-    item.checked_list("frame_steps", &value, limits::PATH_NODES)?;
+    item.checked_list("frame_steps", &value, limits::MAX_PATH_NODES)?;
     let steps: Vec<usize> = item.parse_value("frame_steps", value)?;
     if steps.is_empty() || !steps.is_sorted() || steps.last().is_some_and(|last| *last >= actions) {
         let problem = "expected the numbers of actions, in order, one for each frame";
@@ -135,7 +135,7 @@ fn take_place(item: &mut DatasetItem<'_>) -> Result<PictureLocation, FormatError
         PictureLocation::Folder(folder) => (folder, None),
         PictureLocation::Sample { shard, key } => (shard, Some(key)),
     };
-    let is_below = path.len() <= limits::LINE_BYTES.min(512)
+    let is_below = path.len() <= limits::MAX_LINE_BYTES.min(512)
         && Path::new(path).components().all(|part| matches!(part, Component::Normal(_)))
         && !path.is_empty();
     if !is_below {
@@ -160,8 +160,9 @@ fn take_instructions(
     for (number, value) in list.iter().enumerate() {
         let field = format!("instructions[{number}]");
         let instruction: TrajectoryInstruction = item.parse_value(&field, value.clone())?;
-        if instruction.text.len() > limits::INSTRUCTION_BYTES {
-            let problem = format!("it has {} bytes, more than {}", instruction.text.len(), limits::INSTRUCTION_BYTES);
+        if instruction.text.len() > limits::MAX_INSTRUCTION_BYTES {
+            let problem =
+                format!("it has {} bytes, more than {}", instruction.text.len(), limits::MAX_INSTRUCTION_BYTES);
             return Err(item.wrong_field(
                 &format!("{field}.text"),
                 problem,

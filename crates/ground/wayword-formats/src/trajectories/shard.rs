@@ -13,7 +13,7 @@ use std::{
 pub struct ShardWriter {
     file: PathBuf,
     /// The name that the shard has while it is written.
-    beside: PathBuf,
+    temporary_file: PathBuf,
     tar: tar::Builder<BufWriter<File>>,
 }
 
@@ -31,7 +31,7 @@ impl ShardWriter {
     pub fn begin(file: &Path) -> io::Result<Self> {
         let beside = file.with_extension("tar.part");
         let tar = tar::Builder::new(BufWriter::new(File::create(&beside)?));
-        Ok(Self { file: file.to_owned(), beside, tar })
+        Ok(Self { file: file.to_owned(), temporary_file: beside, tar })
     }
 
     /// Adds a walk with its pictures.
@@ -61,6 +61,6 @@ impl ShardWriter {
         let mut out = self.tar.into_inner()?;
         out.flush()?;
         out.get_ref().sync_all()?;
-        fs::rename(&self.beside, &self.file)
+        fs::rename(&self.temporary_file, &self.file)
     }
 }

@@ -26,7 +26,7 @@ fn in_file<T>(contents: impl AsRef<[u8]>, look: impl FnOnce(&Path) -> T) -> T {
 /// All items of a file without problems.
 fn whole(file: &Path) -> Vec<SubmittedTrajectory> {
     let SubmissionReading { submitted, flawed, problems, is_whole } = read_submission(file);
-    assert!(problems.told.is_empty() && flawed.is_empty() && is_whole, "{problems:?} {flawed:?}");
+    assert!(problems.listed.is_empty() && flawed.is_empty() && is_whole, "{problems:?} {flawed:?}");
     submitted
 }
 
@@ -36,7 +36,7 @@ fn good(items: &Value) -> Vec<SubmittedTrajectory> {
 
 /// The problems of a file, without its name.
 fn problems(contents: impl AsRef<[u8]>) -> Vec<String> {
-    let SubmissionProblems { told, untold } = in_file(contents, read_submission).problems;
+    let SubmissionProblems { listed: told, unlisted_count: untold } = in_file(contents, read_submission).problems;
     assert_eq!(untold, 0);
     let bare = |text: String| text.split_once("submission.json: ").unwrap().1.to_owned();
     told.iter().map(|problem| bare(problem.to_string())).collect()
@@ -145,13 +145,13 @@ fn read_lists_problems_before_the_file_broke_off() {
 fn read_lists_a_thousand_problems_and_counts_the_rest() {
     let items: Vec<Value> = (0..1_500).map(|n| json!({"instr_id": format!("{n}_0")})).collect();
     let problems = in_file(Value::from(items).to_string(), read_submission).problems;
-    assert_eq!((problems.told.len(), problems.untold, problems.count()), (1_000, 500, 1_500));
+    assert_eq!((problems.listed.len(), problems.unlisted_count, problems.count()), (1_000, 500, 1_500));
 }
 
 #[test]
 fn a_file_that_is_not_there_is_refused() {
     let SubmissionReading { problems, is_whole, .. } = read_submission(Path::new("nowhere/submission.json"));
-    assert!(problems.told[0].to_string().starts_with("nowhere/submission.json: cannot open it") && !is_whole);
+    assert!(problems.listed[0].to_string().starts_with("nowhere/submission.json: cannot open it") && !is_whole);
 }
 
 #[test]
@@ -247,7 +247,7 @@ fn the_reader_survives_damage() {
             if problems.count() > 0 {
                 refused += 1;
                 let file = file.display().to_string();
-                for problem in problems.told.iter().map(ToString::to_string) {
+                for problem in problems.listed.iter().map(ToString::to_string) {
                     assert!(problem.starts_with(&file), "does not name its file: {problem:.2000}");
                     assert!(problem.len() < 600, "rambles: {problem:.2000}");
                 }

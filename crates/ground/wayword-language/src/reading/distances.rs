@@ -7,7 +7,7 @@ const FOOT_M: f64 = 0.3048;
 /// Length of a person's step, metres: a short one and a long one.
 const STEP_M: [f64; 2] = [0.4, 0.9];
 /// Farther than any text asks to walk, metres. A greater distance is a mistake and is not read.
-const FARTHEST_M: f64 = 100_000.0;
+const MAX_DISTANCE_M: f64 = 100_000.0;
 
 /// The distances that a text asks to walk. A distance that only locates something ("two feet from the sofa") is none,
 /// and neither are the steps of stairs.
@@ -54,7 +54,7 @@ fn distance_at(tokens: TokenSlice<'_>, at: usize) -> Option<DistanceWords> {
 /// Numbers of a unit in metres; `None` where they are no distance. `unit` is the least and the greatest length of one.
 fn in_metres(numbers: [f64; 2], unit: [f64; 2]) -> Option<[f64; 2]> {
     let metres = [numbers[0] * unit[0], numbers[1] * unit[1]];
-    (0.0 < metres[0] && metres[0] <= metres[1] && metres[1] <= FARTHEST_M).then_some(metres)
+    (0.0 < metres[0] && metres[0] <= metres[1] && metres[1] <= MAX_DISTANCE_M).then_some(metres)
 }
 
 /// The number and the unit of one word: "10ft", "3.5m".

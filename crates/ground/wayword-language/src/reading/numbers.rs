@@ -13,7 +13,7 @@ pub(super) struct PlaceNumbers<'a> {
     /// For each token, where the run of adjectives and numbers before it begins.
     runs: Vec<usize>,
     /// For each token, whether it belongs to a turn or a storey.
-    others: Vec<bool>,
+    in_other_event: Vec<bool>,
 }
 
 impl<'a> PlaceNumbers<'a> {
@@ -27,12 +27,12 @@ impl<'a> PlaceNumbers<'a> {
         let is_number_or_adjective = |word: &str| {
             v::ADJECTIVES.contains(&word) || cardinal_number(word).is_some() || ordinal_word(word).is_some()
         };
-        Self { tokens, runs: tokens.runs_before(is_number_or_adjective), others }
+        Self { tokens, runs: tokens.runs_before(is_number_or_adjective), in_other_event: others }
     }
 
     /// The adjectives and numbers before a token, the nearest first.
     fn words_before(&self, from: usize) -> impl Iterator<Item = usize> {
-        (self.runs[from]..from).rev().take(NUMBER_REACH_WORDS).filter(|at| !self.others[*at])
+        (self.runs[from]..from).rev().take(NUMBER_REACH_WORDS).filter(|at| !self.in_other_event[*at])
     }
 
     /// "The second door", "the last two chairs": which one the noun phrase that begins at a token means.

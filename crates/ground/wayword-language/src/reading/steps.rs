@@ -115,7 +115,7 @@ pub fn read_steps(text: &str, reading: &TextReading) -> Vec<InstructionStep> {
 }
 
 /// How far behind its verb the side of a turn may be, words.
-const TURN_REACH: usize = 5;
+const TURN_REACH_WORDS: usize = 5;
 
 /// Cuts the tokens at clauses, before a condition, and before a second turn.
 fn step_ranges(tokens: &[TextToken], clauses: &[usize], events: &[(usize, &TextEvent)]) -> Vec<Range<usize>> {
@@ -133,7 +133,9 @@ fn step_ranges(tokens: &[TextToken], clauses: &[usize], events: &[(usize, &TextE
             && clauses.get(at + 1).is_some_and(|clause| *clause == clauses[at])
             && events_before(*cuts.last().unwrap_or(&0)) < events_before(at)
             && events[events_before(at)..].first().is_some_and(|(turn, event)| {
-                *turn <= at + TURN_REACH && clauses[*turn] == clauses[at] && matches!(event.what, EventContent::Turn(_))
+                *turn <= at + TURN_REACH_WORDS
+                    && clauses[*turn] == clauses[at]
+                    && matches!(event.what, EventContent::Turn(_))
             });
         if new_clause || (has_word && is_condition) || (is_turn && has_turn) || (has_word && begins_turn) {
             cuts.push(at);

@@ -64,7 +64,7 @@ struct ShellScriptReader {
     /// Whether the next word is a file that is read or written, and not an argument.
     is_redirected: bool,
     /// The words of the current command.
-    now: Vec<String>,
+    command_words: Vec<String>,
     /// The line on which the current command began.
     begun: Option<usize>,
     /// The commands that have ended.
@@ -92,7 +92,7 @@ impl ShellScriptReader {
         if let Some(word) = self.word.take()
             && !std::mem::take(&mut self.is_redirected)
         {
-            self.now.push(word);
+            self.command_words.push(word);
         }
     }
 
@@ -101,7 +101,7 @@ impl ShellScriptReader {
         self.end_word();
         self.is_redirected = false;
         let line = self.begun.take().unwrap_or(self.line);
-        let mut words = std::mem::take(&mut self.now);
+        let mut words = std::mem::take(&mut self.command_words);
         let variable_count = words.iter().take_while(|word| parse_assignment(word).is_some()).count();
         let variables = words.drain(..variable_count).filter_map(|word| parse_assignment(&word)).collect();
         if !words.is_empty() {

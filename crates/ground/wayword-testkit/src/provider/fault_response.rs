@@ -23,7 +23,7 @@ pub(super) struct FaultResponder<'a> {
     pub(super) line: &'a BreakSwitch,
     pub(super) headers: &'a HeaderMap,
     /// The answer without the fault.
-    pub(super) said: ScriptReply,
+    pub(super) good_reply: ScriptReply,
 }
 
 impl FaultResponder<'_> {
@@ -44,7 +44,7 @@ impl FaultResponder<'_> {
             ServiceFault::Trickle => self.respond_and_break(ConnectionBreak::Trickle(self.faults.trickle)),
             ServiceFault::Endless => self.respond_and_break(ConnectionBreak::Endless),
             ServiceFault::Truncated => {
-                let whole = self.dialect.reply_body(&self.said).to_string();
+                let whole = self.dialect.reply_body(&self.good_reply).to_string();
                 let half: String = whole.chars().take(whole.chars().count() / 2).collect();
                 ([(header::CONTENT_TYPE, "application/json")], half).into_response()
             }
@@ -58,15 +58,19 @@ impl FaultResponder<'_> {
                 self.dialect.error_response(ServiceErrorKind::Server, &message)
             }
             ServiceFault::CutOff => {
-                let words: Vec<&str> = self.said.text.split_inclusive(' ').collect();
+                let words: Vec<&str> = self.good_reply.text.split_inclusive(' ').collect();
                 let text = words[..words.len() / 2].concat();
-                json_response(&self.dialect.reply_body(&ScriptReply { text, end: ReplyEnding::Length, ..self.said }))
+                json_response(&self.dialect.reply_body(&ScriptReply {
+                    text,
+                    end: ReplyEnding::Length,
+                    ..self.good_reply
+                }))
             }
             ServiceFault::Filtered => {
-                json_response(&self.dialect.reply_body(&ScriptReply { end: ReplyEnding::Filtered, ..self.said }))
+                json_response(&self.dialect.reply_body(&ScriptReply { end: ReplyEnding::Filtered, ..self.good_reply }))
             }
             ServiceFault::Refused => {
-                json_response(&self.dialect.reply_body(&ScriptReply { end: ReplyEnding::Refused, ..self.said }))
+                json_response(&self.dialect.reply_body(&ScriptReply { end: ReplyEnding::Refused, ..self.good_reply }))
             }
         }
     }
@@ -74,7 +78,7 @@ impl FaultResponder<'_> {
     /// A good answer on a connection that breaks.
     fn respond_and_break(&self, how: ConnectionBreak) -> Response {
         self.line.order_break(how);
-        json_response(&self.dialect.reply_body(&self.said))
+        json_response(&self.dialect.reply_body(&self.good_reply))
     }
 }
 

@@ -24,7 +24,7 @@ use std::{
 use tokio::net::TcpListener;
 
 /// Largest body of a request that is accepted, bytes; several pictures fit. A larger one is refused with 413.
-const LARGEST_BODY: usize = 64 << 20;
+const MAX_BODY_BYTES: usize = 64 << 20;
 /// Tokens that are billed for a picture: about as many as two large services bill for 512 x 384 pixels.
 const PICTURE_TOKENS: u64 = 262;
 /// Characters of English text for each of its tokens.
@@ -61,7 +61,7 @@ pub(super) async fn serve_connections(listener: TcpListener, shared: Arc<Provide
         .route("/v1/models", list_route(ProviderDialect::OpenAi))
         .route("/v1beta/models", list_route(ProviderDialect::Gemini))
         .route("/api/tags", list_route(ProviderDialect::Ollama))
-        .layer(DefaultBodyLimit::max(LARGEST_BODY))
+        .layer(DefaultBodyLimit::max(MAX_BODY_BYTES))
         .with_state(shared);
     // It ends only with the runtime.
     let _ = axum::serve(BreakableListener(listener), router.into_make_service_with_connect_info::<BreakSwitch>()).await;
@@ -160,7 +160,7 @@ impl ProviderState {
             Some(fault) => {
                 *self.lock_log().faults.entry(fault).or_default() += 1;
                 let IncomingRequest { dialect, headers, line, .. } = arrival;
-                FaultResponder { dialect: *dialect, faults: &self.behaviour.faults, line, headers, said }
+                FaultResponder { dialect: *dialect, faults: &self.behaviour.faults, line, headers, good_reply: said }
                     .respond_with_fault(fault)
             }
         }

@@ -52,7 +52,7 @@ pub struct DetectableShareDifference {
 pub fn detectable_difference(plan: &PowerPlan, power: f64, significance: f64) -> Option<DetectableShareDifference> {
     let answers_per_condition = (plan.persons * plan.answers_per_person) as f64 / 2.0;
     let is_inside = |share: f64| share > 0.0 && share < 1.0;
-    let is_sd = |sd: f64| (0.0..=MOST_SD).contains(&sd);
+    let is_sd = |sd: f64| (0.0..=MAX_LOGIT_SD).contains(&sd);
     let is_possible = [plan.base_share, power, significance].into_iter().all(is_inside)
         && is_sd(plan.person_sd)
         && is_sd(plan.item_sd)
@@ -65,7 +65,7 @@ pub fn detectable_difference(plan: &PowerPlan, power: f64, significance: f64) ->
 }
 
 /// Largest standard deviation of logits that is accepted. Beyond it a person gives nearly always the same answer.
-const MOST_SD: f64 = 10.0;
+const MAX_LOGIT_SD: f64 = 10.0;
 
 /// The factor by which the variance exceeds that of independent answers, for `answers` in each condition.
 fn design_effect(plan: &PowerPlan, answers: f64) -> f64 {

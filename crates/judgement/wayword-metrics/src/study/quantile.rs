@@ -29,10 +29,10 @@ pub(super) fn student_quantile(share: f64, degrees: usize) -> Option<f64> {
     if degrees == 0 || !(tail > 0.0 && tail <= 0.5) {
         return None;
     }
-    let distribution = StudentDistribution::new(degrees.min(MOST_DEGREES));
+    let distribution = StudentDistribution::new(degrees.min(MAX_DEGREES));
     let (mut low, mut high) = (0.0, f64::INFINITY);
     let mut at = normal_quantile(share);
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_QUANTILE_STEPS {
         let over = distribution.upper_tail(at) - tail;
         if over > 0.0 {
             low = at;
@@ -56,9 +56,9 @@ pub(super) fn student_quantile(share: f64, degrees: usize) -> Option<f64> {
 }
 
 /// Beyond this many degrees of freedom the quantile equals the normal one in all digits that reports show.
-const MOST_DEGREES: usize = 1_000_000;
+const MAX_DEGREES: usize = 1_000_000;
 /// Steps of the iteration at most; then the value so far is returned. Bisection alone needs fewer.
-const MOST_STEPS: usize = 200;
+const MAX_QUANTILE_STEPS: usize = 200;
 
 /// Student's distribution with its degrees of freedom.
 struct StudentDistribution {

@@ -11,7 +11,7 @@ use wayword_core::{ViewpointGraph, ViewpointId};
 pub struct SceneDistances {
     places: NumberedViewpoints,
     /// The edges of the graph.
-    roads: EdgeLists,
+    edge_lists: EdgeLists,
     /// From one place to all, place after place; infinite where there is no way.
     metres: Vec<f64>,
 }
@@ -27,7 +27,7 @@ impl SceneDistances {
         for (start, row) in metres.chunks_exact_mut(places.len().max(1)).enumerate() {
             roads.walk_all(start, row, &mut frontier);
         }
-        Self { places, roads, metres }
+        Self { places, edge_lists: roads, metres }
     }
 
     /// The length of the shortest way from one viewpoint to another, metres; `None` where there is no way, or where the
@@ -68,7 +68,7 @@ impl SceneDistances {
 
     /// Whether an edge joins two places.
     pub(super) fn are_joined(&self, a: usize, b: usize) -> bool {
-        self.roads.edges_from(a).iter().any(|(other, _)| *other == b)
+        self.edge_lists.edges_from(a).iter().any(|(other, _)| *other == b)
     }
 }
 

@@ -12,7 +12,7 @@ pub(super) struct PathDistances {
     /// Metres, infinite where there is no way; a row for each viewpoint of the trajectory.
     metres: Vec<f64>,
     /// The number of viewpoints of the annotated path.
-    on_path: usize,
+    path_viewpoint_count: usize,
 }
 
 impl PathDistances {
@@ -22,12 +22,12 @@ impl PathDistances {
         for place in taken {
             metres.extend(reference.iter().map(|other| distances.metres_between_places(*place, *other)));
         }
-        Self { metres, on_path: reference.len() }
+        Self { metres, path_viewpoint_count: reference.len() }
     }
 
     /// The row of each viewpoint of the trajectory.
     fn rows(&self) -> impl Iterator<Item = &[f64]> {
-        self.metres.chunks_exact(self.on_path)
+        self.metres.chunks_exact(self.path_viewpoint_count)
     }
 
     /// The distance from each viewpoint of the trajectory to the goal, metres.
@@ -39,7 +39,7 @@ impl PathDistances {
     pub(super) fn ndtw(&self) -> f64 {
         // `costs[n]` is the least cost of aligning the viewpoints so far with the first n + 1 of the path. `before_all` is the
         // cost of aligning them with none: 0 at first, impossible after the first viewpoint.
-        let mut costs = vec![f64::INFINITY; self.on_path];
+        let mut costs = vec![f64::INFINITY; self.path_viewpoint_count];
         let mut before_all = 0.0;
         for row in self.rows() {
             let mut diagonal = std::mem::replace(&mut before_all, f64::INFINITY);
@@ -49,16 +49,16 @@ impl PathDistances {
                 diagonal = std::mem::replace(cost, left);
             }
         }
-        (-costs[self.on_path - 1] / (THRESHOLD_M * self.on_path as f64)).exp()
+        (-costs[self.path_viewpoint_count - 1] / (THRESHOLD_M * self.path_viewpoint_count as f64)).exp()
     }
 
     /// Coverage weighted by length score (Jain et al. 2019, arXiv 1905.12255), for the lengths of the trajectory and of the path.
     pub(super) fn cls(&self, length_m: f64, path_m: f64) -> f64 {
         // A column of the matrix: from each viewpoint of the trajectory to one of the path.
-        let column_m = |at: usize| self.metres[at..].iter().step_by(self.on_path);
+        let column_m = |at: usize| self.metres[at..].iter().step_by(self.path_viewpoint_count);
         let nearest_m = |at| column_m(at).copied().fold(f64::INFINITY, lesser_distance);
-        let covered: f64 = (0..self.on_path).map(|at| (-nearest_m(at) / THRESHOLD_M).exp()).sum();
-        let coverage = covered / self.on_path as f64;
+        let covered: f64 = (0..self.path_viewpoint_count).map(|at| (-nearest_m(at) / THRESHOLD_M).exp()).sum();
+        let coverage = covered / self.path_viewpoint_count as f64;
         let expected_m = coverage * path_m;
         let off_m = (expected_m - length_m).abs();
         if expected_m.is_infinite() {

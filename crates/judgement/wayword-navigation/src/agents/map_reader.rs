@@ -5,7 +5,7 @@ use super::{AgentStart, AgentWalk, baselines::follow_nodes};
 use crate::{directions::beginning_of, error::WalkError};
 use wayword_core::{ViewpointGraph, ViewpointId, ViewpointSurvey};
 use wayword_follower::{
-    FeatureWeights, Guide, GuideTrial, KnownBuilding, MOST_WORK, WalkFit, WalkPrior, WalkTree, best_walk,
+    FeatureWeights, Guide, GuideTrial, KnownBuilding, MAX_FOLLOW_WORK, WalkFit, WalkPrior, WalkTree, best_walk,
 };
 
 /// A scene that is known as a whole.
@@ -57,7 +57,7 @@ impl<'a> MapReader<'a> {
     pub fn best_walk(&self, text: &str) -> AgentWalk {
         let guide = Guide::read_text(beginning_of(text));
         let mut walk = Vec::new();
-        if guide.len().saturating_mul(self.tree.len()) <= MOST_WORK {
+        if guide.len().saturating_mul(self.tree.len()) <= MAX_FOLLOW_WORK {
             let fit =
                 WalkFit::new(&GuideTrial::new(&guide, &self.known.building), &self.tree, FeatureWeights::fitted());
             walk = best_walk(&fit, &self.tree).map(|best| self.middle_walk(&fit, best)).unwrap_or_default();

@@ -14,7 +14,7 @@ pub use parameters::{BacktrackParameters, PhraseWalkParameters};
 pub use phrase_walker::walk_by_phrases;
 pub use reader::walk_by_reading;
 pub use tools::{
-    MOST_TEXT_CHARS, ModelWalker, ToolAgentSight, ToolWalkLimits, ViewDescriber, prompt_wording, rehearse_route,
+    MAX_INSTRUCTION_CHARS, ModelWalker, ToolAgentSight, ToolWalkLimits, ViewDescriber, prompt_wording, rehearse_route,
     walk_by_tools,
 };
 pub use wayword_follower::WalkPrior;

@@ -14,7 +14,7 @@ use wayword_follower::{
 };
 
 /// Most hops of a walk; a walk that would go on ends as [`WalkEnd::Cap`]. The reader normally stops long before.
-const MOST_HOPS: usize = 100;
+const MAX_READER_HOPS: usize = 100;
 
 /// Walks by an instruction, reading all of it. At each node the agent gets only a [`WalkerSighting`].
 ///
@@ -48,7 +48,7 @@ fn walk_by_decisions(
             WalkerDecision::Stop => None,
         };
         let (to, end) = match to {
-            Some(_) if steps.len() >= MOST_HOPS => (None, WalkEnd::Cap),
+            Some(_) if steps.len() >= MAX_READER_HOPS => (None, WalkEnd::Cap),
             None if sighting.hops.is_empty() => (None, WalkEnd::DeadEnd),
             to => (to, WalkEnd::Stopped),
         };

@@ -39,16 +39,16 @@ pub struct EffortSummary {
 
 /// The effort of one walk.
 #[derive(Debug, Clone)]
-pub(super) struct OfWalk {
+pub(super) struct RecordedEffort {
     effort: WalkEffort,
     hops: usize,
     end: WalkEnd,
 }
 
 /// The efforts of one agent on one set: by item, then by the text's index in its set.
-pub(super) type OfWalks = BTreeMap<String, BTreeMap<usize, OfWalk>>;
+pub(super) type EffortsByItem = BTreeMap<String, BTreeMap<usize, RecordedEffort>>;
 
-impl OfWalk {
+impl RecordedEffort {
     /// The effort of a walk; `None` if no language model decided.
     pub(super) fn from_walk(walk: &AgentWalkRecord) -> Option<Self> {
         let hops = walk.steps.len().saturating_sub(1);
@@ -59,11 +59,11 @@ impl OfWalk {
 impl EffortSummary {
     /// Summarises the walks of an agent by a set. `estimate` computes the mean of the items' figures with its interval.
     pub(super) fn from_efforts(
-        by_item: &OfWalks,
+        by_item: &EffortsByItem,
         estimate: impl Fn(BTreeMap<&str, f64>) -> Option<MeanEstimate>,
     ) -> Option<Self> {
         // The mean of a figure over items; `None` if one walk lacks it.
-        let mean = |figure: &dyn Fn(&OfWalk) -> Option<f64>| {
+        let mean = |figure: &dyn Fn(&RecordedEffort) -> Option<f64>| {
             let mut means = BTreeMap::new();
             for (item, texts) in by_item {
                 let figures = texts.values().map(figure).collect::<Option<Vec<f64>>>()?;

@@ -7,7 +7,7 @@ mod table;
 
 pub use effort_summary::EffortSummary;
 pub use results::WalkScores;
-pub use table::{ComparedAgent, EMPTY, UNREAD_SET_NAME, compare_agents, empty_set, swapped_set};
+pub use table::{ComparedAgent, EMPTY_SET_SUFFIX, UNREAD_SET_NAME, compare_agents, empty_set, swapped_set};
 
 use crate::swap::InstructionSwap;
 use serde::{Deserialize, Serialize};
@@ -165,12 +165,12 @@ pub enum ListeningVerdict {
     Shown,
     /// The interval includes 0 or less. This does not prove that the agent ignores the swapped information.
     NotShown,
-    /// The swap changed texts on fewer than [`FEWEST_PATHS`] paths, too few for a reliable interval.
+    /// The swap changed texts on fewer than [`MIN_PATHS`] paths, too few for a reliable interval.
     TooFew,
 }
 
 /// The fewest paths for which a bootstrap interval over paths is reliable. With fewer, a swap test gives [`ListeningVerdict::TooFew`].
-pub const FEWEST_PATHS: usize = 20;
+pub const MIN_PATHS: usize = 20;
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,6 @@
 //! Collects the scores and the efforts of walks by agent, set, item and text, for the table to average.
 
-use super::effort_summary::{OfWalk, OfWalks};
+use super::effort_summary::{EffortsByItem, RecordedEffort};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_metrics::{TrajectoryMetric, TrajectoryScore, TrajectorySuccessRule};
 
@@ -13,7 +13,7 @@ pub struct WalkScores {
     /// The scores of all walks, by agent and set.
     scores: BTreeMap<(String, String), ScoresByItem>,
     /// The efforts of walks in which a language model decided, by agent and set.
-    efforts: BTreeMap<(String, String), OfWalks>,
+    efforts: BTreeMap<(String, String), EffortsByItem>,
     /// The path of each item. Items on one path are not independent, so intervals are clustered by path.
     clusters: BTreeMap<String, String>,
 }
@@ -26,7 +26,7 @@ impl WalkScores {
     pub fn add_walk(&mut self, walk: &crate::walk::AgentWalkRecord, cluster: &str, score: TrajectoryScore) {
         let scores = self.scores.entry((walk.agent.clone(), walk.set.clone())).or_default();
         scores.entry(walk.item.clone()).or_default().insert(walk.text_index, score);
-        if let Some(effort) = OfWalk::from_walk(walk) {
+        if let Some(effort) = RecordedEffort::from_walk(walk) {
             let all = self.efforts.entry((walk.agent.clone(), walk.set.clone())).or_default();
             all.entry(walk.item.clone()).or_default().insert(walk.text_index, effort);
         }
@@ -96,7 +96,7 @@ impl WalkScores {
     }
 
     /// The efforts of an agent's walks by a set; `None` if no language model decided.
-    pub(super) fn walk_efforts(&self, agent: &str, set: &str) -> Option<&OfWalks> {
+    pub(super) fn walk_efforts(&self, agent: &str, set: &str) -> Option<&EffortsByItem> {
         self.efforts.get(&(agent.to_owned(), set.to_owned()))
     }
 

@@ -2,8 +2,8 @@
 //! item, and the swap tests.
 
 use super::{
-    AgentComparison, AgentKind, ComparisonInfo, ComparisonRow, EffortSummary, FEWEST_PATHS, InstructionSet,
-    ListeningVerdict, RowDifference, SwapEffect, WalkScores, results::TextsByItem,
+    AgentComparison, AgentKind, ComparisonInfo, ComparisonRow, EffortSummary, InstructionSet, ListeningVerdict,
+    MIN_PATHS, RowDifference, SwapEffect, WalkScores, results::TextsByItem,
 };
 use crate::swap::InstructionSwap;
 use std::collections::BTreeMap;
@@ -18,11 +18,11 @@ pub fn swapped_set(set: &str, swap: InstructionSwap) -> String {
 /// The name under which walks by an empty text, instead of a set's texts, are recorded.
 #[must_use]
 pub fn empty_set(set: &str) -> String {
-    format!("{set}~{EMPTY}")
+    format!("{set}~{EMPTY_SET_SUFFIX}")
 }
 
 /// The part after `~` in the name that [`empty_set`] gives. Swapped sets have the swap's name there.
-pub const EMPTY: &str = "empty";
+pub const EMPTY_SET_SUFFIX: &str = "empty";
 
 /// The set name under which walks of agents that do not read are recorded.
 pub const UNREAD_SET_NAME: &str = "none";
@@ -38,14 +38,14 @@ pub struct ComparedAgent {
     pub reads: bool,
     /// Whether the agent's knowledge may lead it to the goal without its instruction. Then it has two more rows as lower bounds: by
     /// an empty text, and by the text of another path.
-    pub has_floors: bool,
+    pub has_extra_rows: bool,
 }
 
 impl ComparedAgent {
     /// Whether swap tests are meaningful for it: either it can find the goal only by reading, or its two extra rows show what it
     /// reaches without reading.
     fn is_swapped(&self) -> bool {
-        self.kind == AgentKind::Agent || self.has_floors
+        self.kind == AgentKind::Agent || self.has_extra_rows
     }
 }
 
@@ -66,7 +66,7 @@ pub fn compare_agents(
                 let first = sets.first().filter(|_| at > 0);
                 table.comparison_row(walker, Some(&set.name), first.map(|first| first.name.as_str()))
             }));
-            if let Some(first) = sets.first().filter(|_| walker.has_floors) {
+            if let Some(first) = sets.first().filter(|_| walker.has_extra_rows) {
                 let extra_sets = [empty_set(&first.name), swapped_set(&first.name, InstructionSwap::OtherPath)];
                 rows.extend(extra_sets.iter().map(|set| table.comparison_row(walker, Some(set), None)));
             }
@@ -112,8 +112,8 @@ impl TableBuilder<'_> {
         let texts = self.results.texts_walked(&walker.name, &set);
         let lost = self.row_difference(&walker.name, (first, Some(&texts)), (&set, None));
         let listening = match lost.figures.get(&TrajectoryMetric::SuccessRate) {
-            Some(lost) if lost.clusters >= FEWEST_PATHS && lost.low > 0.0 => ListeningVerdict::Shown,
-            Some(lost) if lost.clusters >= FEWEST_PATHS => ListeningVerdict::NotShown,
+            Some(lost) if lost.clusters >= MIN_PATHS && lost.low > 0.0 => ListeningVerdict::Shown,
+            Some(lost) if lost.clusters >= MIN_PATHS => ListeningVerdict::NotShown,
             _ => ListeningVerdict::TooFew,
         };
         let count = |texts: &TextsByItem| texts.values().map(|texts| texts.len()).sum();

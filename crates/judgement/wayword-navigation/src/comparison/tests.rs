@@ -63,7 +63,7 @@ fn set(name: &str) -> InstructionSet {
 }
 
 fn compared(results: &WalkScores, swaps: &[InstructionSwap]) -> AgentComparison {
-    let walker = |name: &str, kind, reads| ComparedAgent { name: name.into(), kind, reads, has_floors: false };
+    let walker = |name: &str, kind, reads| ComparedAgent { name: name.into(), kind, reads, has_extra_rows: false };
     let walkers = [walker("reader", AgentKind::Agent, true), walker("blind", AgentKind::LowerBound, false)];
     compare_agents(about(), vec![set("original"), set("ours")], &walkers, swaps, results)
 }
@@ -140,7 +140,7 @@ fn losing_by_a_swap_on_many_paths_shows_listening() {
     assert_eq!(after_losing(30, 30), ListeningVerdict::Shown);
     assert_eq!(after_losing(15, 30), ListeningVerdict::Shown);
     assert_eq!(after_losing(1, 30), ListeningVerdict::NotShown);
-    assert_eq!(after_losing(30, FEWEST_PATHS - 1), ListeningVerdict::TooFew);
+    assert_eq!(after_losing(30, MIN_PATHS - 1), ListeningVerdict::TooFew);
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn informed_readers_have_rows_for_an_empty_text_and_another_paths() {
     for (set, item) in [(empty_set("original"), "a"), (swapped_set("original", InstructionSwap::OtherPath), "b")] {
         results.add_walk(&walk("reader", &set, item, 0), "p1", score(item == "b"));
     }
-    let walker = ComparedAgent { name: "reader".into(), kind: AgentKind::Informed, reads: true, has_floors: true };
+    let walker = ComparedAgent { name: "reader".into(), kind: AgentKind::Informed, reads: true, has_extra_rows: true };
     let sets = vec![set("original"), set("ours")];
     let comparison = compare_agents(about(), sets, &[walker], &[InstructionSwap::OtherPath], &results);
     let rate = |row: &ComparisonRow| row.figures[&TrajectoryMetric::SuccessRate].mean;

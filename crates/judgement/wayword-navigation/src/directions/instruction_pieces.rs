@@ -11,9 +11,9 @@ use wayword_language::{
 };
 
 /// Most clauses of a closing task, as in "empty the bin, wipe the sink and close the door". Earlier clauses belong to the way.
-const MOST_TASKS: usize = 3;
+const MAX_TASK_CLAUSES: usize = 3;
 /// Most words of a piece that climbs first and then gets to a place. In a longer one, the climb is left out.
-const MOST_WORDS_OF_CLIMB: usize = 16;
+const MAX_CLIMB_PIECE_WORDS: usize = 16;
 /// How far before a place its preposition is looked for, words.
 const PREPOSITION_REACH_WORDS: usize = 7;
 
@@ -46,7 +46,7 @@ impl<'a> InstructionPieces<'a> {
             let gets_there = self.visible_places(head).next().is_some_and(|(_, place)| place.link == PlaceLink::Goal);
             !gets_there && has_object(&self.tokens, head) && is_task(clause)
         };
-        (0..last).rev().take(MOST_TASKS - 1).take_while(is_one_of_several).last().or(Some(last))
+        (0..last).rev().take(MAX_TASK_CLAUSES - 1).take_while(is_one_of_several).last().or(Some(last))
     }
 
     /// The text from a clause on.
@@ -65,7 +65,7 @@ impl<'a> InstructionPieces<'a> {
         for clause in self.clauses_before(end) {
             for piece in self.cut_clause(&clause.all) {
                 if self.visible_places(&piece).next().is_some() {
-                    let start = climb.take().filter(|start| piece.end - start <= MOST_WORDS_OF_CLIMB);
+                    let start = climb.take().filter(|start| piece.end - start <= MAX_CLIMB_PIECE_WORDS);
                     pieces.push(self.words_in(&(start.unwrap_or(piece.start)..piece.end)));
                 } else if self.events_in(&piece).any(|event| is_climb(&event.what)) {
                     climb.get_or_insert(piece.start);

@@ -12,9 +12,9 @@ use serde::{Deserialize, Serialize};
 use wayword_core::ModelError;
 
 pub(crate) use clauses::clause_texts;
-pub use model::{ByModel, split_prompt};
+pub use model::{ModelSplitter, split_prompt};
 pub use places::{NamedPlace, named_places};
-pub use rules::ByRules;
+pub use rules::RuleSplitter;
 
 /// An instruction split in two (arXiv 2211.16649, section 3: navigation component and activity component).
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,13 +37,13 @@ pub trait InstructionSplitter: Send + Sync {
 }
 
 /// Most key phrases of an instruction; later ones are left out. Texts by people have up to about ten.
-const MOST_PHRASES: usize = 12;
+const MAX_PHRASES: usize = 12;
 /// Most words of a phrase or an activity; a longer one is cut. CLIP reads no more than 77 tokens.
-const MOST_WORDS: usize = 50;
+const MAX_PHRASE_WORDS: usize = 50;
 /// Most bytes of a phrase or an activity, because a text without spaces is one word; a longer one is cut.
-const MOST_BYTES: usize = 400;
+const MAX_PHRASE_BYTES: usize = 400;
 /// Most bytes of an instruction that are read; texts by people have up to about 2,500.
-const MOST_BYTES_READ: usize = 8_000;
+const MAX_READ_BYTES: usize = 8_000;
 
 /// The beginning of a text, up to a number of bytes.
 fn first_bytes(text: &str, most_bytes: usize) -> &str {
@@ -52,15 +52,15 @@ fn first_bytes(text: &str, most_bytes: usize) -> &str {
 
 /// The part of an instruction that agents read.
 pub(crate) fn beginning_of(instruction: &str) -> &str {
-    first_bytes(instruction, MOST_BYTES_READ)
+    first_bytes(instruction, MAX_READ_BYTES)
 }
 
 /// The beginning of a phrase that is not too long for a grounder.
 fn shorten_phrase(text: &str) -> String {
-    let text = first_bytes(text.trim(), MOST_BYTES);
+    let text = first_bytes(text.trim(), MAX_PHRASE_BYTES);
     // Where a word ends within the text, bytes.
     let end = |word: &str| word.as_ptr() as usize + word.len() - text.as_ptr() as usize;
-    let end = text.split_whitespace().take(MOST_WORDS).last().map_or(0, end);
+    let end = text.split_whitespace().take(MAX_PHRASE_WORDS).last().map_or(0, end);
     text[..end].to_owned()
 }
 
@@ -69,7 +69,7 @@ fn shorten_phrase(text: &str) -> String {
 /// # Errors
 /// When it has no words.
 fn readable_part<'a>(text: &'a str, splitter: &str) -> Result<&'a str, ModelError> {
-    let text = first_bytes(text, MOST_BYTES_READ);
+    let text = first_bytes(text, MAX_READ_BYTES);
     if text.contains(char::is_alphanumeric) {
         return Ok(text);
     }

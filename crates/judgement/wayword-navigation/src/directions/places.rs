@@ -1,6 +1,6 @@
 //! The things and rooms that a phrase names, for grounders that look for labels and boxes.
 
-use super::{MOST_BYTES_READ, first_bytes};
+use super::{MAX_READ_BYTES, first_bytes};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use wayword_language::reading::{EventContent, read_instruction};
@@ -17,7 +17,7 @@ pub struct NamedPlace {
 /// The things and rooms that a phrase names, each once, in the order of the text. Those that the phrase denies are left out.
 #[must_use]
 pub fn named_places(phrase: &str) -> Vec<NamedPlace> {
-    let reading = read_instruction(first_bytes(phrase, MOST_BYTES_READ), &BTreeSet::new()).into_claims();
+    let reading = read_instruction(first_bytes(phrase, MAX_READ_BYTES), &BTreeSet::new()).into_claims();
     let mut names = BTreeSet::new();
     let place = |content: EventContent| match content {
         EventContent::Place(place) => Some(NamedPlace { name: place.name, is_room: place.is_room && !place.is_thing }),

@@ -1,6 +1,6 @@
 //! Reads a model's reply to the request to split an instruction.
 
-use super::{MOST_BYTES_READ, MOST_PHRASES, SplitInstruction, first_bytes, shorten_phrase};
+use super::{MAX_PHRASES, MAX_READ_BYTES, SplitInstruction, first_bytes, shorten_phrase};
 
 /// Names of the closing line.
 const CLOSING_LINE_NAMES: [&str; 3] = ["task", "activity", "action"];
@@ -14,7 +14,7 @@ const EMPTY_LINE_WORDS: [&str; 5] = ["none", "(none)", "n/a", "nothing", "-"];
 pub(super) fn read_directions(reply: &str) -> Result<SplitInstruction, &'static str> {
     let mut phrases: Vec<String> = Vec::new();
     let mut awaits_task = false;
-    for line in first_bytes(reply, MOST_BYTES_READ).lines() {
+    for line in first_bytes(reply, MAX_READ_BYTES).lines() {
         let (listed, text) = strip_bullet(line);
         let (is_closing, text) = closing_text(text).map_or((false, text), |task| (true, task));
         let text = strip_marks(text);
@@ -25,7 +25,7 @@ pub(super) fn read_directions(reply: &str) -> Result<SplitInstruction, &'static 
                 return Ok(SplitInstruction { phrases, activity: shorten_phrase(text) });
             }
             awaits_task = true;
-        } else if listed && !is_empty && phrases.len() < MOST_PHRASES {
+        } else if listed && !is_empty && phrases.len() < MAX_PHRASES {
             phrases.push(shorten_phrase(text));
         }
     }
@@ -98,7 +98,7 @@ mod tests {
     fn a_long_reply_stays_small() {
         let task = format!("{}TASK: {}", "1. the sofa\n".repeat(100), "x".repeat(100_000));
         let (phrases, activity) = read(&task);
-        assert!(phrases.len() == MOST_PHRASES && activity.len() <= super::super::MOST_BYTES);
+        assert!(phrases.len() == MAX_PHRASES && activity.len() <= super::super::MAX_PHRASE_BYTES);
     }
 
     proptest! {

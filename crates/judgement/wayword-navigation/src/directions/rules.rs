@@ -1,7 +1,7 @@
 //! Splits instructions by rules, offline, with the same language reader that the checks use.
 
 use super::{
-    InstructionSplitter, MOST_PHRASES, SplitInstruction, instruction_pieces::InstructionPieces, readable_part,
+    InstructionSplitter, MAX_PHRASES, SplitInstruction, instruction_pieces::InstructionPieces, readable_part,
     shorten_phrase,
 };
 use wayword_core::ModelError;
@@ -13,9 +13,9 @@ use wayword_core::ModelError;
 /// place, else the whole text. If the text is only a task that names its room, the room is the key phrase. If the walk has one
 /// place, that place is both key phrase and activity. All parts are runs of the text's own words.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct ByRules;
+pub struct RuleSplitter;
 
-impl InstructionSplitter for ByRules {
+impl InstructionSplitter for RuleSplitter {
     fn name(&self) -> &'static str {
         "rules"
     }
@@ -26,7 +26,7 @@ impl InstructionSplitter for ByRules {
 }
 
 fn split_by_rules(text: &str) -> Result<SplitInstruction, ModelError> {
-    let text = readable_part(text, ByRules.name())?;
+    let text = readable_part(text, RuleSplitter.name())?;
     let pieces = InstructionPieces::from_text(text);
     let task = pieces.task_clause();
     let mut phrases = pieces.leading_pieces(task);
@@ -40,7 +40,7 @@ fn split_by_rules(text: &str) -> Result<SplitInstruction, ModelError> {
         None if phrases.len() > 1 => phrases.pop().unwrap_or(text),
         None => phrases.first().copied().unwrap_or(text),
     };
-    let phrases = phrases.into_iter().take(MOST_PHRASES).map(shorten_phrase).collect();
+    let phrases = phrases.into_iter().take(MAX_PHRASES).map(shorten_phrase).collect();
     Ok(SplitInstruction { phrases, activity: shorten_phrase(activity) })
 }
 
@@ -50,7 +50,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn told(text: &str) -> (Vec<String>, String) {
-        let directions = ByRules.split_instructions(&[text]).remove(0).unwrap();
+        let directions = RuleSplitter.split_instructions(&[text]).remove(0).unwrap();
         (directions.phrases, directions.activity)
     }
 
@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn a_text_without_words_is_refused() {
         for text in ["", "  ", "?!,"] {
-            assert!(ByRules.split_instructions(&[text]).remove(0).is_err());
+            assert!(RuleSplitter.split_instructions(&[text]).remove(0).is_err());
         }
     }
 
@@ -185,7 +185,9 @@ mod tests {
         for text in ["x".repeat(20_000), "é,".repeat(10_000), "go to the bed and wipe the sink, ".repeat(10_000)] {
             let (phrases, activity) = told(&text);
             assert!(
-                phrases.len() <= MOST_PHRASES && activity.len() <= super::super::MOST_BYTES && !activity.is_empty()
+                phrases.len() <= MAX_PHRASES
+                    && activity.len() <= super::super::MAX_PHRASE_BYTES
+                    && !activity.is_empty()
             );
         }
     }
@@ -193,7 +195,7 @@ mod tests {
     proptest! {
         #[test]
         fn no_word_is_invented(text in "((go to|clean|turn left|in|and|then|the|bed|kitchen|up|stairs|into|past|level 2|not|ß|[,.?’é(]) ?){1,30}|\\PC{0,80}") {
-            let Ok(directions) = ByRules.split_instructions(&[&text]).remove(0) else { return Ok(()) };
+            let Ok(directions) = RuleSplitter.split_instructions(&[&text]).remove(0) else { return Ok(()) };
             prop_assert!(!directions.activity.is_empty());
             for phrase in directions.phrases.iter().chain([&directions.activity]) {
                 prop_assert!(!phrase.is_empty() && text.contains(phrase.as_str()), "{phrase:?} in {text:?}");

@@ -69,10 +69,10 @@ const REPLACEMENT_ROOMS: [&str; 14] = [
 /// Most rounds of reading and replacing. One round is not enough, because the reader finds some names only after others are replaced.
 const MAX_REPLACEMENT_ROUNDS: usize = 3;
 /// How far before a name the names that specify it are looked for ("bathroom" in "bathroom door"), bytes.
-const REACH_BYTES: usize = 60;
+const SPECIFIER_REACH_BYTES: usize = 60;
 
 /// Most different names of a text; a text with more is not swapped. Texts by people have up to about 30.
-const MOST_NAMES: usize = 60;
+const MAX_NAMES: usize = 60;
 
 /// The text with each of its things and rooms replaced by another of the kind that it does not name, equal names by
 /// equal ones. `None` where it names none, or where no name is left to replace one.
@@ -102,7 +102,7 @@ struct NameMention {
     /// The bytes of the name together with the names before it that specify it, as in "bathroom door".
     span: [usize; 2],
     /// Those specifying names.
-    tells_which: Vec<String>,
+    specifiers: Vec<String>,
 }
 
 /// The names of a text in their order, whether the text affirms or denies them.
@@ -113,11 +113,11 @@ fn find_names(text: &str) -> Vec<NameMention> {
         if !is_known(&name) && ends_in_joint(&name) {
             continue;
         }
-        let mut named = NameMention { name, is_room: is_room && !is_thing, span: event.span, tells_which: Vec::new() };
+        let mut named = NameMention { name, is_room: is_room && !is_thing, span: event.span, specifiers: Vec::new() };
         let end = all.last().map_or(0, |before| before.span[1]);
         while let Some((start, name)) = right_before(&text[end..named.span[0]]) {
             named.span[0] = end + start;
-            named.tells_which.push(name);
+            named.specifiers.push(name);
         }
         all.push(named);
     }
@@ -138,7 +138,7 @@ fn ends_in_joint(name: &str) -> bool {
 
 /// The name with which a text ends, if the lexicon has it, and the byte at which the name begins.
 fn right_before(text: &str) -> Option<(usize, String)> {
-    let from = text.ceil_char_boundary(text.len().saturating_sub(REACH_BYTES));
+    let from = text.ceil_char_boundary(text.len().saturating_sub(SPECIFIER_REACH_BYTES));
     let last = read_instruction(&text[from..], &BTreeSet::new()).events.pop()?;
     let EventContent::Place(place) = last.what else { return None };
     let gap = &text[from + last.span[1]..];
@@ -151,9 +151,9 @@ struct LandmarkReplacements {
     things: Vec<&'static str>,
     rooms: Vec<&'static str>,
     /// The names that the text itself has, to be replaced.
-    old: BTreeSet<String>,
+    own_names: BTreeSet<String>,
     /// The replacement chosen for each name so far.
-    given: BTreeMap<String, &'static str>,
+    replacements: BTreeMap<String, &'static str>,
 }
 
 impl LandmarkReplacements {
@@ -162,39 +162,39 @@ impl LandmarkReplacements {
         let (mut things, mut rooms) = (REPLACEMENT_THINGS.to_vec(), REPLACEMENT_ROOMS.to_vec());
         things.shuffle(&mut rng);
         rooms.shuffle(&mut rng);
-        Self { things, rooms, old: BTreeSet::new(), given: BTreeMap::new() }
+        Self { things, rooms, own_names: BTreeSet::new(), replacements: BTreeMap::new() }
     }
 
     /// Remembers names of the text as old, except for those that are replacements.
     fn avoid_names(&mut self, named: &[NameMention]) {
-        let names = named.iter().flat_map(|named| named.tells_which.iter().chain([&named.name]));
-        let given: Vec<&str> = self.given.values().copied().collect();
-        self.old.extend(names.filter(|name| !given.contains(&name.as_str())).cloned());
+        let names = named.iter().flat_map(|named| named.specifiers.iter().chain([&named.name]));
+        let given: Vec<&str> = self.replacements.values().copied().collect();
+        self.own_names.extend(names.filter(|name| !given.contains(&name.as_str())).cloned());
     }
 
     /// Whether a name, or one that specifies it, may mean something that the text itself named.
     fn is_old(&self, named: &NameMention) -> bool {
-        named.tells_which.iter().chain([&named.name]).any(|name| self.conflicts_with(name))
+        named.specifiers.iter().chain([&named.name]).any(|name| self.conflicts_with(name))
     }
 
     /// Whether a name may mean something that the text itself named.
     fn conflicts_with(&self, name: &str) -> bool {
-        self.old.iter().any(|old| names_agree(old, name) || same_room(old, name))
+        self.own_names.iter().any(|old| names_agree(old, name) || same_room(old, name))
     }
 
     /// The replacement of a name. It is one that replaces no other name, as long as there are any.
     fn instead_of(&mut self, named: &NameMention) -> Option<&'static str> {
-        if let Some(given) = self.given.get(&named.name) {
+        if let Some(given) = self.replacements.get(&named.name) {
             return Some(given);
         }
-        if self.old.len() > MOST_NAMES {
+        if self.own_names.len() > MAX_NAMES {
             return None;
         }
         let kind = if named.is_room { &self.rooms } else { &self.things };
         let free: Vec<&'static str> = kind.iter().copied().filter(|name| !self.conflicts_with(name)).collect();
-        let is_new = |name: &&&'static str| !self.given.values().any(|given| *given == **name);
+        let is_new = |name: &&&'static str| !self.replacements.values().any(|given| *given == **name);
         let other = *free.iter().find(is_new).or(free.first())?;
-        self.given.insert(named.name.clone(), other);
+        self.replacements.insert(named.name.clone(), other);
         Some(other)
     }
 

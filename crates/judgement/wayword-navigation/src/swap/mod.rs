@@ -49,7 +49,7 @@ impl fmt::Display for InstructionSwap {
 }
 
 /// Longest text that is swapped, bytes; texts by people have up to about 2,500.
-const MOST_BYTES: usize = 8_000;
+const MAX_SWAPPED_BYTES: usize = 8_000;
 
 /// Makes a text wrong in one way. `None` if the text would stay the same, or is too long to be an instruction. Also `None` for
 /// [`InstructionSwap::OtherPath`]: the caller takes that text from the item that [`other_path`] chooses.
@@ -57,7 +57,7 @@ const MOST_BYTES: usize = 8_000;
 /// Random choices depend only on the seed and the item's id.
 #[must_use]
 pub fn swap_text(swap: InstructionSwap, text: &str, seed: u64, item: &str) -> Option<String> {
-    if text.len() > MOST_BYTES {
+    if text.len() > MAX_SWAPPED_BYTES {
         return None;
     }
     match swap {

@@ -3,9 +3,9 @@
 use super::{Change, DoseKind, WholeChange};
 
 /// Mean distance between viewpoints of Matterport3D, metres (Chang et al., "Matterport3D", 2017).
-const BETWEEN_VIEWPOINTS_M: f64 = 2.25;
+const VIEWPOINT_SPACING_M: f64 = 2.25;
 /// Distance between the frames that are chosen from a recording, metres.
-const BETWEEN_FRAMES_M: f64 = 1.0;
+const RECORDED_FRAME_SPACING_M: f64 = 1.0;
 
 /// Who names the things in a view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -28,9 +28,9 @@ pub struct ChangeSetting<'a> {
     /// Whether the frames of the platform's paths have poses.
     pub has_poses: bool,
     /// Whether the platform can render a view from any pose, and is not limited to existing pictures.
-    pub draws: bool,
+    pub can_render: bool,
     /// Whether the platform has views only from the viewpoints of a graph, but in all directions from each.
-    pub graph: bool,
+    pub is_graph_bound: bool,
 }
 
 impl Change {
@@ -54,7 +54,7 @@ pub struct OtherPlatform<'a> {
     /// Its folder or file of data, behind `:`.
     pub data: Option<&'a str>,
     /// Its address, behind `@`, if it is already running.
-    pub at: Option<&'a str>,
+    pub address: Option<&'a str>,
 }
 
 impl<'a> OtherPlatform<'a> {
@@ -63,11 +63,11 @@ impl<'a> OtherPlatform<'a> {
     pub fn from_spec(spec: &'a str) -> Self {
         let (rest, at) = spec.split_once('@').map_or((spec, None), |(rest, at)| (rest, Some(at)));
         let (name, data) = rest.split_once(':').map_or((rest, None), |(name, data)| (name, Some(data)));
-        Self { name, data, at }
+        Self { name, data, address: at }
     }
 
     fn refusal_reason(&self, setting: &ChangeSetting<'_>) -> Option<String> {
-        let Self { name, data, at } = *self;
+        let Self { name, data, address: at } = *self;
         let is_house = setting.platform == "house";
         Some(match name {
             _ if !setting.has_poses => {
@@ -78,7 +78,7 @@ impl<'a> OtherPlatform<'a> {
                 "a recording has no labels; a scripted eye (--eye) or a model has to see".to_owned()
             }
             "recording" if data.is_some() => "the run's own paths are filmed; leave out the data".to_owned(),
-            "recording" if !setting.draws => "the platform has no pictures along the paths to film".to_owned(),
+            "recording" if !setting.can_render => "the platform has no pictures along the paths to film".to_owned(),
             "habitat" if data.is_none() && !is_house => {
                 "only generated houses are saved for it; name the data of the same scenes, as in habitat:DIR".to_owned()
             }
@@ -110,7 +110,7 @@ impl WholeChange {
 impl DoseKind {
     fn refusal_reason(self, value: f64, setting: &ChangeSetting<'_>) -> Option<String> {
         match self {
-            Self::CameraHeight | Self::FieldOfView | Self::Pitch | Self::Roll => (!setting.draws).then(|| {
+            Self::CameraHeight | Self::FieldOfView | Self::Pitch | Self::Roll => (!setting.can_render).then(|| {
                 format!(
                     "the pictures of platform {} were taken before, by a camera that is as it was",
                     setting.platform
@@ -134,14 +134,14 @@ impl DoseKind {
 impl ChangeSetting<'_> {
     /// Whether the platform's pictures were taken one by one along a path, as in a recording.
     fn is_recorded(&self) -> bool {
-        !self.draws && !self.graph
+        !self.can_render && !self.is_graph_bound
     }
 
     /// Why frames cannot be so close together; `None` if they can.
     fn finer_than_there_is(&self, spacing_m: f64) -> Option<String> {
-        let (own_m, from) = match (self.graph, self.draws) {
-            (true, _) => (BETWEEN_VIEWPOINTS_M, "viewpoints"),
-            (false, false) => (BETWEEN_FRAMES_M, "frames that were recorded"),
+        let (own_m, from) = match (self.is_graph_bound, self.can_render) {
+            (true, _) => (VIEWPOINT_SPACING_M, "viewpoints"),
+            (false, false) => (RECORDED_FRAME_SPACING_M, "frames that were recorded"),
             (false, true) => return None,
         };
         (spacing_m < own_m).then(|| {

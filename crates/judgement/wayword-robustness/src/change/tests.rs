@@ -1,11 +1,22 @@
 use super::*;
 use std::collections::BTreeSet;
 
-const HOUSE: ChangeSetting<'static> =
-    ChangeSetting { platform: "house", sees: SightSource::Labels, has_poses: true, draws: true, graph: false };
-const MATTERPORT: ChangeSetting<'static> = ChangeSetting { platform: "matterport", draws: false, graph: true, ..HOUSE };
-const RECORDING: ChangeSetting<'static> =
-    ChangeSetting { platform: "recording", sees: SightSource::Pictures, draws: false, graph: false, ..HOUSE };
+const HOUSE: ChangeSetting<'static> = ChangeSetting {
+    platform: "house",
+    sees: SightSource::Labels,
+    has_poses: true,
+    can_render: true,
+    is_graph_bound: false,
+};
+const MATTERPORT: ChangeSetting<'static> =
+    ChangeSetting { platform: "matterport", can_render: false, is_graph_bound: true, ..HOUSE };
+const RECORDING: ChangeSetting<'static> = ChangeSetting {
+    platform: "recording",
+    sees: SightSource::Pictures,
+    can_render: false,
+    is_graph_bound: false,
+    ..HOUSE
+};
 
 fn one(text: &str) -> Change {
     text.parse().unwrap()

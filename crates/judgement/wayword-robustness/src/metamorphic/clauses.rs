@@ -65,9 +65,9 @@ pub(super) fn clauses_with_frames(written: AnnotatedText<'_>) -> Vec<FramedClaus
             true => ClauseDraft {
                 words: content.join(" "),
                 range: Some((written.last_frame, written.last_frame)),
-                speaks_of: ClauseEnding::Motion,
+                ending: ClauseEnding::Motion,
             },
-            false => ClauseDraft { words: content.join(" "), range, speaks_of: ClauseEnding::from_last_mention(last) },
+            false => ClauseDraft { words: content.join(" "), range, ending: ClauseEnding::from_last_mention(last) },
         });
     }
     (0..drafts.len())
@@ -75,15 +75,15 @@ pub(super) fn clauses_with_frames(written: AnnotatedText<'_>) -> Vec<FramedClaus
             // A clause without mentions is about frames between those of its neighbours.
             let before = drafts[..at].iter().rev().find_map(|draft| draft.range).map_or(0, |(_, last)| last);
             let behind = drafts[at + 1..].iter().find_map(|draft| draft.range).map_or(usize::MAX, |(first, _)| first);
-            let mut later = drafts[at + 1..].iter().filter(|draft| draft.speaks_of == ClauseEnding::Motion);
+            let mut later = drafts[at + 1..].iter().filter(|draft| draft.ending == ClauseEnding::Motion);
             let next_motion = later.find_map(|draft| draft.range).map_or(usize::MAX, |(_, last)| last);
             let (first, last) = match drafts[at].range {
                 // A mention of a thing has the first frame that shows it, but the walker may reach it only later.
-                Some((first, last)) if drafts[at].speaks_of == ClauseEnding::Thing => (first, last.max(next_motion)),
+                Some((first, last)) if drafts[at].ending == ClauseEnding::Thing => (first, last.max(next_motion)),
                 Some(range) => range,
                 None => (before.min(behind), before.max(behind)),
             };
-            let ends_with_thing = drafts[at].speaks_of == ClauseEnding::Thing;
+            let ends_with_thing = drafts[at].ending == ClauseEnding::Thing;
             FramedClause { words: drafts[at].words.clone(), frames: first..=last, ends_with_thing }
         })
         .collect()
@@ -101,7 +101,7 @@ struct ClauseDraft {
     /// The first and the last frame of its mentions; `None` without mentions.
     range: Option<(usize, usize)>,
     /// The kind of its last mention.
-    speaks_of: ClauseEnding,
+    ending: ClauseEnding,
 }
 
 /// The kind of a clause's last mention.

@@ -16,9 +16,9 @@ pub fn check_mirrored_world(base: AnnotatedText<'_>, changed: AnnotatedText<'_>)
 }
 
 /// Endings after "left" or "right" that still make a word for a side ("rightmost", "left-hand").
-const OF_SIDES: [&str; 6] = ["", "most", "hand", "ward", "wards", "side"];
+const SIDE_WORD_ENDINGS: [&str; 6] = ["", "most", "hand", "ward", "wards", "side"];
 /// Words after "right" with which it means "just" and no side ("right before the stairs").
-const JUST_BEFORE: [&str; 10] =
+const WORDS_AFTER_JUST: [&str; 10] =
     ["before", "next", "behind", "beside", "outside", "inside", "there", "here", "away", "across"];
 
 /// Replaces each word for a side by the word for the other side.
@@ -30,7 +30,7 @@ fn with_sides_swapped(text: &str) -> String {
         let next = tokens.get(at + 1).map_or("", |next| next.word.as_str());
         // In "turn right before the stairs" the word "right" means the side after all.
         let is_turn = at > 0 && matches!(tokens[at - 1].word.as_str(), "turn" | "go" | "the" | "a" | "your");
-        let is_just = token.word == "right" && JUST_BEFORE.contains(&next) && !is_turn;
+        let is_just = token.word == "right" && WORDS_AFTER_JUST.contains(&next) && !is_turn;
         swapped.push_str(&text[from..token.span[0]]);
         swapped.push_str(&if is_just { word.to_owned() } else { other_side(word) });
         from = token.span[1];
@@ -42,7 +42,7 @@ fn with_sides_swapped(text: &str) -> String {
 /// The word for the other side, in the same case; other words are returned unchanged.
 fn other_side(word: &str) -> String {
     for (one, other) in [("left", "right"), ("right", "left"), ("Left", "Right"), ("Right", "Left")] {
-        if let Some(rest) = word.strip_prefix(one).filter(|rest| OF_SIDES.contains(rest)) {
+        if let Some(rest) = word.strip_prefix(one).filter(|rest| SIDE_WORD_ENDINGS.contains(rest)) {
             return format!("{other}{rest}");
         }
     }

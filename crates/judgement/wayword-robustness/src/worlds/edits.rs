@@ -10,13 +10,13 @@ use wayword_language::lexicon::{ThingClass, find_thing, names_agree, same_colour
 /// Names of things to add, which people use as landmarks. The first one that is not visible along the path is taken.
 const ADDED_THING_NAMES: [&str; 5] = ["piano", "fireplace", "bookshelf", "armchair", "wardrobe"];
 /// Distances ahead of a frame and to its right at which a thing is added, metres.
-const ADDED_AT_M: (f64, f64) = (1.2, 0.9);
+const ADDED_OFFSET_M: (f64, f64) = (1.2, 0.9);
 /// Distance of its centre below the eye, metres.
 const ADDED_BELOW_M: f64 = 0.8;
 /// Largest distance from which an added thing is visible, metres.
-const SEEN_M: f64 = 4.0;
+const MAX_SEEN_DISTANCE_M: f64 = 4.0;
 /// Most words of a colour. So many words before a thing's name are searched for one.
-const COLOUR_WORDS: usize = 2;
+const MAX_COLOUR_WORDS: usize = 2;
 /// Colours to give to a thing: the first one that neither it nor a namesake has is taken.
 const NEW_COLOURS: [&str; 5] = ["purple", "orange", "pink", "turquoise", "red"];
 
@@ -68,7 +68,7 @@ impl PathLabels {
         let things = landmarks.filter_map(|mention| {
             let words = text.get(mention.span[0]..mention.span[1])?;
             let label = self.0.get(mention.frame)?.iter().find(|label| names_agree(&label.name, words))?;
-            let from = text[..mention.span[0]].rmatch_indices(' ').nth(COLOUR_WORDS).map_or(0, |(at, _)| at + 1);
+            let from = text[..mention.span[0]].rmatch_indices(' ').nth(MAX_COLOUR_WORDS).map_or(0, |(at, _)| at + 1);
             Some(self.find_thing(words, &label.name, &text[from..mention.span[1]]))
         });
         things.filter(|thing| can_go(&thing.name) && !is_target(&thing.name)).collect()
@@ -131,11 +131,11 @@ impl PathLabels {
         let is_new = |name: &&&str| !self.0.iter().flatten().any(|label| names_agree(&label.name, name));
         let name = (*ADDED_THING_NAMES.iter().find(is_new)?).to_owned();
         let frame = path.frames.get(draw_index(seed, "add", path, path.frames.len())?)?;
-        let (ahead_m, right_m) = ADDED_AT_M;
+        let (ahead_m, right_m) = ADDED_OFFSET_M;
         let facing = frame.pose.heading;
         let beside = facing.turned_by(std::f64::consts::FRAC_PI_2).unit_vector() * right_m;
         let position = frame.pose.position + facing.unit_vector() * ahead_m + beside - DVec3::Z * ADDED_BELOW_M;
-        let is_near = |frame: &Frame| frame.pose.position.distance(position) <= SEEN_M;
+        let is_near = |frame: &Frame| frame.pose.position.distance(position) <= MAX_SEEN_DISTANCE_M;
         let seen_from: Vec<usize> = (0..path.frames.len()).filter(|at| is_near(&path.frames[*at])).collect();
         let object = ObjectId::new(format!("added-{name}")).ok()?;
         let label = ObjectLabel {

@@ -10,12 +10,12 @@ use wayword_core::{
 };
 
 /// Largest pitch of a camera, up or down, degrees.
-const MOST_PITCH_DEG: f64 = 30.0;
+const MAX_PITCH_DEG: f64 = 30.0;
 /// Largest roll of a camera, to either side, degrees.
-const MOST_ROLL_DEG: f64 = 45.0;
+const MAX_ROLL_DEG: f64 = 45.0;
 
 /// The widest level view that is requested, radians. Platforms cannot render wider ones.
-const WIDEST_RAD: f64 = 2.6;
+const MAX_LEVEL_VIEW_RAD: f64 = 2.6;
 
 /// Height over width of the pictures of all platforms that render. It is needed to choose the width of the level view before the
 /// picture exists. If a picture has another shape, its corners may be grey.
@@ -55,10 +55,10 @@ impl CameraTilt {
     /// number.
     pub fn new(pitch_deg: f64, roll_deg: f64) -> Result<Self, TiltError> {
         let within = |deg: f64, limit: f64| (-limit..=limit).contains(&deg);
-        if !within(pitch_deg, MOST_PITCH_DEG) {
+        if !within(pitch_deg, MAX_PITCH_DEG) {
             return Err(TiltError::Pitch(pitch_deg));
         }
-        if !within(roll_deg, MOST_ROLL_DEG) {
+        if !within(roll_deg, MAX_ROLL_DEG) {
             return Err(TiltError::Roll(roll_deg));
         }
         Ok(Self { pitch_rad: pitch_deg.to_radians(), roll_rad: roll_deg.to_radians() })
@@ -82,7 +82,7 @@ impl CameraTilt {
         if self.is_level() {
             return fov_rad;
         }
-        let half = libm::tan(fov_rad.min(WIDEST_RAD) / 2.0);
+        let half = libm::tan(fov_rad.min(MAX_LEVEL_VIEW_RAD) / 2.0);
         let level_from_tilted = self.level_from_tilted();
         // The level view has to reach each corner of the tilted picture: tangent of half the width that this needs.
         let mut reach = half;
@@ -91,7 +91,7 @@ impl CameraTilt {
             let ahead = (-ray.z).max(1e-6);
             reach = reach.max(ray.x.abs() / ahead).max(ray.y.abs() / ahead / PICTURE_ASPECT_RATIO);
         }
-        (2.0 * libm::atan(reach)).min(WIDEST_RAD)
+        (2.0 * libm::atan(reach)).min(MAX_LEVEL_VIEW_RAD)
     }
 }
 

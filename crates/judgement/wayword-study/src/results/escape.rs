@@ -1,7 +1,7 @@
 //! Escapes text from participants and files, so that it cannot act as markup, a formula or a command in any output format.
 
 /// Longest name in a table, characters. A longer one, which a file may contain, is cut off.
-const MOST_NAME_CHARS: usize = 80;
+const MAX_TABLE_NAME_CHARS: usize = 80;
 
 /// Replaces characters that act instead of being seen: control characters, and those that reverse the direction of the text around
 /// them. Ends of lines become `\n`, and tabs stay.
@@ -21,7 +21,7 @@ pub(super) fn to_single_line(text: &str) -> String {
 /// A name from a file: plain, on one line, and not too long for a table.
 pub(super) fn to_table_name(text: &str) -> String {
     let name = to_single_line(text);
-    match name.char_indices().nth(MOST_NAME_CHARS) {
+    match name.char_indices().nth(MAX_TABLE_NAME_CHARS) {
         Some((at, _)) => format!("{}…", &name[..at]),
         None if name.is_empty() => "(no name)".to_owned(),
         None => name,

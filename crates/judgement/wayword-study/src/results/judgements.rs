@@ -81,7 +81,7 @@ pub(super) fn collect_answers<'a>(
 }
 
 /// A pause longer than this between two actions counts as an absence, and the time of the answer is then not known.
-const AWAY_MS: i64 = 10 * 60 * 1000;
+const MAX_PAUSE_MS: i64 = 10 * 60 * 1000;
 
 impl AnsweredItem<'_> {
     /// Seconds from getting the item to the answer, or in a walk to stopping. `None` if the participant was away in between, or the
@@ -94,7 +94,7 @@ impl AnsweredItem<'_> {
         let mut times = vec![self.slot.given_ms];
         times.extend(self.slot.moves.iter().map(|step| step.at_ms));
         times.push(end);
-        let is_present = times.windows(2).all(|pair| (0..=AWAY_MS).contains(&(pair[1] - pair[0])));
+        let is_present = times.windows(2).all(|pair| (0..=MAX_PAUSE_MS).contains(&(pair[1] - pair[0])));
         is_present.then(|| seconds_between(self.slot.given_ms, end))
     }
 

@@ -17,9 +17,9 @@ const CONDITIONS_PER_LATEX_TABLE: usize = 3;
 const LATEX_HEADER_COMMENT: &str = "% \\usepackage{booktabs}; names beyond Latin letters need LuaLaTeX or XeLaTeX\n";
 
 /// If a table has more text columns than this, they get a fixed width, in which their lines break.
-const MOST_WHOLE: usize = 3;
+const MAX_UNWRAPPED_TEXT_COLUMNS: usize = 3;
 /// A table with longer rows than this, characters, is set in a smaller font.
-const MOST_CHARS: usize = 60;
+const MAX_NORMAL_ROW_CHARS: usize = 60;
 
 /// The results as LaTeX tables; they need the package `booktabs`.
 pub(super) fn render_latex(results: &StudyReport) -> String {
@@ -185,11 +185,11 @@ fn add_table(page: &mut String, table: &ResultTable, rule: Option<&str>) {
         return;
     }
     let text_columns = table.heads.iter().filter(|head| !head.is_number).count();
-    let is_wide = row_width_chars(table) > MOST_CHARS;
+    let is_wide = row_width_chars(table) > MAX_NORMAL_ROW_CHARS;
     let column = |(at, is_number): (usize, bool)| match text_columns {
         _ if is_number => "r".to_owned(),
         _ if is_wide && at == 0 => "p{.22\\linewidth}".to_owned(),
-        0..=MOST_WHOLE => "l".to_owned(),
+        0..=MAX_UNWRAPPED_TEXT_COLUMNS => "l".to_owned(),
         _ => format!("p{{{:.2}\\linewidth}}", 0.7 / text_columns as f64),
     };
     let columns: String = table.heads.iter().map(|head| head.is_number).enumerate().map(column).collect();

@@ -23,7 +23,7 @@ pub struct StudyMeasure {
     pub range: [Option<f64>; 2],
     /// The part of an answer from which its value is read.
     #[serde(skip)]
-    of: MeasureSource,
+    source: MeasureSource,
 }
 
 /// How answers become a figure.
@@ -115,7 +115,7 @@ impl StudyMeasure {
     pub(super) fn judgement_value(&self, judgement: &TextJudgement<'_>) -> Option<f64> {
         let level = |at: usize| judgement.levels.get(at).copied();
         let one_or_zero = |is: bool| f64::from(u8::from(is));
-        match self.of {
+        match self.source {
             MeasureSource::Walk(figure) => judgement.walk.and_then(|score| figure.score_value(score)),
             MeasureSource::Seconds => judgement.seconds,
             MeasureSource::Presses => judgement.presses.map(f64::from),
@@ -129,12 +129,12 @@ impl StudyMeasure {
 
     /// The figures of a walk, in the order of the tables.
     pub(super) fn walk_measures() -> impl Iterator<Item = &'static Self> {
-        FOLLOW_MEASURES.iter().filter(|measure| matches!(measure.of, MeasureSource::Walk(_)))
+        FOLLOW_MEASURES.iter().filter(|measure| matches!(measure.source, MeasureSource::Walk(_)))
     }
 
     /// The value of this figure for one walk; `None` if it is not a figure of walks.
     pub(super) fn walk_value(&self, score: &TrajectoryScore) -> Option<f64> {
-        match self.of {
+        match self.source {
             MeasureSource::Walk(figure) => figure.score_value(score),
             _ => None,
         }
@@ -154,7 +154,7 @@ impl StudyMeasure {
 }
 
 /// The names of the figures that count levels as arXiv 2403.11487 does. The meanings below call it "the paper".
-pub(super) const OF_THE_PAPER: [&str; 4] = ["similar_low", "accurate_high", "ghosts_any", "reachable_high"];
+pub(super) const PAPER_MEASURE_NAMES: [&str; 4] = ["similar_low", "accurate_high", "ghosts_any", "reachable_high"];
 
 /// A measure with the range that its unit implies.
 const fn new_measure(
@@ -170,7 +170,7 @@ const fn new_measure(
         MeasureUnit::Level => [Some(1.0), Some(5.0)],
         MeasureUnit::Metres | MeasureUnit::Seconds | MeasureUnit::Count => [Some(0.0), None],
     };
-    StudyMeasure { name, label, kind, unit, meaning, range, of }
+    StudyMeasure { name, label, kind, unit, meaning, range, source: of }
 }
 
 const fn share_measure(

@@ -262,7 +262,7 @@ struct BarSegment {
 /// Width of a digit on a phone, per cent of the width of a bar of levels.
 const DIGIT_WIDTH_PERCENT: f64 = 4.0;
 /// Width of a digit on a phone, per cent of the width of a bar in the matrix, which is narrower.
-const NARROW_DIGIT: f64 = 6.0;
+const NARROW_DIGIT_WIDTH_PERCENT: f64 = 6.0;
 
 /// The pieces of a bar, one for each count above 0. `digit_percent` is the width of a digit, per cent of the bar.
 fn bar_segments(counts: &[usize], digit_percent: f64) -> Vec<BarSegment> {
@@ -359,7 +359,7 @@ pub(super) fn win_matrix(version: &ResultVersion) -> Option<WinMatrix> {
                 pair.ties,
                 pair.both_bad
             ),
-            parts: bar_segments(&[wins, pair.ties, pair.both_bad, losses], NARROW_DIGIT),
+            parts: bar_segments(&[wins, pair.ties, pair.both_bad, losses], NARROW_DIGIT_WIDTH_PERCENT),
         })
     };
     let row = |row: usize| MatrixRow {

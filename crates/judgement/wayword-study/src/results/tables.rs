@@ -3,7 +3,7 @@
 use super::{
     ConditionDifference, HandoutCounts, QuestionAgreement, ResultVersion, StudyMeasure, StudyReport,
     escape::to_table_name,
-    measure::OF_THE_PAPER,
+    measure::PAPER_MEASURE_NAMES,
     number_format::{self, NO_FIGURE, count_with_noun, format_number},
     pairs::{ConditionStrengths, PairRow},
     version::CHOICE_QUESTION_NAME,
@@ -134,15 +134,15 @@ fn difference_row(
 }
 
 /// The shares that arXiv 2403.11487 reports for its 30 people, as counts. Its 16.5 % is not a share of 30; the nearest is 5 of 30.
-const THE_PAPER: [f64; 4] = [13.0, 25.0, 5.0, 22.0];
+const PAPER_COUNTS: [f64; 4] = [13.0, 25.0, 5.0, 22.0];
 /// How many people answered in that paper, each about one item.
-const OF_PEOPLE: f64 = 30.0;
+const PAPER_PARTICIPANTS: f64 = 30.0;
 
 /// The four questions evaluated as the paper does it, with the paper's own figures in the last row. `None` unless the mode is rating.
 pub(super) fn paper_table(results: &StudyReport, version: &ResultVersion) -> Option<ResultTable> {
     let find = |name: &&str| results.measures.iter().find(|measure| measure.name == *name);
-    let measures: Vec<&StudyMeasure> = OF_THE_PAPER.iter().filter_map(find).collect();
-    if measures.len() < OF_THE_PAPER.len() {
+    let measures: Vec<&StudyMeasure> = PAPER_MEASURE_NAMES.iter().filter_map(find).collect();
+    if measures.len() < PAPER_MEASURE_NAMES.len() {
         return None;
     }
     let headings: Vec<String> = measures.iter().map(|measure| measure.heading_with_unit()).collect();
@@ -160,11 +160,11 @@ pub(super) fn paper_table(results: &StudyReport, version: &ResultVersion) -> Opt
         });
         table.add_row(false, std::iter::once(condition_title(&row.condition, row.kind)).chain(figures));
     }
-    let paper_figures = measures.iter().zip(THE_PAPER).map(|(measure, count)| {
-        let interval = wilson_interval(count, OF_PEOPLE, results.level);
+    let paper_figures = measures.iter().zip(PAPER_COUNTS).map(|(measure, count)| {
+        let interval = wilson_interval(count, PAPER_PARTICIPANTS, results.level);
         format!(
             "{} {}",
-            number_format::format_value(measure, count / OF_PEOPLE),
+            number_format::format_value(measure, count / PAPER_PARTICIPANTS),
             number_format::format_interval(measure, interval.as_ref())
         )
     });

@@ -1,7 +1,7 @@
 //! Reads and checks the forms that the pages send. The checks of a browser can be bypassed, so all of them are made here again.
 
 use crate::{
-    store::{LONGEST_TEXT, ParticipantInput},
+    store::{MAX_OWN_TEXT_CHARS, ParticipantInput},
     study::{PairChoice, StudyTask},
 };
 use std::collections::BTreeMap;
@@ -24,7 +24,7 @@ pub(super) fn own_text(fields: &FormFields) -> Result<ParticipantInput, &'static
     if text.is_empty() {
         return Err("Please write a text.");
     }
-    if text.chars().count() > LONGEST_TEXT {
+    if text.chars().count() > MAX_OWN_TEXT_CHARS {
         return Err("Your text is too long. Please write at most 1000 characters.");
     }
     Ok(ParticipantInput::OwnText { slot: slot_field(fields)?, text: text.to_owned() })

@@ -40,7 +40,7 @@ const SHUTDOWN_GRACE: Duration = Duration::from_secs(5);
 /// How often the caller is asked whether to stop.
 const STOP_POLL_INTERVAL: Duration = Duration::from_millis(100);
 /// Largest head of a request, bytes. A connection with a larger one is closed.
-const MOST_HEAD: usize = 16 * 1024;
+const MAX_REQUEST_HEAD_BYTES: usize = 16 * 1024;
 
 /// How the site can be reached.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -247,7 +247,7 @@ async fn serve_http(
     let connection = http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(HEAD_TIMEOUT)
-        .max_buf_size(MOST_HEAD)
+        .max_buf_size(MAX_REQUEST_HEAD_BYTES)
         .serve_connection(TokioIo::new(stream), service);
     tokio::pin!(connection);
     tokio::select! {

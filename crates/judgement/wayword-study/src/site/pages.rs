@@ -3,7 +3,7 @@
 use super::{forms::FormFields, ways::ways_from_place};
 use crate::{
     store::{
-        AnswerProgress, ArrivalOutcome, MOST_MOVES, ParticipantStage, ParticipationOutcome, StoredSlot,
+        AnswerProgress, ArrivalOutcome, MAX_MOVES_PER_WALK, ParticipantStage, ParticipationOutcome, StoredSlot,
         StudyTransaction,
     },
     study::{ParticipantStatus, Study, StudyError, StudyRoute, StudyScene, StudyTask, StudyText},
@@ -293,8 +293,8 @@ fn walker_context(held: &StoredSlot, route: &StudyRoute, scene: &StudyScene) -> 
         seq,
         panorama => format!("/look/{}/{seq}.jpg", held.slot),
         facing_deg => (facing.deg() * 10.0).round() / 10.0,
-        ways => if seq < MOST_MOVES { ways_from_place(scene, place, facing) } else { Vec::new() },
-        moves_left => MOST_MOVES - seq.min(MOST_MOVES),
+        ways => if seq < MAX_MOVES_PER_WALK { ways_from_place(scene, place, facing) } else { Vec::new() },
+        moves_left => MAX_MOVES_PER_WALK - seq.min(MAX_MOVES_PER_WALK),
     })
 }
 

@@ -8,11 +8,11 @@ use std::{
 };
 
 /// Limit for a participant's requests: a burst, and a number for each second after that.
-const OF_PERSON: RequestPace = RequestPace { at_once: 120.0, each_second: 20.0 };
+const PERSON_PACE: RequestPace = RequestPace { at_once: 120.0, each_second: 20.0 };
 /// Limit for a participant's pictures. It is higher, because a page without script loads a whole film at once.
-const OF_PICTURES: RequestPace = RequestPace { at_once: 600.0, each_second: 60.0 };
+const PICTURE_PACE: RequestPace = RequestPace { at_once: 600.0, each_second: 60.0 };
 /// Limit for the requests of all visitors without a session together.
-const OF_STRANGERS: RequestPace = RequestPace { at_once: 600.0, each_second: 100.0 };
+const STRANGER_PACE: RequestPace = RequestPace { at_once: 600.0, each_second: 100.0 };
 /// Most entries in each table of the limiter, so that its memory is bounded. Beyond it, full buckets and all known sessions are
 /// forgotten; both come back with the next request.
 const MAX_REMEMBERED_PARTICIPANTS: usize = 20_000;
@@ -75,9 +75,9 @@ pub(super) enum RequestSource {
 impl RequestSource {
     fn allowed_rate(self) -> RequestPace {
         match self {
-            Self::Person(_) => OF_PERSON,
-            Self::Pictures(_) => OF_PICTURES,
-            Self::Stranger => OF_STRANGERS,
+            Self::Person(_) => PERSON_PACE,
+            Self::Pictures(_) => PICTURE_PACE,
+            Self::Stranger => STRANGER_PACE,
         }
     }
 }
@@ -97,30 +97,30 @@ pub(super) struct RequestLimiter {
     began: Instant,
     buckets: Mutex<HashMap<RequestSource, RequestBucket>>,
     /// Tokens of sessions that were valid before.
-    known: Mutex<HashSet<String>>,
+    known_sessions: Mutex<HashSet<String>>,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct RequestBucket {
     /// Tokens in the bucket.
-    left: f64,
+    tokens: f64,
     /// When it was last refilled, seconds after the limiter began.
     at_s: f64,
 }
 
 impl RequestLimiter {
     pub(super) fn new() -> Self {
-        Self { began: Instant::now(), buckets: Mutex::default(), known: Mutex::default() }
+        Self { began: Instant::now(), buckets: Mutex::default(), known_sessions: Mutex::default() }
     }
 
     /// Whether a session was valid before.
     pub(super) fn knows_session(&self, session: &str) -> bool {
-        self.known.lock().unwrap_or_else(PoisonError::into_inner).contains(session)
+        self.known_sessions.lock().unwrap_or_else(PoisonError::into_inner).contains(session)
     }
 
     /// Remembers a valid session.
     pub(super) fn remember_session(&self, session: String) {
-        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut known = self.known_sessions.lock().unwrap_or_else(PoisonError::into_inner);
         if known.len() >= MAX_REMEMBERED_PARTICIPANTS {
             known.clear();
         }
@@ -138,15 +138,15 @@ impl RequestLimiter {
         let mut buckets = self.buckets.lock().unwrap_or_else(PoisonError::into_inner);
         if buckets.len() >= MAX_REMEMBERED_PARTICIPANTS {
             // A bucket that has had the time to fill up again need not be remembered. Those for pictures take longest.
-            let full_after_s = OF_PICTURES.at_once / OF_PICTURES.each_second;
+            let full_after_s = PICTURE_PACE.at_once / PICTURE_PACE.each_second;
             buckets.retain(|_, bucket| now_s - bucket.at_s < full_after_s);
         }
-        let bucket = buckets.entry(asker).or_insert(RequestBucket { left: rate.at_once, at_s: now_s });
-        bucket.left = (bucket.left + (now_s - bucket.at_s) * rate.each_second).min(rate.at_once);
+        let bucket = buckets.entry(asker).or_insert(RequestBucket { tokens: rate.at_once, at_s: now_s });
+        bucket.tokens = (bucket.tokens + (now_s - bucket.at_s) * rate.each_second).min(rate.at_once);
         bucket.at_s = now_s;
-        let is_allowed = bucket.left >= 1.0;
+        let is_allowed = bucket.tokens >= 1.0;
         if is_allowed {
-            bucket.left -= 1.0;
+            bucket.tokens -= 1.0;
         }
         is_allowed
     }

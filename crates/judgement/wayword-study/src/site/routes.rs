@@ -28,7 +28,7 @@ use std::{collections::BTreeMap, sync::Arc, time::Duration};
 use tokio::sync::Semaphore;
 
 /// Longest body of a form, bytes. A longer one gets an error page.
-const MOST_BYTES: usize = 16 * 1024;
+const MAX_FORM_BYTES: usize = 16 * 1024;
 /// How long a request may take, including its body.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(15);
 /// The assignment id that MTurk sends while a worker only previews a task.
@@ -76,7 +76,7 @@ pub(super) fn build_router(site: Arc<StudySite>) -> Router {
         .route("/favicon.ico", get(|| async { StatusCode::NO_CONTENT }))
         .fallback(|State(site): SiteState| async move { RequestProblem::Missing.problem_page(&site) })
         .method_not_allowed_fallback(|State(site): SiteState| async move { RequestProblem::Method.problem_page(&site) })
-        .layer(DefaultBodyLimit::max(MOST_BYTES))
+        .layer(DefaultBodyLimit::max(MAX_FORM_BYTES))
         .layer(middleware::from_fn_with_state(Arc::clone(&site), guard_request))
         .with_state(site)
 }

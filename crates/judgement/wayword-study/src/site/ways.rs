@@ -5,7 +5,7 @@ use serde::Serialize;
 use wayword_core::Heading;
 
 /// Slope, radians (20 degrees). A steeper way counts as stairs. A ramp is flatter.
-const STAIRS_RAD: f64 = 0.35;
+const MIN_STAIRS_SLOPE_RAD: f64 = 0.35;
 
 /// A way to a neighbouring viewpoint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -29,8 +29,8 @@ pub(super) fn ways_from_place(scene: &StudyScene, place: &StudyViewpoint, facing
         let slope_rad = libm::atan2(there.z - place.eye_position().z, flat_m);
         let turn_deg = facing.turn_to(heading).to_degrees();
         let stairs = match slope_rad {
-            up if up > STAIRS_RAD => ", up",
-            down if down < -STAIRS_RAD => ", down",
+            up if up > MIN_STAIRS_SLOPE_RAD => ", up",
+            down if down < -MIN_STAIRS_SLOPE_RAD => ", down",
             _ => "",
         };
         let words = format!("{}{stairs}", describe_turn(turn_deg));

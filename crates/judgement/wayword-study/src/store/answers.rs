@@ -6,11 +6,11 @@ use crate::study::{PairChoice, ParticipantAnswer, ParticipantStatus, StudyError,
 use rusqlite::params;
 
 /// Most steps of a walk; a further one is refused. Paths of the known datasets have fewer than 20.
-pub(crate) const MOST_MOVES: usize = 200;
+pub(crate) const MAX_MOVES_PER_WALK: usize = 200;
 /// Longest text that a participant may write, characters. The form refuses a longer one.
-pub(crate) const LONGEST_TEXT: usize = 1000;
+pub(crate) const MAX_OWN_TEXT_CHARS: usize = 1000;
 /// Most turns that are stored for a walk. A page that reports more counts as this many.
-const MOST_LOOKS: u32 = 100_000;
+const MAX_STORED_LOOKS: u32 = 100_000;
 
 /// One input of a participant.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -137,7 +137,7 @@ impl StudyTransaction<'_> {
 
     fn own_text(&self, held: &StoredSlot, text: &str) -> InputResult {
         if held.own_text.is_none() {
-            let text: String = text.chars().take(LONGEST_TEXT).collect();
+            let text: String = text.chars().take(MAX_OWN_TEXT_CHARS).collect();
             self.db.execute("UPDATE slot SET own_text = ?2 WHERE id = ?1", params![held.id, text])?;
         }
         Ok(Ok(()))
@@ -148,7 +148,7 @@ impl StudyTransaction<'_> {
         if seq < held.moves.len() {
             return Ok(Ok(()));
         }
-        if seq > held.moves.len() || seq >= MOST_MOVES || held.stopped_ms.is_some() {
+        if seq > held.moves.len() || seq >= MAX_MOVES_PER_WALK || held.stopped_ms.is_some() {
             return Ok(Err(InputRefusal::OutOfTurn));
         }
         let Some((_, route, Some(scene))) = self.slot_contents(held) else { return Ok(Err(InputRefusal::Unknown)) };
@@ -173,7 +173,7 @@ impl StudyTransaction<'_> {
                 return Ok(Err(InputRefusal::OutOfTurn));
             }
             let update = "UPDATE slot SET stopped_ms = ?2, looks = ?3 WHERE id = ?1";
-            self.db.execute(update, params![held.id, self.now_ms, looks.min(MOST_LOOKS)])?;
+            self.db.execute(update, params![held.id, self.now_ms, looks.min(MAX_STORED_LOOKS)])?;
         }
         Ok(Ok(()))
     }

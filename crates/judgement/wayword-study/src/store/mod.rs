@@ -9,7 +9,7 @@ mod read;
 mod recruits;
 mod stage;
 
-pub(crate) use answers::{InputRefusal, LONGEST_TEXT, MOST_MOVES, ParticipantInput};
+pub(crate) use answers::{InputRefusal, MAX_MOVES_PER_WALK, MAX_OWN_TEXT_CHARS, ParticipantInput};
 pub use counts::{ConditionProgress, StudyProgress};
 pub(crate) use people::{ArrivalOutcome, ParticipantArrival, WithdrawalChoice};
 pub use people::{ErasureReport, InviteTokens};

@@ -16,7 +16,7 @@ const SESSION_MS: i64 = 7 * 24 * 3600 * 1000;
 /// Most sessions of one person. A further one ends the oldest.
 const MAX_SESSIONS_PER_PERSON: i64 = 8;
 /// Longest id from a recruiter, bytes. A link with a longer one counts as unknown.
-const LONGEST_ID: usize = 128;
+const MAX_RECRUITER_ID_BYTES: usize = 128;
 
 /// The link by which a visitor came.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -32,7 +32,7 @@ impl ParticipantArrival {
     /// Whether its parts have the form of tokens and ids, which the site accepts.
     pub(crate) fn is_plain(&self) -> bool {
         let is_id = |id: &str| {
-            id.len() <= LONGEST_ID
+            id.len() <= MAX_RECRUITER_ID_BYTES
                 && id.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'_' | b'.' | b':'))
         };
         match self {

@@ -36,7 +36,7 @@ pub(crate) struct StoredSlot {
     /// The row's id in the database.
     pub(super) id: i64,
     /// Unix time at which the lease ends, milliseconds.
-    pub(super) lease_ms: i64,
+    pub(super) lease_end_ms: i64,
     /// `live`, `answered` or `returned`.
     pub(super) state: String,
     /// Its random name on pages.
@@ -76,7 +76,7 @@ impl StudyTransaction<'_> {
             return Ok(ParticipantStage::Understood { attempt });
         }
         if let Some(held) = self.live_slot(person)?
-            && self.renew_lease(held.id, held.item, held.lease_ms, held.is_practice)?
+            && self.renew_lease(held.id, held.item, held.lease_end_ms, held.is_practice)?
         {
             return Ok(ParticipantStage::Item(held));
         }
@@ -155,7 +155,7 @@ impl StudyTransaction<'_> {
         let held = find.query_row(params![person, slot], |row| {
             Ok(StoredSlot {
                 id: row.get(0)?,
-                lease_ms: row.get(1)?,
+                lease_end_ms: row.get(1)?,
                 slot: row.get(2)?,
                 item: row.get(3)?,
                 is_practice: row.get(4)?,

@@ -19,7 +19,7 @@ const SCENES_FILE: &str = "scenes.jsonl";
 const DATABASE_FILE: &str = "study.db";
 const PICTURES_FOLDER: &str = "pictures";
 /// Largest file of a study that is read, bytes. A larger one is an error.
-const MOST_BYTES: u64 = 1 << 30;
+const MAX_STUDY_FILE_BYTES: u64 = 1 << 30;
 
 /// A study as it was made, without the answers.
 #[derive(Debug, Clone, PartialEq)]
@@ -195,8 +195,8 @@ fn wrong_file_error(folder: &Path, name: &str, problem: &dyn std::fmt::Display) 
 /// Reads a text file of the study, unless it is too large.
 fn read_limited_file(path: &Path) -> Result<String, StudyError> {
     let size = fs::metadata(path).map_err(StudyError::io_error(path, "read"))?.len();
-    if size > MOST_BYTES {
-        let problem = format!("it has {size} bytes, and at most {MOST_BYTES} are read");
+    if size > MAX_STUDY_FILE_BYTES {
+        let problem = format!("it has {size} bytes, and at most {MAX_STUDY_FILE_BYTES} are read");
         return Err(StudyError::File { path: path.to_owned(), problem, hint: "make a smaller study" });
     }
     fs::read_to_string(path).map_err(StudyError::io_error(path, "read"))

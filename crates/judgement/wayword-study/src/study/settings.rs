@@ -96,14 +96,14 @@ pub struct CompletionCodes {
 }
 
 /// Prolific's rule, minutes: in a study of this length or longer, a participant may fail one attention check; in a shorter one, none.
-const LONG_MINUTES: u32 = 5;
+const LONG_STUDY_MINUTES: u32 = 5;
 /// Most answers that a comprehension question may offer. [`StudySettings::check`] refuses more.
-const MOST_ANSWERS: usize = 10;
+const MAX_ANSWERS_PER_QUESTION: usize = 10;
 
 impl StudySettings {
     /// How many failed attention checks are tolerated by Prolific's rule.
     pub(crate) fn most_failed(&self) -> usize {
-        usize::from(self.minutes >= LONG_MINUTES)
+        usize::from(self.minutes >= LONG_STUDY_MINUTES)
     }
 
     /// All texts that participants read before they consent.
@@ -162,9 +162,9 @@ impl StudySettings {
     /// The first problem, as a sentence about a field.
     pub fn check(&self) -> Result<(), String> {
         for question in &self.questions {
-            if question.right >= question.answers.len() || question.answers.len() > MOST_ANSWERS {
+            if question.right >= question.answers.len() || question.answers.len() > MAX_ANSWERS_PER_QUESTION {
                 return Err(format!(
-                    "questions: the right answer of {:?} is not among its answers (they count from 0), or there are more than {MOST_ANSWERS}",
+                    "questions: the right answer of {:?} is not among its answers (they count from 0), or there are more than {MAX_ANSWERS_PER_QUESTION}",
                     question.text
                 ));
             }
@@ -172,7 +172,7 @@ impl StudySettings {
         if self.attention_checks > 4 {
             return Err("attention_checks: at most 4".to_owned());
         }
-        if self.attention_checks == 1 && self.minutes >= LONG_MINUTES {
+        if self.attention_checks == 1 && self.minutes >= LONG_STUDY_MINUTES {
             let rule = "in a study of 5 minutes or more one failed check says nothing (Prolific's rule)";
             return Err(format!("attention_checks: {rule}; give 2 or more, or 0"));
         }

@@ -9,7 +9,7 @@ use std::{
 };
 
 /// How many writes the queue and one commit can contain. A sender waits while the queue is full, so that memory is bounded.
-const MOST_AT_ONCE: usize = 1024;
+const MAX_GROUP_WRITES: usize = 1024;
 
 /// Writes groups of writes to disk.
 pub(super) trait GroupCommit: Send + 'static {
@@ -48,7 +48,7 @@ impl<W: Send + 'static, R: Send + 'static> CommitQueue<W, R> {
         path: &Path,
         committer: impl GroupCommit<Write = W, Outcome = R>,
     ) -> Result<Self, LedgerError> {
-        let (sender, writes) = mpsc::sync_channel(MOST_AT_ONCE);
+        let (sender, writes) = mpsc::sync_channel(MAX_GROUP_WRITES);
         let thread = thread::Builder::new()
             .name(thread_name.to_owned())
             .spawn(move || run_commits(committer, &writes))
@@ -100,7 +100,7 @@ fn run_commits<C: GroupCommit>(mut committer: C, writes: &mpsc::Receiver<QueuedW
     let mut group = Vec::new();
     while let Ok(first) = writes.recv() {
         group.push(first);
-        while group.len() < MOST_AT_ONCE {
+        while group.len() < MAX_GROUP_WRITES {
             let Ok(next) = writes.try_recv() else { break };
             group.push(next);
         }

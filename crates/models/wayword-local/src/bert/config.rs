@@ -35,7 +35,7 @@ pub(crate) struct BertSizes {
 }
 
 /// The most layers that a configuration may have; more are refused. BERT-large has 24.
-const MOST_LAYERS: usize = 64;
+const MAX_LAYERS: usize = 64;
 
 impl BertSizes {
     /// The problem with the sizes, if there is one.
@@ -54,8 +54,8 @@ impl BertSizes {
         if heads == 0 || !self.hidden_size.is_multiple_of(heads) {
             return Some(format!("num_attention_heads: {heads} does not divide hidden_size {}", self.hidden_size));
         }
-        (!(1..=MOST_LAYERS).contains(&layers))
-            .then(|| format!("num_hidden_layers: {layers} is not from 1 to {MOST_LAYERS}"))
+        (!(1..=MAX_LAYERS).contains(&layers))
+            .then(|| format!("num_hidden_layers: {layers} is not from 1 to {MAX_LAYERS}"))
     }
 }
 

@@ -32,7 +32,7 @@ pub struct BlipVqa {
     /// The most tokens of a question.
     longest: usize,
     /// Keys and values of recent pictures, by the hash of the picture.
-    seen: RecentCache<[u8; 32], BlipKeysValues>,
+    picture_cache: RecentCache<[u8; 32], BlipKeysValues>,
     device: ModelDevice,
 }
 
@@ -58,7 +58,7 @@ impl BlipVqa {
             encoder: TextModel::from_weights(&weights.scope_under("text_encoder"), &config.text_config)?,
             decoder: BlipDecoder::from_weights(&weights.scope_under("text_decoder"), &config.text_config)?,
             longest: config.text_config.max_position_embeddings,
-            seen: RecentCache::one_at_a_time(MAX_KEPT_PICTURES),
+            picture_cache: RecentCache::one_at_a_time(MAX_KEPT_PICTURES),
             device: device.clone(),
         })
     }
@@ -91,7 +91,7 @@ impl BlipVqa {
     /// The encoder's states of a question and a picture, [1, tokens, size].
     pub(super) fn encode_question(&self, picture: &Image, question: &str) -> Result<Tensor, LocalError> {
         let to_local_error = |error: candle_core::Error| LocalError::compute_failed(&self.name, &error);
-        let keys_values = self.seen.get_or_make(picture_digest(picture), || {
+        let keys_values = self.picture_cache.get_or_make(picture_digest(picture), || {
             let pixels = self.processor.to_tensor(&[picture], &self.device)?;
             self.vision
                 .encode_pictures(&pixels)

@@ -36,9 +36,9 @@ pub struct Blip2Model {
     /// Brings the Q-Former's states to the width of the language model.
     projection: LinearLayer,
     /// The model that writes the answer.
-    speaker: Blip2LanguageModel,
+    language_model: Blip2LanguageModel,
     /// The condensed tokens of recent pictures, by the hash of the picture.
-    seen: RecentCache<[u8; 32], Tensor>,
+    picture_cache: RecentCache<[u8; 32], Tensor>,
     device: ModelDevice,
 }
 
@@ -49,7 +49,7 @@ enum Blip2LanguageModel {
 }
 
 /// The most tokens of a prompt. The rest is cut off.
-const LONGEST_PROMPT: usize = 512;
+const MAX_PROMPT_TOKENS: usize = 512;
 
 impl Blip2Model {
     /// Reads a folder with `config.json`, `preprocessor_config.json`, `tokenizer.json` and the checkpoint. `name` is
@@ -85,8 +85,8 @@ impl Blip2Model {
             )?,
             queries: QFormer::from_weights(&all, &config.qformer_config, config.num_query_tokens)?,
             projection: all.read_linear("language_projection", config.qformer_config.hidden_size, width)?,
-            speaker,
-            seen: RecentCache::one_at_a_time(MAX_KEPT_PICTURES),
+            language_model: speaker,
+            picture_cache: RecentCache::one_at_a_time(MAX_KEPT_PICTURES),
             device: device.clone(),
         })
     }
@@ -105,9 +105,10 @@ impl Blip2Model {
     /// # Errors
     /// When the computation fails.
     pub fn answer_tokens(&self, picture: &Image, prompt: &str, most_tokens: usize) -> Result<Vec<u32>, LocalError> {
-        let picture_tokens = self.seen.get_or_make(picture_digest(picture), || self.encode_picture(picture))?;
-        let ids = self.tokenizer.text_ids(prompt, LONGEST_PROMPT)?;
-        let tokens = Tensor::new(&ids[..], &self.device.0).and_then(|ids| match &self.speaker {
+        let picture_tokens =
+            self.picture_cache.get_or_make(picture_digest(picture), || self.encode_picture(picture))?;
+        let ids = self.tokenizer.text_ids(prompt, MAX_PROMPT_TOKENS)?;
+        let tokens = Tensor::new(&ids[..], &self.device.0).and_then(|ids| match &self.language_model {
             Blip2LanguageModel::T5(t5) => t5.generate_tokens(&picture_tokens, &ids.unsqueeze(0)?, most_tokens),
             Blip2LanguageModel::Opt(opt) => opt.generate_tokens(&picture_tokens, &ids.unsqueeze(0)?, most_tokens),
         });

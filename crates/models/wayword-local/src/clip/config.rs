@@ -69,7 +69,7 @@ struct ClipConfigFile {
 }
 
 /// The longest edge of a picture that a configuration may ask for, pixels. A longer one is refused.
-const LONGEST_EDGE: usize = 2048;
+const MAX_EDGE_PX: usize = 2048;
 
 impl ClipConfig {
     pub(crate) fn from_folder(folder: &Path, family: TowerFamily) -> Result<Self, LocalError> {
@@ -147,7 +147,7 @@ impl ClipConfigFile {
         text.layers.check_sizes("text_config")?;
         vision.layers.check_sizes("vision_config")?;
         let (edge, patch) = (vision.image_size, vision.patch_size);
-        if edge == 0 || edge > LONGEST_EDGE || patch == 0 || !edge.is_multiple_of(patch) {
+        if edge == 0 || edge > MAX_EDGE_PX || patch == 0 || !edge.is_multiple_of(patch) {
             return Err(format!("vision_config: pictures of {edge} pixels cannot be cut into patches of {patch}"));
         }
         if text.max_position_embeddings == 0 {

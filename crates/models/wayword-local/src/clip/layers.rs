@@ -18,12 +18,12 @@ pub(crate) struct ClipLayers {
 
 /// One layer: a norm and attention among the tokens, then a norm and a feed-forward network.
 struct ClipLayer {
-    mix_norm: LayerNorm,
+    attention_norm: LayerNorm,
     /// The layer for queries, keys and values, side by side.
     qkv: LinearLayer,
     /// The layer behind the attention.
     mixed: LinearLayer,
-    think_norm: LayerNorm,
+    feed_forward_norm: LayerNorm,
     wide: LinearLayer,
     narrow: LinearLayer,
     heads: usize,
@@ -61,7 +61,7 @@ impl ClipLayers {
             let at = Tensor::new(at, x.device())?;
             mask.index_select(&at, 0)?.reshape((batch, 1, 1, length))
         });
-        let qkv = self.last.qkv.apply_to_normed(&x, &self.last.mix_norm)?;
+        let qkv = self.last.qkv.apply_to_normed(&x, &self.last.attention_norm)?;
         let q = pick_rows(&qkv)?.narrow(2, 0, size)?;
         self.last.apply_to(&pick_rows(&x)?, &qkv, &q, mask.transpose()?.as_ref())
     }
@@ -77,10 +77,10 @@ impl ClipLayer {
     fn from_weights(weights: &WeightScope<'_>, config: &LayersConfig) -> std::result::Result<Self, LocalError> {
         let (size, inner, epsilon) = (config.hidden_size, config.intermediate_size, config.layer_norm_eps);
         Ok(Self {
-            mix_norm: weights.layer_norm("layer_norm1", size, epsilon)?,
+            attention_norm: weights.layer_norm("layer_norm1", size, epsilon)?,
             qkv: weights.sub_scope("self_attn").read_joined_linears(&["q_proj", "k_proj", "v_proj"], size, size)?,
             mixed: weights.read_linear("self_attn.out_proj", size, size)?,
-            think_norm: weights.layer_norm("layer_norm2", size, epsilon)?,
+            feed_forward_norm: weights.layer_norm("layer_norm2", size, epsilon)?,
             wide: weights.read_linear("mlp.fc1", size, inner)?,
             narrow: weights.read_linear("mlp.fc2", inner, size)?,
             heads: config.num_attention_heads,
@@ -90,7 +90,7 @@ impl ClipLayer {
 
     /// The layer's output for all tokens x [batch, length, size].
     fn apply_to_all(&self, x: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
-        let qkv = self.qkv.apply_to_normed(x, &self.mix_norm)?;
+        let qkv = self.qkv.apply_to_normed(x, &self.attention_norm)?;
         self.apply_to(x, &qkv, &qkv_part(&qkv, 0)?, mask)
     }
 
@@ -101,7 +101,7 @@ impl ClipLayer {
         let attention = MultiHeadAttention { heads: self.heads, scale, bias: mask };
         let mixed = attention.attend_to(q, &qkv_part(qkv, 1)?, &qkv_part(qkv, 2)?)?;
         let feed_forward = FeedForward {
-            before: Some(&self.think_norm),
+            before: Some(&self.feed_forward_norm),
             wide: &self.wide,
             activation: self.activation,
             narrow: &self.narrow,

@@ -9,7 +9,7 @@ use crate::{
 use candle_core::{Result, Tensor};
 
 /// The token that old configurations name as the end of a text. It is wrong, and is ignored.
-const WRONG_END: u32 = 2;
+const WRONG_END_TOKEN_ID: u32 = 2;
 
 /// Computes one state for each text.
 pub(crate) struct TextTower {
@@ -33,7 +33,7 @@ impl TextTower {
             positions: embeddings.read_embedding("position_embedding", config.max_position_embeddings, size)?,
             layers: ClipLayers::from_weights(&weights.sub_scope("encoder.layers"), &config.layers)?,
             norm: weights.layer_norm("final_layer_norm", size, epsilon)?,
-            end: config.eos_token_id.filter(|&end| end != WRONG_END),
+            end: config.eos_token_id.filter(|&end| end != WRONG_END_TOKEN_ID),
         })
     }
 

@@ -7,7 +7,7 @@ use crate::{
 };
 use serde_json::{Value, json};
 use std::{cell::RefCell, collections::VecDeque};
-use wayword_core::{DetectedBox, DetectorScoring, MOST_BOXES, ModelError, ObjectDetector, View};
+use wayword_core::{DetectedBox, DetectorScoring, MAX_BOXES_PER_PHRASE, ModelError, ObjectDetector, View};
 use wayword_ledger::LedgerRun;
 
 /// An in-process detector behind the ledger.
@@ -17,9 +17,9 @@ use wayword_ledger::LedgerRun;
 /// computed together. With the other detectors there is one call for each view and list of phrases. An answer is the
 /// boxes as JSON.
 pub struct LocalDetector {
-    kept: CallLedger,
+    calls: CallLedger,
     /// The detector itself, for views and phrases that the ledger lacks.
-    ready: LoadedDetector,
+    loaded: LoadedDetector,
 }
 
 /// The boxes in which one phrase was found.
@@ -27,29 +27,29 @@ type PhraseBoxes = Vec<DetectedBox>;
 
 impl LocalDetector {
     pub(crate) fn new(name: &str, origin: String, ready: LoadedDetector, run: LedgerRun) -> Self {
-        Self { kept: CallLedger::new(name, origin, run), ready }
+        Self { calls: CallLedger::new(name, origin, run), loaded: ready }
     }
 
     /// The identity of the weights, and their precision.
     #[must_use]
     pub fn origin(&self) -> &str {
-        &self.kept.origin
+        &self.calls.origin
     }
 
     /// The boxes of each phrase in one view. `phrases_meet` is true for detectors in which the phrases of a call
     /// influence each other's scores.
     fn in_view(&self, view: &View, phrases: &[&str]) -> Result<Vec<PhraseBoxes>, ModelError> {
-        let picture = picture_hash(picture_of_view(view, &self.kept.name)?);
+        let picture = picture_hash(picture_of_view(view, &self.calls.name)?);
         match phrases {
             [] => Ok(Vec::new()),
-            _ if self.scoring().phrases_meet => self.detect_together(view, &picture, phrases),
+            _ if self.scoring().phrases_interact => self.detect_together(view, &picture, phrases),
             _ => self.one_by_one(view, &picture, phrases),
         }
     }
 
     /// One call for the view and all phrases.
     fn detect_together(&self, view: &View, picture: &str, phrases: &[&str]) -> Result<Vec<PhraseBoxes>, ModelError> {
-        let answer = self.kept.answer_once(self.request_json(picture, phrases), 0, || {
+        let answer = self.calls.answer_once(self.request_json(picture, phrases), 0, || {
             let found = self.compute_boxes(view, phrases)?;
             serde_json::to_string(&found).map_err(|error| self.model_error(&error.to_string()))
         })?;
@@ -66,7 +66,7 @@ impl LocalDetector {
         // that follow wait in `ahead` until their own call.
         let ahead: RefCell<VecDeque<PhraseBoxes>> = RefCell::default();
         let detect_one = |(at, phrase): (usize, &&str)| {
-            let answer = self.kept.answer_once(self.request_json(picture, &[phrase]), 0, || {
+            let answer = self.calls.answer_once(self.request_json(picture, &[phrase]), 0, || {
                 if ahead.borrow().is_empty() {
                     *ahead.borrow_mut() = self.compute_boxes(view, &phrases[at..])?.into();
                 }
@@ -81,18 +81,18 @@ impl LocalDetector {
 
     /// The boxes that the detector finds, one list per phrase.
     fn compute_boxes(&self, view: &View, phrases: &[&str]) -> Result<Vec<PhraseBoxes>, ModelError> {
-        let found = self.ready.detector.detect_phrases(&[view], phrases).pop();
+        let found = self.loaded.detector.detect_phrases(&[view], phrases).pop();
         let mut found = found.unwrap_or_else(|| Err(self.model_error("it gave no result")))?;
         if found.len() != phrases.len() {
             return Err(self.model_error(&format!("it gave {} results for {} phrases", found.len(), phrases.len())));
         }
-        found.iter_mut().for_each(|places| places.truncate(MOST_BOXES));
+        found.iter_mut().for_each(|places| places.truncate(MAX_BOXES_PER_PHRASE));
         Ok(found)
     }
 
     /// The key of a call in the ledger: everything that may change an answer, except the weights.
     fn request_json(&self, picture: &str, phrases: &[&str]) -> Value {
-        json!({ "image_sha256": picture, "size": self.ready.size, "phrases": phrases })
+        json!({ "image_sha256": picture, "size": self.loaded.size, "phrases": phrases })
     }
 
     fn parse_answer<T: serde::de::DeserializeOwned>(&self, text: &str) -> Result<T, ModelError> {
@@ -105,17 +105,17 @@ impl LocalDetector {
     }
 
     fn model_error(&self, reason: &str) -> ModelError {
-        ModelError::Failed { model: self.kept.name.clone(), reason: reason.to_owned() }
+        ModelError::Failed { model: self.calls.name.clone(), reason: reason.to_owned() }
     }
 }
 
 impl ObjectDetector for LocalDetector {
     fn name(&self) -> &str {
-        &self.kept.name
+        &self.calls.name
     }
 
     fn scoring(&self) -> DetectorScoring {
-        self.ready.detector.scoring()
+        self.loaded.detector.scoring()
     }
 
     fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {
@@ -148,7 +148,7 @@ mod tests {
         }
 
         fn scoring(&self) -> DetectorScoring {
-            DetectorScoring { means: "made up", found_from: 0.5, phrases_meet: self.meets }
+            DetectorScoring { means: "made up", find_threshold: 0.5, phrases_interact: self.meets }
         }
 
         fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {
@@ -184,7 +184,7 @@ mod tests {
         assert_eq!(lefts(&detector.detect_phrases(&[&view()], &["bb"])[0]), [2.0]);
         let found = detector.detect_phrases(&[&view()], &["a", "bb", "ccc", "a"]);
         assert_eq!(lefts(&found[0]), [1.0, 2.0, 3.0, 1.0]);
-        assert_eq!(found[0].as_ref().unwrap()[0].len(), MOST_BOXES);
+        assert_eq!(found[0].as_ref().unwrap()[0].len(), MAX_BOXES_PER_PHRASE);
         assert_eq!(lefts(&detector.detect_phrases(&[&view()], &["ccc", "a"])[0]), [3.0, 1.0]);
         assert_eq!(*asked.lock().unwrap(), [vec!["bb"], vec!["a", "bb", "ccc", "a"]]);
         assert_eq!(detector.detect_phrases(&[&view()], &[]), [Ok(Vec::new())]);

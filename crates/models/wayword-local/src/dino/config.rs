@@ -23,7 +23,7 @@ use serde_json::{Map, Value};
 use std::path::Path;
 
 /// The most levels of a picture's features; more are refused. A level is a grid of cells; each next level is coarser.
-const MOST_LEVELS: usize = 8;
+const MAX_FEATURE_LEVELS: usize = 8;
 
 /// The groups of channels of the norm that follows each projection of the backbone's maps.
 pub(super) const NORM_GROUP_COUNT: usize = 32;
@@ -223,8 +223,11 @@ impl DinoConfigFile {
                 self.decoder_attention_heads
             ));
         }
-        if !(1..=MOST_LEVELS).contains(&self.num_feature_levels) {
-            return Err(format!("num_feature_levels: {} is not from 1 to {MOST_LEVELS}", self.num_feature_levels));
+        if !(1..=MAX_FEATURE_LEVELS).contains(&self.num_feature_levels) {
+            return Err(format!(
+                "num_feature_levels: {} is not from 1 to {MAX_FEATURE_LEVELS}",
+                self.num_feature_levels
+            ));
         }
         if self.max_text_len < 3 {
             return Err(format!("max_text_len: {} leaves no room for a phrase", self.max_text_len));

@@ -7,10 +7,10 @@ use super::{
 };
 use crate::{LocalError, picture::picture_of_view};
 use candle_core::DType;
-use wayword_core::{DetectedBox, DetectorScoring, Image, MOST_BOXES, ModelError, ObjectDetector, View};
+use wayword_core::{DetectedBox, DetectorScoring, Image, MAX_BOXES_PER_PHRASE, ModelError, ObjectDetector, View};
 
 /// The score from which the processors of these models take a box for a find.
-const FOUND_FROM: f32 = 0.25;
+const MIN_FIND_SCORE: f32 = 0.25;
 
 impl GroundingDino {
     fn to_model_error(&self, error: &LocalError) -> ModelError {
@@ -72,7 +72,7 @@ fn phrase_boxes(
             .filter(|found| is_sound(*found))
             .collect();
         found.sort_by(|a, b| b.score.total_cmp(&a.score));
-        found.truncate(MOST_BOXES);
+        found.truncate(MAX_BOXES_PER_PHRASE);
         found
     };
     Ok(prompt.phrases.iter().map(best_boxes).collect())
@@ -99,7 +99,7 @@ impl ObjectDetector for GroundingDino {
                 "Grounding DINO: a query's largest sigmoid over the tokens of the phrase, all phrases in one prompt"
             }
         };
-        DetectorScoring { means, found_from: FOUND_FROM, phrases_meet: true }
+        DetectorScoring { means, find_threshold: MIN_FIND_SCORE, phrases_interact: true }
     }
 
     fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {

@@ -22,7 +22,7 @@ mod prompt;
 mod queries;
 mod text;
 
-pub(crate) use model::KEPT_BYTES;
+pub(crate) use model::FEATURE_CACHE_BYTES;
 pub use model::{DinoOutputs, GroundingDino};
 
 /// A result of reading weights; `Result` alone is that of a computation.

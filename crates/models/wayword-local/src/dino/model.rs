@@ -19,7 +19,7 @@ use std::{path::Path, sync::Arc};
 use wayword_core::{Image, RecentCache};
 
 /// The memory that the features of recent pictures may take, bytes. The oldest are dropped beyond this.
-pub(crate) const KEPT_BYTES: usize = 256 << 20;
+pub(crate) const FEATURE_CACHE_BYTES: usize = 256 << 20;
 
 /// The edge of the patches into which the backbone cuts a picture, pixels.
 const PATCH_PX: usize = 4;
@@ -32,10 +32,10 @@ pub struct GroundingDino {
     pub(super) name: String,
     pub(super) family: DinoFamily,
     /// Resizes pictures and turns them into tensors.
-    shown: DinoPictureProcessor,
+    processor: DinoPictureProcessor,
     tokenizer: TextTokenizer,
     /// Computes the features of pictures.
-    eye: DinoFeatureExtractor,
+    extractor: DinoFeatureExtractor,
     /// Computes the states of prompts.
     reader: TextTower,
     encoder: Vec<EncoderLayer>,
@@ -45,7 +45,7 @@ pub struct GroundingDino {
     longest: usize,
     device: ModelDevice,
     /// The features of recent pictures, by the hash of the picture.
-    kept: RecentCache<[u8; 32], PictureFeatures>,
+    picture_cache: RecentCache<[u8; 32], PictureFeatures>,
 }
 
 /// The network's own numbers for a picture and a prompt, for comparisons with other implementations.
@@ -83,16 +83,16 @@ impl GroundingDino {
         Ok(Self {
             name: name.to_owned(),
             family: config.family,
-            shown,
+            processor: shown,
             tokenizer,
-            eye: DinoFeatureExtractor::from_weights(&model, &config)?,
+            extractor: DinoFeatureExtractor::from_weights(&model, &config)?,
             reader: TextTower::from_weights(&model, &config)?,
             encoder: (0..config.encoder.count).map(layer).collect::<Result<_, _>>()?,
             chooser: QueryChooser::from_weights(&model, &config)?,
             decoder: DinoDecoder::from_weights(&all, &config)?,
             longest: config.longest,
             device: device.clone(),
-            kept: RecentCache::new((KEPT_BYTES / picture_bytes).max(1)),
+            picture_cache: RecentCache::new((FEATURE_CACHE_BYTES / picture_bytes).max(1)),
         })
     }
 
@@ -107,9 +107,9 @@ impl GroundingDino {
 
     /// The features of a picture: kept ones, or else new ones, which are then kept.
     pub(super) fn picture_features(&self, image: &Image) -> Result<Arc<PictureFeatures>, LocalError> {
-        self.kept.get_or_make(picture_digest(image), || {
-            let pixels = self.shown.to_tensor(image, &self.device)?;
-            self.eye.extract_features(&pixels).map_err(|error| self.compute_error(&error))
+        self.picture_cache.get_or_make(picture_digest(image), || {
+            let pixels = self.processor.to_tensor(image, &self.device)?;
+            self.extractor.extract_features(&pixels).map_err(|error| self.compute_error(&error))
         })
     }
 
@@ -141,7 +141,7 @@ impl GroundingDino {
     /// The states of cells and tokens after the encoder.
     pub(super) fn encode_states(&self, features: &PictureFeatures, text: &PromptStates) -> Computed<(Tensor, Tensor)> {
         let levels = &features.levels[..];
-        let positions = self.eye.cell_positions(levels)?;
+        let positions = self.extractor.cell_positions(levels)?;
         let begin = (features.cells.clone(), text.states.clone());
         self.encoder
             .iter()
@@ -185,7 +185,7 @@ impl GroundingDino {
 #[cfg(test)]
 impl GroundingDino {
     pub(super) fn pixels(&self, image: &Image) -> Tensor {
-        self.shown.to_tensor(image, &self.device).unwrap()
+        self.processor.to_tensor(image, &self.device).unwrap()
     }
 
     pub(super) fn candidates(&self, features: &PictureFeatures, text: &PromptStates) -> Computed<Vec<f32>> {

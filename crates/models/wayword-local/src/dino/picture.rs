@@ -13,7 +13,7 @@ use wayword_core::Image;
 const PREPROCESSOR_FILE: &str = "preprocessor_config.json";
 
 /// The longest edge of a picture that a configuration may ask for, pixels. A longer one is refused.
-const LONGEST_EDGE: usize = 2048;
+const MAX_EDGE_PX: usize = 2048;
 
 /// ImageNet's means and standard deviations of red, green and blue.
 const IMAGENET_MEANS_RGB: [f64; 3] = [0.485, 0.456, 0.406];
@@ -124,8 +124,8 @@ impl DinoPictureConfig {
             Some(DinoEdgeLimits::One(edge)) => (edge, self.max_size.unwrap_or(1333)),
             Some(DinoEdgeLimits::Both { shortest_edge, longest_edge }) => (shortest_edge, longest_edge),
         };
-        if shortest == 0 || shortest > longest || longest > LONGEST_EDGE {
-            return Err(format!("size: edges of {shortest} and {longest} pixels are not between 1 and {LONGEST_EDGE}"));
+        if shortest == 0 || shortest > longest || longest > MAX_EDGE_PX {
+            return Err(format!("size: edges of {shortest} and {longest} pixels are not between 1 and {MAX_EDGE_PX}"));
         }
         Ok(DinoPictureProcessor { shortest, longest, numbers: self.byte_values()? })
     }

@@ -34,7 +34,7 @@ pub(super) struct QueryCandidates {
     /// The states of the cells, [1, cells, size].
     states: Tensor,
     /// The logits of each cell's own box; infinite for a cell that cannot be chosen for lack of a valid box.
-    own: Vec<[f32; 4]>,
+    box_logits: Vec<[f32; 4]>,
     /// The logit of each cell's best token.
     pub(super) scores: Vec<f32>,
 }
@@ -64,7 +64,7 @@ impl QueryChooser {
         let states = self.norm.apply_to(&self.layer.apply_to(&cells.broadcast_mul(&is_valid)?)?)?;
         let logits = self.contrast.token_logits(&states, text)?;
         let scores = logits.max(candle_core::D::Minus1)?.flatten_all()?.to_dtype(candle_core::DType::F32)?.to_vec1()?;
-        Ok(QueryCandidates { states, own, scores })
+        Ok(QueryCandidates { states, box_logits: own, scores })
     }
 
     /// The cells with the best scores, the best first. Cells with equal scores stay in their order.
@@ -82,7 +82,7 @@ impl QueryChooser {
         let states = candidates.states.index_select(&at, 1)?;
         let moved = rows_of_four(&self.boxes.apply_to(&states)?)?;
         let place = |(moved, &at): ([f32; 4], &u32)| {
-            let own = candidates.own[at as usize];
+            let own = candidates.box_logits[at as usize];
             std::array::from_fn(|edge| sigmoid(moved[edge] + own[edge]))
         };
         Ok(moved.into_iter().zip(picked).map(place).collect())

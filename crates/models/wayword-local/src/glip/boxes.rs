@@ -4,16 +4,16 @@
 //! overlap too much, the best one for each phrase stays.
 
 use super::{head::GlipLevelOutputs, prompt::GlipPrompt};
-use wayword_core::{DetectedBox, MOST_BOXES};
+use wayword_core::{DetectedBox, MAX_BOXES_PER_PHRASE};
 
 /// A phrase with a lower probability at a position gets no box there.
 const MIN_PHRASE_PROBABILITY: f64 = 0.05;
 
 /// The most candidates of a level; those with lower scores are dropped. A candidate is a pair of position and phrase.
-const MOST_CANDIDATES: usize = 1000;
+const MAX_LEVEL_CANDIDATES: usize = 1000;
 
 /// A box that overlaps with a better one of the same phrase by more than this share of their union is left out.
-const MOST_OVERLAP: f64 = 0.6;
+const MAX_BOX_OVERLAP: f64 = 0.6;
 
 /// The logarithm of how many times larger than its anchor a box may be: ln(1000 / 16).
 const MAX_LOG_BOX_GROWTH: f64 = 4.135_166_556_742_356;
@@ -32,7 +32,7 @@ struct GlipCandidate {
     phrase: usize,
 }
 
-/// For each phrase of a prompt, in their order, its boxes in the picture, the best first, at most [`MOST_BOXES`].
+/// For each phrase of a prompt, in their order, its boxes in the picture, the best first, at most [`MAX_BOXES_PER_PHRASE`].
 pub(super) fn phrase_boxes(
     outputs: &[GlipLevelOutputs],
     prompt: &GlipPrompt,
@@ -47,8 +47,8 @@ pub(super) fn phrase_boxes(
     let mut kept: Vec<Vec<GlipCandidate>> = prompt.phrases.iter().map(|_| Vec::new()).collect();
     for candidate in candidates {
         let better_boxes = &mut kept[candidate.phrase];
-        if better_boxes.len() < MOST_BOXES
-            && better_boxes.iter().all(|better| box_overlap(&better.edges, &candidate.edges) <= MOST_OVERLAP)
+        if better_boxes.len() < MAX_BOXES_PER_PHRASE
+            && better_boxes.iter().all(|better| box_overlap(&better.edges, &candidate.edges) <= MAX_BOX_OVERLAP)
         {
             better_boxes.push(candidate);
         }
@@ -87,7 +87,7 @@ fn level_candidates(
     }
     // Among equals the first stay first.
     values.sort_by(|a, b| b.0.total_cmp(&a.0));
-    values.truncate(MOST_CANDIDATES);
+    values.truncate(MAX_LEVEL_CANDIDATES);
     let candidate = |(value, position, phrase): (f64, usize, usize)| {
         let deltas = &outputs.boxes[position * 5..position * 5 + 4];
         let edges = box_edges(level, position % outputs.width, position / outputs.width, deltas, sizes.shown);
@@ -187,6 +187,6 @@ mod tests {
         let boxes_px: Vec<f32> = (0..count).flat_map(|_| [0.0, 0.0, -40.0, -40.0, 0.0]).collect();
         let said = GlipLevelOutputs { height: 40, width: 40, logits: vec![0.0; count], boxes: boxes_px };
         let sizes = GlipPictureSizes { shown: (10_000, 10_000), picture: (10_000, 10_000) };
-        assert_eq!(phrase_boxes(&[said], &prompt(1), sizes)[0].len(), MOST_BOXES);
+        assert_eq!(phrase_boxes(&[said], &prompt(1), sizes)[0].len(), MAX_BOXES_PER_PHRASE);
     }
 }

@@ -46,7 +46,7 @@ struct GlipSwinConfig {
 }
 
 /// The most rounds of the head that a configuration may have; more are refused. GLIP-L has 8.
-const MOST_ROUNDS: usize = 16;
+const MAX_HEAD_ROUNDS: usize = 16;
 
 impl GlipConfig {
     /// The sizes from `config.json` of a folder, or GLIP-T's.
@@ -106,8 +106,8 @@ impl GlipConfigFile {
         if !head.width.is_multiple_of(head.groups) || !head.width.is_multiple_of(4) {
             return Err(format!("head.groups: {} and 4 do not divide the width {}", head.groups, head.width));
         }
-        if !(1..=MOST_ROUNDS).contains(&head.rounds) {
-            return Err(format!("head.rounds: {} is not from 1 to {MOST_ROUNDS}", head.rounds));
+        if !(1..=MAX_HEAD_ROUNDS).contains(&head.rounds) {
+            return Err(format!("head.rounds: {} is not from 1 to {MAX_HEAD_ROUNDS}", head.rounds));
         }
         Ok(GlipConfig { swin, text: bert::BertConfig::for_sizes(&self.text), head: self.head })
     }

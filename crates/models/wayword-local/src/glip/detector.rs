@@ -6,7 +6,7 @@ use super::{
     config::GlipConfig,
     head::GlipLevelOutputs,
     model::GlipModel,
-    prompt::{GlipPrompt, MOST_TOKENS, build_prompts},
+    prompt::{GlipPrompt, MAX_PROMPT_TOKENS, build_prompts},
 };
 use crate::{
     LocalError, ModelDevice, WeightPrecision,
@@ -20,14 +20,14 @@ use std::path::Path;
 use wayword_core::{DetectedBox, DetectorScoring, Image, ModelError, ObjectDetector, RecentCache, View};
 
 /// The most memory for the features of recent pictures, bytes. The oldest are dropped beyond this.
-pub(crate) const FEATURES_BYTES: usize = 512 << 20;
+pub(crate) const FEATURE_CACHE_BYTES: usize = 512 << 20;
 
 /// Means and standard deviations of the bytes of blue, green and red.
 const BYTE_MEANS_BGR: [f32; 3] = [103.53, 116.28, 123.675];
 const BYTE_DEVIATIONS_BGR: [f32; 3] = [57.375, 57.12, 58.395];
 
 /// The longest edge of a picture for the model, pixels.
-const LONGEST_EDGE: usize = 1333;
+const LONG_EDGE_PX: usize = 1333;
 
 /// GLIP. The score of a box is the root of the phrase's probability times the box's centreness, as in the original.
 /// Boxes with a probability of 0.05 or less are left out.
@@ -39,12 +39,12 @@ pub struct GlipDetector {
     model: GlipModel,
     tokenizer: TextTokenizer,
     /// Resizes and pads pictures, and turns them into tensors.
-    edges: PaddedPictureProcessor,
+    processor: PaddedPictureProcessor,
     /// The most tokens of a prompt.
     most_tokens: usize,
     device: ModelDevice,
     /// The features of recent pictures, by the hash of the picture.
-    seen: RecentCache<[u8; 32], GlipFeatures>,
+    picture_cache: RecentCache<[u8; 32], GlipFeatures>,
 }
 
 /// A picture's features, and its width and height as the model sees it, pixels.
@@ -71,7 +71,7 @@ impl GlipDetector {
         let config = GlipConfig::from_folder(files.weights.parent().unwrap_or(Path::new(".")))?;
         let edges = PaddedPictureProcessor::new(
             short_edge_px,
-            LONGEST_EDGE,
+            LONG_EDGE_PX,
             // Edges are padded to multiples of the backbone's largest stride. The channels are blue, green, red.
             32,
             [2, 1, 0],
@@ -89,15 +89,15 @@ impl GlipDetector {
         }
         let weights = CheckpointWeights::of_file(&files.weights, device, precision)?;
         let model = GlipModel::from_weights(&weights, &config)?;
-        let picture_count = (FEATURES_BYTES / model.feature_bytes(edges.most_pixels()).max(1)).max(1);
+        let picture_count = (FEATURE_CACHE_BYTES / model.feature_bytes(edges.most_pixels()).max(1)).max(1);
         Ok(Self {
             name: name.to_owned(),
             model,
             tokenizer,
-            edges,
-            most_tokens: MOST_TOKENS.min(config.text.longest_text()),
+            processor: edges,
+            most_tokens: MAX_PROMPT_TOKENS.min(config.text.longest_text()),
             device: device.clone(),
-            seen: RecentCache::one_at_a_time(picture_count),
+            picture_cache: RecentCache::one_at_a_time(picture_count),
         })
     }
 
@@ -164,8 +164,8 @@ impl GlipDetector {
 
     /// The features of a picture: kept ones, or else new ones, which are then kept.
     fn picture_features(&self, image: &Image) -> Result<std::sync::Arc<GlipFeatures>, LocalError> {
-        self.seen.get_or_make(picture_digest(image), || {
-            let (pixels, size) = self.edges.to_tensor(image, &self.device)?;
+        self.picture_cache.get_or_make(picture_digest(image), || {
+            let (pixels, size) = self.processor.to_tensor(image, &self.device)?;
             let levels = self.model.feature_levels(&pixels).map_err(|error| self.compute_error(&error))?;
             Ok(GlipFeatures { levels, size })
         })
@@ -188,8 +188,8 @@ impl ObjectDetector for GlipDetector {
     fn scoring(&self) -> DetectorScoring {
         DetectorScoring {
             means: "GLIP's: root of (mean probability of the phrase's tokens times centreness), phrases joined by \". \" into one prompt",
-            found_from: 0.5,
-            phrases_meet: true,
+            find_threshold: 0.5,
+            phrases_interact: true,
         }
     }
 

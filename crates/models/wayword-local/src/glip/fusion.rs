@@ -19,7 +19,7 @@ use candle_core::{D, Result, Tensor};
 const NORM_EPSILON: f64 = 1e-5;
 
 /// The most columns of scores at a time. With a long text these are the columns of a few heads.
-const MOST_COLUMNS: usize = 512;
+const MAX_SCORE_COLUMNS: usize = 512;
 
 /// The fusion of one round of the head. In the names of fields, `v` is the picture (vision) and `l` the text
 /// (language).
@@ -95,7 +95,7 @@ impl GlipFusion {
         // The residuals begin from the normed features.
         let mut new_v = v.clone();
         let mut pooled = Vec::new();
-        let heads_at_a_time = (MOST_COLUMNS / tokens.max(1)).clamp(1, self.heads);
+        let heads_at_a_time = (MAX_SCORE_COLUMNS / tokens.max(1)).clamp(1, self.heads);
         for begin in (0..self.heads).step_by(heads_at_a_time) {
             let heads = heads_at_a_time.min(self.heads - begin);
             let take_heads = |x: &Tensor| x.narrow(0, begin, heads)?.flatten_to(1);

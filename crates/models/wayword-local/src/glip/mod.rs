@@ -14,7 +14,7 @@ mod prompt;
 mod pyramid;
 mod tower;
 
-pub(crate) use detector::FEATURES_BYTES;
+pub(crate) use detector::FEATURE_CACHE_BYTES;
 pub use detector::GlipDetector;
 pub use files::GlipFiles;
 

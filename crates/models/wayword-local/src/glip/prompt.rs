@@ -3,7 +3,7 @@
 use crate::{LocalError, tokenizer::TextTokenizer};
 
 /// The most tokens of a prompt. Phrases that do not fit go into the next prompt.
-pub(super) const MOST_TOKENS: usize = 256;
+pub(super) const MAX_PROMPT_TOKENS: usize = 256;
 
 /// A prompt of one or more phrases.
 #[derive(Debug, PartialEq, Eq)]

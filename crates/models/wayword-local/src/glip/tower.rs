@@ -33,9 +33,9 @@ pub(super) struct GlipTower {
     /// By the indices [`CONV_FROM_COARSER`], [`CONV_FROM_SAME`] and [`CONV_FROM_FINER`].
     convs: [NormedConvolution; 3],
     /// Computes the offsets and masks by which the kernels are deformed.
-    bends: Conv3Layer,
+    offsets: Conv3Layer,
     /// The layer that computes the weight of a result from the means of its channels.
-    weighs: (Vec<f32>, f32),
+    result_weigher: (Vec<f32>, f32),
     /// The two layers that compute the activation's coefficients: rows of weights, and a bias.
     squeeze: (Vec<f32>, Vec<f32>),
     widen: (Vec<f32>, Vec<f32>),
@@ -89,8 +89,8 @@ impl GlipTower {
         };
         Ok(Self {
             convs: [conv(CONV_FROM_COARSER)?, conv(CONV_FROM_SAME)?, conv(CONV_FROM_FINER)?],
-            bends: Conv3Layer::from_weights(&weights.sub_scope("offset"), width, OFFSET_NUMBERS_PER_POSITION)?,
-            weighs: (read_numbers(weights, "AttnConv.1.weight", &[1, width, 1, 1])?, bias[0]),
+            offsets: Conv3Layer::from_weights(&weights.sub_scope("offset"), width, OFFSET_NUMBERS_PER_POSITION)?,
+            result_weigher: (read_numbers(weights, "AttnConv.1.weight", &[1, width, 1, 1])?, bias[0]),
             squeeze: layer("0", width, width / 4)?,
             widen: layer("2", width / 4, 4 * width)?,
             groups: config.groups,
@@ -106,7 +106,7 @@ impl GlipTower {
     /// Computes the next features of level `at`.
     fn update_level(&self, levels: &[FeatureMap], at: usize) -> Result<FeatureMap> {
         let level = &levels[at];
-        let bends = TapOffsets::new(&self.bends.convolve_plain(level, 1)?)?;
+        let bends = TapOffsets::new(&self.offsets.convolve_plain(level, 1)?)?;
         let mut results = vec![self.convolve_map(CONV_FROM_SAME, level, 1, &bends, None)?];
         if let Some(finer) = at.checked_sub(1).and_then(|below| levels.get(below)) {
             results.push(self.convolve_map(CONV_FROM_FINER, finer, 2, &bends, None)?);
@@ -165,8 +165,8 @@ impl GlipTower {
 
     /// The weight of a result, from the means of its channels.
     fn result_weight(&self, mean: &[f32]) -> f32 {
-        let sum: f32 = self.weighs.0.iter().zip(mean).map(|(weight, mean)| weight * mean).sum();
-        hard_sigmoid((sum + self.weighs.1).max(0.0))
+        let sum: f32 = self.result_weigher.0.iter().zip(mean).map(|(weight, mean)| weight * mean).sum();
+        hard_sigmoid((sum + self.result_weigher.1).max(0.0))
     }
 
     /// The activation's coefficients, from the means of the channels.

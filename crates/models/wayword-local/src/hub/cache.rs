@@ -1,6 +1,6 @@
 //! The cache on disk: its folders, which are those of the hub's own client, and the hashes that name its files.
 
-use super::name::{OnHub, is_part};
+use super::name::{HubModelName, is_part};
 use crate::LocalError;
 use serde::Serialize;
 use sha1::Sha1;
@@ -91,7 +91,7 @@ pub(super) struct RepoFolder {
 }
 
 impl RepoFolder {
-    pub(super) fn new(cache: &Path, model: &OnHub) -> Self {
+    pub(super) fn new(cache: &Path, model: &HubModelName) -> Self {
         let name = format!("models--{}--{}", model.org, model.name);
         Self { root: cache.join(&name), locks: cache.join(".locks").join(name) }
     }

@@ -7,8 +7,8 @@ use super::{
     HubConfig,
     cache::{BlobHash, CommitHash},
     config::HubToken,
-    name::OnHub,
-    request_failure::{RequestFailure, RetryPatience, SEE_WHO_ANSWERS, TRY_LATER, header_text, is_absence},
+    name::HubModelName,
+    request_failure::{CHECK_WHO_ANSWERS_HINT, RequestFailure, RetryPatience, TRY_LATER, header_text, is_absence},
 };
 use crate::LocalError;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
@@ -20,7 +20,7 @@ use ureq::{
 };
 
 /// The most redirects of one request. More are an error.
-const MOST_REDIRECTS: usize = 10;
+const MAX_REDIRECTS: usize = 10;
 
 /// Longest wait for a connection, after which the request fails.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
@@ -30,7 +30,7 @@ const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
 const SILENCE_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// The characters that are percent-encoded in one segment of a path: all except those that any address may contain.
-const IN_A_SEGMENT: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'_').remove(b'.').remove(b'~');
+const SEGMENT_ESCAPES: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'_').remove(b'.').remove(b'~');
 
 /// The hub's connections.
 #[derive(Debug)]
@@ -106,7 +106,7 @@ impl HubClient {
     }
 
     /// The address of a file at a revision.
-    pub(super) fn file_address(&self, model: &OnHub, revision: &str, file: &str) -> String {
+    pub(super) fn file_address(&self, model: &HubModelName, revision: &str, file: &str) -> String {
         self.endpoint.file_address(model, revision, file)
     }
 
@@ -116,7 +116,7 @@ impl HubClient {
     /// When the hub refuses or cannot be reached.
     pub(super) fn ask_about_file(
         &self,
-        model: &OnHub,
+        model: &HubModelName,
         revision: &str,
         file: &str,
     ) -> Result<HubFileAnswer, LocalError> {
@@ -131,7 +131,7 @@ impl HubClient {
     }
 
     /// One attempt of [`HubClient::ask_about_file`].
-    fn ask_once(&self, model: &OnHub, address: &str) -> Result<HubFileAnswer, RequestFailure> {
+    fn ask_once(&self, model: &HubModelName, address: &str) -> Result<HubFileAnswer, RequestFailure> {
         let mut facts = RedirectFacts::default();
         let response = self.follow_redirects(HubMethod::Head, address, |headers| facts.read_headers(headers))?;
         let (status, headers) = (response.status().as_u16(), response.headers());
@@ -141,8 +141,9 @@ impl HubClient {
         if status >= 400 {
             return Err(self.describe_refusal(&response, address, model));
         }
-        let incomplete =
-            |problem: &str| RequestFailure::Lasting(LocalError::download_failed(address, problem, SEE_WHO_ANSWERS));
+        let incomplete = |problem: &str| {
+            RequestFailure::Lasting(LocalError::download_failed(address, problem, CHECK_WHO_ANSWERS_HINT))
+        };
         let (etag, size) = facts.linked.unwrap_or_else(|| {
             (header_text(headers, "etag").unwrap_or_default().to_owned(), header_number(headers, "content-length"))
         });
@@ -158,7 +159,7 @@ impl HubClient {
     /// When the request is refused or not answered.
     pub(super) fn open_download(
         &self,
-        model: &OnHub,
+        model: &HubModelName,
         address: &str,
         from: u64,
     ) -> Result<(u64, impl Read + use<>), RequestFailure> {
@@ -188,7 +189,7 @@ impl HubClient {
     ) -> Result<Response<Body>, RequestFailure> {
         let lasting = |problem: &str| RequestFailure::Lasting(LocalError::download_failed(address, problem, TRY_LATER));
         let mut current = WebAddress::parse(address).map_err(lasting)?;
-        for _ in 0..MOST_REDIRECTS {
+        for _ in 0..MAX_REDIRECTS {
             let response = self
                 .send_request(method, &current)
                 .map_err(|error| RequestFailure::from_transport_error(&error, address, current.host()))?;
@@ -218,7 +219,7 @@ impl HubClient {
         request.call()
     }
 
-    fn describe_refusal(&self, response: &Response<Body>, address: &str, model: &OnHub) -> RequestFailure {
+    fn describe_refusal(&self, response: &Response<Body>, address: &str, model: &HubModelName) -> RequestFailure {
         RequestFailure::from_status(
             response.status().as_u16(),
             response.headers(),
@@ -287,10 +288,10 @@ impl WebAddress {
     }
 
     /// The address of a file below the hub's.
-    pub(super) fn file_address(&self, model: &OnHub, revision: &str, file: &str) -> String {
-        const IN_A_PATH: &AsciiSet = &IN_A_SEGMENT.remove(b'/');
+    pub(super) fn file_address(&self, model: &HubModelName, revision: &str, file: &str) -> String {
+        const IN_A_PATH: &AsciiSet = &SEGMENT_ESCAPES.remove(b'/');
         // A revision is one segment of the path, a file may be several.
-        let (revision, file) = (utf8_percent_encode(revision, IN_A_SEGMENT), utf8_percent_encode(file, IN_A_PATH));
+        let (revision, file) = (utf8_percent_encode(revision, SEGMENT_ESCAPES), utf8_percent_encode(file, IN_A_PATH));
         format!("{}/{}/{}/resolve/{revision}/{file}", self.text, model.org, model.name)
     }
 

@@ -4,7 +4,7 @@ use super::{
     cache::{CommitHash, RepoFolder, make_parent, path_with_suffix},
     client::{HubClient, HubFileAnswer, HubFileFacts},
     files::ModelFiles,
-    name::OnHub,
+    name::HubModelName,
     request_failure::{RequestFailure, RetryPatience, TRY_LATER},
 };
 use crate::LocalError;
@@ -16,11 +16,11 @@ use std::{
 
 /// The most bytes of a file for which the hub gives no size; a longer download is refused. The hub gives the size of
 /// every large file.
-const MOST_UNANNOUNCED: u64 = 64 << 20;
+const MAX_UNANNOUNCED_BYTES: u64 = 64 << 20;
 
 /// The number of bytes of one connection after which earlier failures are forgotten. The limit makes the program give
 /// up on a server that sends only a few bytes each time.
-const A_GOOD_PIECE: u64 = 1 << 20;
+const PROGRESS_BYTES: u64 = 1 << 20;
 
 /// Receives the progress of downloads.
 pub trait DownloadProgress {
@@ -46,7 +46,7 @@ impl DownloadProgress for () {
 /// Downloads files of one commit. If the commit is not known, it is the first one that the hub names.
 pub(super) struct CommitDownload<'a> {
     pub(super) client: &'a HubClient,
-    pub(super) model: &'a OnHub,
+    pub(super) model: &'a HubModelName,
     pub(super) repo: RepoFolder,
     pub(super) commit: Option<CommitHash>,
     pub(super) symlinks: bool,
@@ -134,7 +134,7 @@ impl CommitDownload<'_> {
                 break;
             }
             let Err(trouble) = self.download_piece(file, size, &mut out, part) else { break };
-            if length(&out)? >= before.saturating_add(A_GOOD_PIECE) {
+            if length(&out)? >= before.saturating_add(PROGRESS_BYTES) {
                 patience.forget_failures();
             }
             patience.wait_or_give_up(trouble, &self.file_address(file))?;
@@ -149,7 +149,7 @@ impl CommitDownload<'_> {
         let (address, received) = (self.file_address(file), out.seek(SeekFrom::End(0)).map_err(io)?);
         let (mut done, mut body) = self.client.open_download(self.model, &address, received)?;
         out.set_len(done).map_err(io)?;
-        let max_bytes = size.unwrap_or(MOST_UNANNOUNCED);
+        let max_bytes = size.unwrap_or(MAX_UNANNOUNCED_BYTES);
         let mut buffer = vec![0; 1 << 18];
         self.progress.bytes_arrived(file, done, size);
         loop {

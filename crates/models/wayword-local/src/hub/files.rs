@@ -16,7 +16,7 @@ const PICKLED_WEIGHTS_FILE: &str = "pytorch_model.bin";
 const TOKENIZER_FILE: &str = "tokenizer.json";
 
 /// Files that the models of this crate read if they exist.
-const READ_WHERE_THERE: [&str; 8] = [
+const OPTIONAL_MODEL_FILES: [&str; 8] = [
     TOKENIZER_FILE,
     "tokenizer_config.json",
     "preprocessor_config.json",
@@ -28,7 +28,7 @@ const READ_WHERE_THERE: [&str; 8] = [
 ];
 
 /// Files up to this length, bytes, are hashed as a whole for a model's identity. Longer ones are sampled.
-const COUNTS_WHOLE: u64 = 1 << 20;
+const MAX_WHOLLY_HASHED_BYTES: u64 = 1 << 20;
 /// The number of samples of a longer file, evenly from its beginning to its end.
 const SAMPLE_COUNT: u64 = 256;
 /// Bytes of each sample.
@@ -99,7 +99,7 @@ impl NeededFiles {
         if name.is_file() {
             return Self::default();
         }
-        Self::default().with_weights().with_required(&["config.json"]).with_optional(&READ_WHERE_THERE)
+        Self::default().with_weights().with_required(&["config.json"]).with_optional(&OPTIONAL_MODEL_FILES)
     }
 
     /// The tokenizer alone, without the model's weights.
@@ -187,8 +187,8 @@ fn hash_file(hasher: &mut Sha256, name: &str, path: &Path) -> io::Result<()> {
     hasher.update((name.len() as u64).to_le_bytes());
     hasher.update(name);
     hasher.update(length.to_le_bytes());
-    if length <= COUNTS_WHOLE {
-        return io::copy(&mut file.take(COUNTS_WHOLE), hasher).map(drop);
+    if length <= MAX_WHOLLY_HASHED_BYTES {
+        return io::copy(&mut file.take(MAX_WHOLLY_HASHED_BYTES), hasher).map(drop);
     }
     let last = length - SAMPLE_BYTES;
     for sample in 0..SAMPLE_COUNT {
@@ -201,18 +201,18 @@ fn hash_file(hasher: &mut Sha256, name: &str, path: &Path) -> io::Result<()> {
 }
 
 /// The files of one folder on this machine, and the hint for a file that it lacks.
-pub(super) struct OnDisk<'a> {
+pub(super) struct DiskModelFiles<'a> {
     folder: PathBuf,
     hint: &'a dyn Fn(&str) -> String,
 }
 
-impl<'a> OnDisk<'a> {
+impl<'a> DiskModelFiles<'a> {
     pub(super) fn new(folder: PathBuf, hint: &'a dyn Fn(&str) -> String) -> Self {
         Self { folder, hint }
     }
 }
 
-impl OnDisk<'static> {
+impl DiskModelFiles<'static> {
     /// The user's own folder.
     pub(super) fn for_user_folder(folder: &Path) -> Self {
         let hint = &|file: &str| format!("put the model's {file} there, or check the path");
@@ -220,7 +220,7 @@ impl OnDisk<'static> {
     }
 }
 
-impl ModelFiles for OnDisk<'_> {
+impl ModelFiles for DiskModelFiles<'_> {
     fn folder_path(&self) -> PathBuf {
         self.folder.clone()
     }

@@ -42,8 +42,8 @@ use crate::LocalError;
 use cache::{CommitHash, RepoFolder};
 use client::HubClient;
 use commit_download::CommitDownload;
-use files::{GatheredFiles, OnDisk};
-use name::{ModelSource, OnHub};
+use files::{DiskModelFiles, GatheredFiles};
+use name::{HubModelName, ModelSource};
 use std::path::{Path, PathBuf};
 
 /// Gives access to models on disk and on the hub.
@@ -145,11 +145,11 @@ impl ModelHub {
     ) -> Result<ModelFolder, LocalError> {
         let model = match &name.source {
             ModelSource::Hub(model) => model,
-            ModelSource::Folder(path) => return on_disk(&mut OnDisk::for_user_folder(path), needs, None, None),
+            ModelSource::Folder(path) => return on_disk(&mut DiskModelFiles::for_user_folder(path), needs, None, None),
             ModelSource::File(path) => {
                 let folder = path.parent().unwrap_or(Path::new("."));
                 let file = path.file_name().map(|file| file.to_string_lossy());
-                return on_disk(&mut OnDisk::for_user_folder(folder), needs, file.as_deref(), None);
+                return on_disk(&mut DiskModelFiles::for_user_folder(folder), needs, file.as_deref(), None);
             }
         };
         let repo = RepoFolder::new(&self.config.cache, model);
@@ -174,7 +174,7 @@ impl ModelHub {
     fn find_cached(
         &self,
         name: &ModelName,
-        model: &OnHub,
+        model: &HubModelName,
         repo: &RepoFolder,
         known: Option<&CommitHash>,
         needs: &NeededFiles,
@@ -190,13 +190,13 @@ impl ModelHub {
                 self.client.file_address(model, &model.revision, file)
             )
         };
-        on_disk(&mut OnDisk::new(folder, &hint), needs, model.file.as_deref(), identity)
+        on_disk(&mut DiskModelFiles::new(folder, &hint), needs, model.file.as_deref(), identity)
     }
 }
 
 /// A model on this machine. If no identity is given, it is computed from the files.
 fn on_disk(
-    files: &mut OnDisk<'_>,
+    files: &mut DiskModelFiles<'_>,
     needs: &NeededFiles,
     file: Option<&str>,
     identity: Option<String>,

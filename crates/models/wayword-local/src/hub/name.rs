@@ -13,10 +13,10 @@ const NAME_PREFIX: &str = "hf/";
 const DEFAULT_REVISION: &str = "main";
 
 /// The longest organisation or name, revision, file, and path of a folder, bytes. Longer ones are refused.
-const LONGEST_PART: usize = 96;
-const LONGEST_REVISION: usize = 200;
-const LONGEST_FILE: usize = 200;
-const LONGEST_PATH: usize = 4096;
+const MAX_PART_BYTES: usize = 96;
+const MAX_REVISION_BYTES: usize = 200;
+const MAX_FILE_BYTES: usize = 200;
+const MAX_PATH_BYTES: usize = 4096;
 
 /// The name of a model. It gives the place of the model's files:
 ///
@@ -37,7 +37,7 @@ pub struct ModelName {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum ModelSource {
     /// The hub, or its cache on this machine.
-    Hub(OnHub),
+    Hub(HubModelName),
     /// A folder on this machine.
     Folder(PathBuf),
     /// A file on this machine.
@@ -46,7 +46,7 @@ pub(super) enum ModelSource {
 
 /// A model on the hub.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct OnHub {
+pub(super) struct HubModelName {
     pub(super) org: String,
     pub(super) name: String,
     /// A branch, a tag or a commit.
@@ -62,7 +62,7 @@ impl ModelName {
     /// When the name is not valid.
     pub fn parse(text: &str) -> Result<Self, LocalError> {
         let source = parse_source(text).map_err(|problem| LocalError::Name {
-            name: text.chars().take(LONGEST_REVISION).collect(),
+            name: text.chars().take(MAX_REVISION_BYTES).collect(),
             problem: problem.to_owned(),
         })?;
         Ok(Self { text: text.to_owned(), source })
@@ -122,7 +122,7 @@ fn parse_source(text: &str) -> Result<ModelSource, &'static str> {
     if file.is_some_and(|file| !is_file(file)) {
         return Err("after the colon there must be a file of the repository that ends in .gguf or .pth");
     }
-    Ok(ModelSource::Hub(OnHub {
+    Ok(ModelSource::Hub(HubModelName {
         org: org.to_owned(),
         name: name.to_owned(),
         revision: revision.to_owned(),
@@ -132,7 +132,7 @@ fn parse_source(text: &str) -> Result<ModelSource, &'static str> {
 
 /// Reads the path of a folder or file on this machine.
 fn parse_local(path: &str) -> Result<ModelSource, &'static str> {
-    if path.chars().any(char::is_control) || path.len() > LONGEST_PATH {
+    if path.chars().any(char::is_control) || path.len() > MAX_PATH_BYTES {
         return Err("its path contains control characters or is too long");
     }
     let source = if is_one_file(Path::new(path)) { ModelSource::File } else { ModelSource::Folder };
@@ -144,7 +144,7 @@ fn parse_local(path: &str) -> Result<ModelSource, &'static str> {
 pub(super) fn is_part(part: &str) -> bool {
     let inner = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     let edge = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphanumeric() || c == '_');
-    part.len() <= LONGEST_PART
+    part.len() <= MAX_PART_BYTES
         && part.chars().all(inner)
         && edge(part.chars().next())
         && edge(part.chars().last())
@@ -154,12 +154,12 @@ pub(super) fn is_part(part: &str) -> bool {
 
 fn is_revision(revision: &str) -> bool {
     let allowed = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.' | '+');
-    revision.len() <= LONGEST_REVISION && are_segments(revision, allowed)
+    revision.len() <= MAX_REVISION_BYTES && are_segments(revision, allowed)
 }
 
 fn is_file(file: &str) -> bool {
     let allowed = |c: char| c.is_ascii_graphic() && !r#"\:*?"<>|%#"#.contains(c);
-    file.len() <= LONGEST_FILE && is_one_file(Path::new(file)) && are_segments(file, allowed)
+    file.len() <= MAX_FILE_BYTES && is_one_file(Path::new(file)) && are_segments(file, allowed)
 }
 
 /// Whether a text consists of names with slashes between them, and no name is empty or begins with a dot.

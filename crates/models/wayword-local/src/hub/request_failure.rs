@@ -1,21 +1,21 @@
 //! Failed requests: the reason, whether another attempt may succeed, and when to give up.
 
-use super::name::OnHub;
+use super::name::HubModelName;
 use crate::LocalError;
 use std::{io::ErrorKind, thread, time::Duration};
 use ureq::http::HeaderMap;
 
 /// The number of failures in a row after which the program gives up on a file.
-const MOST_FAILURES: u32 = 5;
+const MAX_FAILURES_IN_A_ROW: u32 = 5;
 
 /// Longest wait between two requests, also where the server asks for more.
-const LONGEST_WAIT: Duration = Duration::from_secs(30);
+const MAX_RETRY_WAIT: Duration = Duration::from_secs(30);
 
 /// The hint for an answer of the hub that is wrong.
 pub(super) const TRY_LATER: &str = "try again later; if you have set HF_ENDPOINT, check it";
 
 /// The hint for an answer that is not that of a hub.
-pub(super) const SEE_WHO_ANSWERS: &str =
+pub(super) const CHECK_WHO_ANSWERS_HINT: &str =
     "if you have set HF_ENDPOINT, check it; check also whether something on the network answers instead of the hub";
 
 /// Why a request failed.
@@ -56,7 +56,13 @@ impl RequestFailure {
     }
 
     /// The failure for a status that is no success, with a hint.
-    pub(super) fn from_status(status: u16, headers: &HeaderMap, address: &str, model: &OnHub, had_token: bool) -> Self {
+    pub(super) fn from_status(
+        status: u16,
+        headers: &HeaderMap,
+        address: &str,
+        model: &HubModelName,
+        had_token: bool,
+    ) -> Self {
         let unexpected = format!("the server answers with status {status}");
         if matches!(status, 408 | 429 | 500..=599) {
             let wait =
@@ -82,7 +88,7 @@ impl RequestFailure {
                 "check the name; for a private model, put a token into HF_TOKEN, which is sent over https only"
                     .to_owned(),
             ),
-            _ => (unexpected, SEE_WHO_ANSWERS.to_owned()),
+            _ => (unexpected, CHECK_WHO_ANSWERS_HINT.to_owned()),
         };
         Self::Lasting(LocalError::download_failed(address, problem, hint))
     }
@@ -131,13 +137,13 @@ impl RetryPatience {
             RequestFailure::Lasting(error) => return Err(error),
         };
         self.failures += 1;
-        if self.failures >= MOST_FAILURES {
-            let problem = format!("{problem} ({MOST_FAILURES} times in a row)");
+        if self.failures >= MAX_FAILURES_IN_A_ROW {
+            let problem = format!("{problem} ({MAX_FAILURES_IN_A_ROW} times in a row)");
             let hint = "try again later; the received part is kept, and the next try continues from there";
             return Err(LocalError::download_failed(address, problem, hint));
         }
         let own_wait = self.first_wait.saturating_mul(1 << (self.failures - 1));
-        thread::sleep(wait.unwrap_or(own_wait).min(LONGEST_WAIT));
+        thread::sleep(wait.unwrap_or(own_wait).min(MAX_RETRY_WAIT));
         Ok(())
     }
 }

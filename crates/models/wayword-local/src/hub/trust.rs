@@ -29,7 +29,7 @@ const PUBLISHED_SHA256: [(&str, &str); 3] = [
 ];
 
 /// The longest file of a kept hash that is read, bytes. A longer one cannot be a hash, and is ignored.
-const LONGEST_KEPT: u64 = 100;
+const MAX_HASH_FILE_BYTES: u64 = 100;
 
 /// Checks the hash of a model's file. At the first use of a file without a published hash, `progress` gets a note.
 ///
@@ -97,7 +97,7 @@ fn hash_path(config: &HubConfig, name: &ModelName, path: &Path) -> PathBuf {
 }
 
 fn read_hash(kept: &Path) -> Option<String> {
-    let is_short = fs::metadata(kept).ok()?.len() <= LONGEST_KEPT;
+    let is_short = fs::metadata(kept).ok()?.len() <= MAX_HASH_FILE_BYTES;
     is_short.then(|| fs::read_to_string(kept).ok())?.map(|text| text.trim().to_owned())
 }
 

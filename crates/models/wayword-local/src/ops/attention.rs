@@ -19,11 +19,11 @@ use std::ops::Range;
 const MAX_SCORES_AT_A_TIME: usize = 384 << 10;
 
 /// The most queries that a thread takes at a time, however few keys there are.
-const MOST_QUERIES: usize = 96;
+const MAX_QUERIES_AT_A_TIME: usize = 96;
 
 /// The fewest queries at a time for which keys and values are packed beforehand. For fewer, packing costs more time
 /// than it saves.
-const LEAST_PACKED: usize = 24;
+const MIN_PACKED_QUERIES: usize = 24;
 
 /// softmax(q kᵀ * scale + bias) v, for each head.
 pub(crate) struct MultiHeadAttention<'a> {
@@ -190,7 +190,7 @@ impl CpuAttention<'_> {
     /// Packs the keys and values of all heads, if several pieces of the queries use them. Otherwise returns an empty
     /// list.
     fn pack_heads(&self, inputs: &AttentionInputs<'_>, queries: usize) -> Result<Vec<PackedKeysValues>> {
-        if queries >= inputs.q.count || queries < LEAST_PACKED {
+        if queries >= inputs.q.count || queries < MIN_PACKED_QUERIES {
             return Ok(Vec::new());
         }
         let pack_head = |at: usize| {
@@ -218,7 +218,7 @@ impl AttentionInputs<'_> {
     fn at_a_time(&self) -> usize {
         let min_pieces = rayon::current_num_threads().div_ceil(self.q.batch.max(1));
         (MAX_SCORES_AT_A_TIME / self.k.count.max(1))
-            .clamp(LEAST_PACKED, MOST_QUERIES)
+            .clamp(MIN_PACKED_QUERIES, MAX_QUERIES_AT_A_TIME)
             .min(self.q.count.div_ceil(min_pieces))
             .max(1)
     }

@@ -1,10 +1,10 @@
 //! Turns the logits and boxes of patches into finds in the picture's own pixels.
 
-use wayword_core::{DetectedBox, MOST_BOXES, without_overlaps};
+use wayword_core::{DetectedBox, MAX_BOXES_PER_PHRASE, without_overlaps};
 
 /// The lowest score of a box that is reported; others are dropped. The examples of transformers count a box as a find
 /// from 0.1.
-const LEAST_SCORE: f32 = 0.01;
+const MIN_REPORTED_SCORE: f32 = 0.01;
 
 /// A box that overlaps with a better one by more than this share of their union counts as the same box. transformers
 /// drops none, but neighbouring patches often give nearly the same box for one thing.
@@ -23,11 +23,11 @@ pub(super) fn boxes_from_logits(logits: &[f32], boxes: &[[f32; 4]], (width, heig
         let box_px =
             [left.clamp(0.0, width), top.clamp(0.0, height), right.clamp(0.0, width), bottom.clamp(0.0, height)];
         let is_there = box_px[2] > box_px[0] && box_px[3] > box_px[1];
-        (score >= LEAST_SCORE && is_there).then_some(DetectedBox { box_px, score })
+        (score >= MIN_REPORTED_SCORE && is_there).then_some(DetectedBox { box_px, score })
     };
     let mut all: Vec<DetectedBox> = logits.iter().zip(boxes).filter_map(picture_box).collect();
     all.sort_by(|a, b| b.score.total_cmp(&a.score));
-    without_overlaps(all, SAME_BOX_OVERLAP).take(MOST_BOXES).collect()
+    without_overlaps(all, SAME_BOX_OVERLAP).take(MAX_BOXES_PER_PHRASE).collect()
 }
 
 #[cfg(test)]
@@ -57,7 +57,7 @@ mod tests {
     #[test]
     fn boxes_are_limited_in_number_and_by_score() {
         let boxes: Vec<[f32; 4]> = (0..300).map(|at| [at as f32 / 300.0, 0.5, 0.001, 0.001]).collect();
-        assert_eq!(boxes_from_logits(&vec![0.0; 300], &boxes, (1000, 1000)).len(), MOST_BOXES);
+        assert_eq!(boxes_from_logits(&vec![0.0; 300], &boxes, (1000, 1000)).len(), MAX_BOXES_PER_PHRASE);
         assert!(boxes_from_logits(&vec![-5.0; 300], &boxes, (1000, 1000)).is_empty());
         assert!(boxes_from_logits(&vec![f32::NAN; 300], &boxes, (1000, 1000)).is_empty());
     }

@@ -11,4 +11,4 @@ mod picture;
 pub use model::{OwlDetector, OwlOutputs};
 
 /// The most memory for the features of recent pictures, bytes. The oldest are dropped beyond this.
-pub(crate) const KEPT_BYTES: usize = 256 << 20;
+pub(crate) const FEATURE_CACHE_BYTES: usize = 256 << 20;

@@ -1,7 +1,7 @@
 //! A whole OWLv2 as an [`ObjectDetector`]: from a picture and phrases to boxes with scores.
 
 use super::{
-    KEPT_BYTES,
+    FEATURE_CACHE_BYTES,
     boxes::boxes_from_logits,
     heads::{BoxHead, ClassHead, PatchClasses, unit_vectors},
     picture::OwlPictureProcessor,
@@ -22,7 +22,7 @@ use wayword_core::{DetectedBox, DetectorScoring, Image, ModelError, ObjectDetect
 const TEXTS_PER_BATCH: usize = 32;
 
 /// The most texts for which vectors are kept, about 2 kB each.
-const KEPT_TEXTS: usize = 4 << 10;
+const MAX_KEPT_TEXTS: usize = 4 << 10;
 
 /// OWLv2. The features of recent pictures are kept, in at most 256 MiB, and the vectors of recent texts.
 pub struct OwlDetector {
@@ -41,9 +41,9 @@ pub struct OwlDetector {
     longest: usize,
     device: ModelDevice,
     /// The features of recent pictures, by the hash of the picture.
-    seen: RecentCache<[u8; 32], OwlPictureFeatures>,
+    picture_cache: RecentCache<[u8; 32], OwlPictureFeatures>,
     /// The unit vectors of recent texts.
-    said: RecentCache<String, Tensor>,
+    text_cache: RecentCache<String, Tensor>,
 }
 
 /// The features of a picture: classes and boxes of its patches. They do not depend on the texts.
@@ -106,8 +106,8 @@ impl OwlDetector {
             edge: vision.image_size,
             longest: text.max_position_embeddings,
             device: device.clone(),
-            seen: RecentCache::one_at_a_time((KEPT_BYTES / picture_bytes.max(1)).max(1)),
-            said: RecentCache::new(KEPT_TEXTS),
+            picture_cache: RecentCache::one_at_a_time((FEATURE_CACHE_BYTES / picture_bytes.max(1)).max(1)),
+            text_cache: RecentCache::new(MAX_KEPT_TEXTS),
         })
     }
 
@@ -151,7 +151,7 @@ impl OwlDetector {
 
     /// The features of a picture: kept ones, or else new ones, which are then kept.
     fn picture_features(&self, image: &Image) -> Result<Arc<OwlPictureFeatures>, LocalError> {
-        self.seen.get_or_make(picture_digest(image), || {
+        self.picture_cache.get_or_make(picture_digest(image), || {
             let picture = self.processor.to_tensor(image, &self.device)?;
             self.compute_features(&picture).map_err(|error| LocalError::compute_failed(&self.name, &error))
         })
@@ -170,7 +170,8 @@ impl OwlDetector {
     /// The unit vectors of texts, in their order: kept ones, or else new ones. Texts of similar length are computed
     /// together.
     fn text_vectors(&self, texts: &[&str]) -> Result<Vec<Arc<Tensor>>, LocalError> {
-        let mut known: Vec<Option<Arc<Tensor>>> = texts.iter().map(|&text| self.said.get(&text.to_owned())).collect();
+        let mut known: Vec<Option<Arc<Tensor>>> =
+            texts.iter().map(|&text| self.text_cache.get(&text.to_owned())).collect();
         let mut missing: Vec<(usize, Vec<u32>)> = Vec::new();
         for (at, text) in texts.iter().enumerate().filter(|(at, _)| known[*at].is_none()) {
             missing.push((at, self.tokenizer.text_ids(text, self.longest)?));
@@ -180,7 +181,7 @@ impl OwlDetector {
             let ids: Vec<&[u32]> = batch.iter().map(|(_, ids)| &ids[..]).collect();
             let vectors = self.compute_vectors(&ids).map_err(|error| LocalError::compute_failed(&self.name, &error))?;
             for ((at, _), vector) in batch.iter().zip(vectors) {
-                known[*at] = Some(self.said.put(texts[*at].to_owned(), vector));
+                known[*at] = Some(self.text_cache.put(texts[*at].to_owned(), vector));
             }
         }
         Ok(known.into_iter().flatten().collect())
@@ -211,8 +212,8 @@ impl ObjectDetector for OwlDetector {
     fn scoring(&self) -> DetectorScoring {
         DetectorScoring {
             means: "OWLv2: the sigmoid of the best patch's logit for \"a photo of a PHRASE\", each phrase by itself",
-            found_from: 0.1,
-            phrases_meet: false,
+            find_threshold: 0.1,
+            phrases_interact: false,
         }
     }
 

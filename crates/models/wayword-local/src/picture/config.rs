@@ -18,7 +18,7 @@ use std::path::Path;
 const PREPROCESSOR_FILE: &str = "preprocessor_config.json";
 
 /// The longest edge of a picture that a configuration may ask for, pixels. A longer one is refused.
-const LONGEST_EDGE: usize = 2048;
+const MAX_EDGE_PX: usize = 2048;
 
 /// OpenAI's means and standard deviations of red, green and blue, which CLIP and BLIP share.
 const CLIP_MEANS_RGB: [f64; 3] = [0.48145466, 0.4578275, 0.40821073];
@@ -152,7 +152,7 @@ impl PictureConfig {
 
 fn check_edge(edge: usize) -> Result<usize, String> {
     match edge {
-        1..=LONGEST_EDGE => Ok(edge),
-        _ => Err(format!("size: an edge of {edge} pixels is not between 1 and {LONGEST_EDGE}")),
+        1..=MAX_EDGE_PX => Ok(edge),
+        _ => Err(format!("size: an edge of {edge} pixels is not between 1 and {MAX_EDGE_PX}")),
     }
 }

@@ -52,7 +52,7 @@ impl WindowAttention {
         with_numbers(qkv, |qkv| {
             with_numbers(of_padding, |of_padding| {
                 with_numbers(&self.bias, |bias| {
-                    let attend = WindowPass { qkv, of_padding, bias, windows, width, heads: self.heads };
+                    let attend = WindowPass { qkv, padding_qkv: of_padding, bias, windows, width, heads: self.heads };
                     let each = mixed.par_chunks_mut(windows.size * width).enumerate();
                     each.try_for_each_init(Vec::new, |room, (window, mixed)| attend.attend_window(window, mixed, room))
                 })
@@ -91,7 +91,7 @@ impl WindowAttention {
 struct WindowPass<'a> {
     /// Queries, keys and values of the positions, and those of padding.
     qkv: &'a [f32],
-    of_padding: &'a [f32],
+    padding_qkv: &'a [f32],
     bias: &'a [f32],
     windows: &'a MapWindows,
     width: usize,
@@ -110,7 +110,7 @@ impl WindowPass<'_> {
         for (window_qkv, &position) in window_qkv.chunks_exact_mut(row).zip(positions) {
             let from = position as usize * row;
             window_qkv.copy_from_slice(if position == MapWindows::PADDING_POSITION {
-                self.of_padding
+                self.padding_qkv
             } else {
                 &self.qkv[from..from + row]
             });

@@ -19,13 +19,13 @@ use candle_core::{Result, Tensor};
 
 /// A block: a norm and attention within windows, then a norm and two linear layers.
 pub(super) struct SwinBlock {
-    mix_norm: LayerNorm,
+    attention_norm: LayerNorm,
     qkv: LinearLayer,
     /// The queries, keys and values of padding. Padding is 0, so they are the bias of the layer.
-    of_padding: Tensor,
+    padding_qkv: Tensor,
     attention: WindowAttention,
     mixed: LinearLayer,
-    think_norm: LayerNorm,
+    feed_forward_norm: LayerNorm,
     wide: LinearLayer,
     narrow: LinearLayer,
     /// The width between the last two layers.
@@ -45,12 +45,12 @@ impl SwinBlock {
         let biases: Vec<Tensor> = biases.collect::<std::result::Result<_, _>>()?;
         let of_padding = Tensor::cat(&biases, 0).map_err(|error| weights.tensor_error(names.qkv[0], &error))?;
         Ok(Self {
-            mix_norm: weights.layer_norm(names.mix_norm, width, epsilon)?,
+            attention_norm: weights.layer_norm(names.attention_norm, width, epsilon)?,
             qkv: weights.read_joined_linears(names.qkv, width, layer_width)?,
-            of_padding,
+            padding_qkv: of_padding,
             attention: WindowAttention::from_weights(weights, names.positions, config.heads[stage], config.window)?,
             mixed: weights.read_linear(names.mixed, width, width)?,
-            think_norm: weights.layer_norm(names.think_norm, width, epsilon)?,
+            feed_forward_norm: weights.layer_norm(names.feed_forward_norm, width, epsilon)?,
             wide: weights.read_linear(names.wide, width, inner)?,
             narrow: weights.read_linear(names.narrow, inner, width)?,
             inner,
@@ -70,11 +70,11 @@ impl SwinBlock {
 
     /// The output for x [positions, channels], with candle's operators.
     pub(super) fn on_device(&self, x: &Tensor, windows: &MapWindows) -> Result<Tensor> {
-        let qkv = self.qkv.apply_to(&self.mix_norm.apply_to(x)?)?;
-        let mixed = self.attention.on_device(&qkv, &self.of_padding, windows)?;
+        let qkv = self.qkv.apply_to(&self.attention_norm.apply_to(x)?)?;
+        let mixed = self.attention.on_device(&qkv, &self.padding_qkv, windows)?;
         let places = Tensor::from_slice(&windows.places, windows.places.len(), x.device())?;
         let x = (self.mixed.apply_to(&mixed.index_select(&places, 0)?)? + x)?;
-        let wide = self.wide.apply_then(&self.think_norm.apply_to(&x)?, Activation::Gelu)?;
+        let wide = self.wide.apply_then(&self.feed_forward_norm.apply_to(&x)?, Activation::Gelu)?;
         self.narrow.apply_to(&wide)? + x
     }
 
@@ -87,12 +87,12 @@ impl SwinBlock {
             each_tile(&mut qkv, 3 * width, |from, qkv, memory| {
                 let rows = qkv.len() / (3 * width);
                 let [normed] = split_memory(memory, [rows * width]);
-                self.mix_norm.write_rows(&x[from * width..(from + rows) * width], normed)?;
+                self.attention_norm.write_rows(&x[from * width..(from + rows) * width], normed)?;
                 self.qkv.write_rows(normed, qkv)
             })
         })?;
         let qkv = Tensor::from_vec(qkv, (count, 3 * width), x.device())?;
-        let mixed = self.attention.on_processor(&qkv, &self.of_padding, windows)?;
+        let mixed = self.attention.on_processor(&qkv, &self.padding_qkv, windows)?;
         drop(qkv);
         let mut y = vec![0.0; count * width];
         with_numbers(x, |x| with_numbers(&mixed, |mixed| self.feed_forward(x, mixed, windows, &mut y)))?;
@@ -111,7 +111,7 @@ impl SwinBlock {
             }
             self.mixed.write_rows(normed, states)?;
             states.iter_mut().zip(&x[from * width..]).for_each(|(state, x)| *state += x);
-            self.think_norm.write_rows(states, normed)?;
+            self.feed_forward_norm.write_rows(states, normed)?;
             self.wide.write_rows(normed, wide)?;
             Activation::Gelu.map_on_this_thread(wide);
             self.narrow.write_rows(wide, y)?;

@@ -22,12 +22,12 @@ pub(crate) struct SwinConfig {
 }
 
 /// The most stages, and the most blocks of a stage; more are refused. Published models have 4 and 18.
-const MOST_STAGES: usize = 8;
-const MOST_BLOCKS: usize = 64;
+const MAX_STAGES: usize = 8;
+const MAX_STAGE_BLOCKS: usize = 64;
 
 /// The largest edge of a window, positions, and the largest widening; larger ones are refused. Published models have
 /// windows of 7 and 12.
-const LARGEST_WINDOW: usize = 32;
+const MAX_WINDOW_EDGE: usize = 32;
 
 impl SwinConfig {
     /// Swin-T: 28 million parameters, with the outputs at strides 8, 16 and 32.
@@ -55,20 +55,20 @@ impl SwinConfig {
             return Some(problem);
         }
         let stages = self.depths.len();
-        if stages == 0 || stages > MOST_STAGES || self.heads.len() != stages {
+        if stages == 0 || stages > MAX_STAGES || self.heads.len() != stages {
             return Some(format!(
-                "depths and heads: {stages} and {} stages are not 1 to {MOST_STAGES}",
+                "depths and heads: {stages} and {} stages are not 1 to {MAX_STAGES}",
                 self.heads.len()
             ));
         }
-        if self.window > LARGEST_WINDOW || self.widening > LARGEST_WINDOW {
+        if self.window > MAX_WINDOW_EDGE || self.widening > MAX_WINDOW_EDGE {
             return Some(format!(
-                "window, widening: {} and {} are not 1 to {LARGEST_WINDOW}",
+                "window, widening: {} and {} are not 1 to {MAX_WINDOW_EDGE}",
                 self.window, self.widening
             ));
         }
-        if let Some(depth) = self.depths.iter().find(|depth| !(1..=MOST_BLOCKS).contains(*depth)) {
-            return Some(format!("depths: {depth} is not from 1 to {MOST_BLOCKS}"));
+        if let Some(depth) = self.depths.iter().find(|depth| !(1..=MAX_STAGE_BLOCKS).contains(*depth)) {
+            return Some(format!("depths: {depth} is not from 1 to {MAX_STAGE_BLOCKS}"));
         }
         let uneven = |(stage, heads): &(usize, &usize)| **heads == 0 || !self.width_of(*stage).is_multiple_of(**heads);
         if let Some((stage, heads)) = self.heads.iter().enumerate().find(uneven) {
@@ -88,7 +88,7 @@ pub(crate) struct SwinTensorNames {
     /// The norm of a stage's output, by the stage from 0.
     pub(crate) out_norm: fn(usize) -> String,
     /// The norm before attention.
-    pub(super) mix_norm: &'static str,
+    pub(super) attention_norm: &'static str,
     /// Queries, keys and values: one layer or three.
     pub(super) qkv: &'static [&'static str],
     /// The layer behind the attention.
@@ -96,7 +96,7 @@ pub(crate) struct SwinTensorNames {
     /// The table of biases for the distance between two places.
     pub(super) positions: &'static str,
     /// The norm before the two linear layers.
-    pub(super) think_norm: &'static str,
+    pub(super) feed_forward_norm: &'static str,
     pub(super) wide: &'static str,
     pub(super) narrow: &'static str,
 }
@@ -108,11 +108,11 @@ impl SwinTensorNames {
         patch_norm: "patch_embed.norm",
         stages: "layers",
         out_norm: |stage| format!("norm{stage}"),
-        mix_norm: "norm1",
+        attention_norm: "norm1",
         qkv: &["attn.qkv"],
         mixed: "attn.proj",
         positions: "attn.relative_position_bias_table",
-        think_norm: "norm2",
+        feed_forward_norm: "norm2",
         wide: "mlp.fc1",
         narrow: "mlp.fc2",
     };
@@ -123,11 +123,11 @@ impl SwinTensorNames {
         patch_norm: "embeddings.norm",
         stages: "encoder.layers",
         out_norm: |stage| format!("hidden_states_norms.stage{}", stage + 1),
-        mix_norm: "layernorm_before",
+        attention_norm: "layernorm_before",
         qkv: &["attention.self.query", "attention.self.key", "attention.self.value"],
         mixed: "attention.output.dense",
         positions: "attention.self.relative_position_bias_table",
-        think_norm: "layernorm_after",
+        feed_forward_norm: "layernorm_after",
         wide: "intermediate.dense",
         narrow: "output.dense",
     };

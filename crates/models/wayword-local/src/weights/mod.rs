@@ -33,7 +33,7 @@ use std::{
 use training_checkpoint::TrainingCheckpoint;
 
 /// The longest index of a checkpoint in several files that is read, bytes. A longer one is refused.
-const LONGEST_INDEX: u64 = 64 << 20;
+const MAX_INDEX_BYTES: u64 = 64 << 20;
 
 /// A checkpoint's tensors by their names.
 pub(crate) struct CheckpointWeights {
@@ -41,7 +41,7 @@ pub(crate) struct CheckpointWeights {
     path: PathBuf,
     files: Vec<WeightFile>,
     /// The file of each tensor, as an index into `files`.
-    at: BTreeMap<String, usize>,
+    file_of_tensor: BTreeMap<String, usize>,
     device: candle_core::Device,
     dtype: DType,
 }
@@ -109,7 +109,7 @@ impl CheckpointWeights {
         for (number, file) in files.iter().enumerate() {
             at.extend(file.tensor_names().map(|name| (name, number)));
         }
-        Self { path, files, at, device: device.0.clone(), dtype: precision.candle_dtype() }
+        Self { path, files, file_of_tensor: at, device: device.0.clone(), dtype: precision.candle_dtype() }
     }
 
     /// The tensors with names that begin with `prefix`, or all tensors for "".
@@ -123,18 +123,18 @@ impl CheckpointWeights {
             let shape = self.tensor_shape(name).unwrap_or_default();
             shape.iter().fold(1_u64, |product, &length| product.saturating_mul(length as u64))
         };
-        let all = self.at.keys().fold(0_u64, |sum, name| sum.saturating_add(elements(name)));
+        let all = self.file_of_tensor.keys().fold(0_u64, |sum, name| sum.saturating_add(elements(name)));
         all.saturating_mul(self.dtype.size_in_bytes() as u64)
     }
 
     fn has_tensor(&self, name: &str) -> bool {
-        self.at.contains_key(name)
+        self.file_of_tensor.contains_key(name)
     }
 
     /// Reads a tensor, checks its shape, and converts it to the weights' precision and device.
     fn read_tensor(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
         let lacks = || LocalError::bad_tensor(&self.path, name, "it is missing");
-        let file = self.at.get(name).and_then(|&at| self.files.get(at)).ok_or_else(lacks)?;
+        let file = self.file_of_tensor.get(name).and_then(|&at| self.files.get(at)).ok_or_else(lacks)?;
         let tensor = match file {
             WeightFile::Safe(file) => file.read_tensor(name, shape)?,
             WeightFile::Pickled(file) => file.read_tensor(name, shape)?,
@@ -146,7 +146,7 @@ impl CheckpointWeights {
 
     /// The shape of a tensor, if it exists.
     fn tensor_shape(&self, name: &str) -> Option<Vec<usize>> {
-        match self.files.get(*self.at.get(name)?)? {
+        match self.files.get(*self.file_of_tensor.get(name)?)? {
             WeightFile::Safe(file) => file.tensor_shape(name),
             WeightFile::Pickled(file) => file.tensor_shape(name),
             WeightFile::Trained(file) => file.tensor_shape(name),
@@ -185,7 +185,7 @@ fn open_parts(folder: &Path, index: &Path) -> Result<Vec<WeightFile>, LocalError
 pub(crate) fn part_names(index: &Path) -> Result<BTreeSet<String>, LocalError> {
     let damaged = |problem: String| LocalError::File { file: index.to_owned(), problem, hint: FETCH_AGAIN };
     let length = std::fs::metadata(index).map_err(|error| LocalError::from_io(index, "read", error))?.len();
-    if length > LONGEST_INDEX {
+    if length > MAX_INDEX_BYTES {
         return Err(damaged(format!("it is too long for an index: {length} bytes")));
     }
     let text = std::fs::read_to_string(index).map_err(|error| LocalError::from_io(index, "read", error))?;

@@ -14,7 +14,7 @@ use std::{
 };
 
 /// The longest header, bytes. This is the limit of the format.
-const LONGEST_HEADER: u64 = 100_000_000;
+const MAX_HEADER_BYTES: u64 = 100_000_000;
 
 /// An open file with its header.
 pub(super) struct SafeFile {
@@ -39,7 +39,7 @@ impl SafeFile {
         let mut size = [0; 8];
         file.read_exact(&mut size).map_err(|_| damaged(format!("it has only {length} bytes and no header")))?;
         let size = u64::from_le_bytes(size);
-        if size > LONGEST_HEADER || size > length - 8 {
+        if size > MAX_HEADER_BYTES || size > length - 8 {
             return Err(damaged(format!("its header would have {size} bytes, but the file has {length}")));
         }
         let mut header = Vec::new();

@@ -21,7 +21,7 @@ const WEIGHTS_TABLE: &str = "model";
 const PARALLEL_NAME_PREFIX: &str = "module.";
 
 /// The longest pickle that is read, bytes; a longer one is refused. The numbers of tensors are not in it.
-const LONGEST_PICKLE: u64 = 32 << 20;
+const MAX_PICKLE_BYTES: u64 = 32 << 20;
 
 /// An open archive, and the locations of its weights.
 pub(super) struct TrainingCheckpoint {
@@ -62,7 +62,7 @@ impl TrainingCheckpoint {
         let root = pickle.and_then(|name| name.split_once('/')).map(|(root, _)| root.to_owned());
         let root = root.ok_or_else(|| damaged("it has no data.pkl".to_owned()))?;
         let bytes = with_entry(&mut archive, &format!("{root}/data.pkl"), |entry| {
-            if entry.size > LONGEST_PICKLE {
+            if entry.size > MAX_PICKLE_BYTES {
                 return Err(format!("its pickle has {} bytes", entry.size));
             }
             let mut bytes = Vec::new();

@@ -168,7 +168,7 @@ fn a_view_without_a_picture_does_not_fail_the_others() {
     }
     assert_eq!(found[1].as_ref().unwrap()[0].len(), 20);
     let scoring = dino.scoring();
-    assert!(scoring.phrases_meet && scoring.means.starts_with("MM Grounding DINO"));
+    assert!(scoring.phrases_interact && scoring.means.starts_with("MM Grounding DINO"));
 }
 
 #[test]

@@ -131,7 +131,7 @@ fn a_view_without_a_picture_does_not_fail_the_others() {
     // A phrase without words is found nowhere; scores are sorted, and boxes lie in the picture.
     assert_eq!(of_shown.iter().map(Vec::is_empty).collect::<Vec<_>>(), [false, true, false]);
     for found in of_shown {
-        assert!(found.is_sorted_by(|a, b| a.score >= b.score) && found.len() <= wayword_core::MOST_BOXES);
+        assert!(found.is_sorted_by(|a, b| a.score >= b.score) && found.len() <= wayword_core::MAX_BOXES_PER_PHRASE);
         let inside =
             |[left, top, right, bottom]: [f32; 4]| left >= 0.0 && top >= 0.0 && right <= 160.0 && bottom <= 96.0;
         assert!(found.iter().all(|found| inside(found.box_px) && (0.0..=1.0).contains(&found.score)));
@@ -142,7 +142,7 @@ fn a_view_without_a_picture_does_not_fail_the_others() {
 #[test]
 fn a_phrase_is_grounded_by_itself() {
     let (glip, case) = (load_from(&fixture("glip"), 96).unwrap(), &cases()[0]);
-    assert!(glip.scoring().phrases_meet);
+    assert!(glip.scoring().phrases_interact);
     let alone = glip.find_phrases(&drawn(case.size), &["sink"]).unwrap()[0][0].score;
     let together = glip.find_phrases(&drawn(case.size), &["blue chair", "sink"]).unwrap()[1][0].score;
     let shown = view(Some(drawn(case.size)));

@@ -2,7 +2,7 @@
 
 use crate::common::{copy, damaged_files_are_named, drawn, fixture, refused, set, view};
 use std::{collections::BTreeMap, path::Path};
-use wayword_core::{DetectorGrounder, MOST_BOXES, ModelError, ObjectDetector, PhraseGrounder};
+use wayword_core::{DetectorGrounder, MAX_BOXES_PER_PHRASE, ModelError, ObjectDetector, PhraseGrounder};
 use wayword_local::{LocalError, ModelDevice, OwlDetector, OwlOutputs, WeightPrecision};
 
 fn load(folder: &Path) -> Result<OwlDetector, LocalError> {
@@ -113,7 +113,7 @@ fn finds_have_a_score_and_a_box_in_picture_pixels() {
         assert!((ours - theirs.clamp(0.0, most)).abs() < 1e-3, "{best:?}: {corners:?}");
     }
     for places in &found {
-        assert!(places.len() <= MOST_BOXES && places.is_sorted_by(|a, b| a.score >= b.score));
+        assert!(places.len() <= MAX_BOXES_PER_PHRASE && places.is_sorted_by(|a, b| a.score >= b.score));
     }
     let scores = DetectorGrounder::new(owl).score_phrases(&[&shown], &["the red door", "sink"]).remove(0).unwrap();
     assert_eq!(scores, [best.score, found[1].first().map_or(0.0, |found| found.score)]);
@@ -127,7 +127,7 @@ fn a_view_without_a_picture_does_not_fail_the_others() {
     assert!(matches!(&found[0], Err(ModelError::NothingToSee { name, .. }) if name == "hf/test/owl"));
     assert_eq!(found[1].as_ref().unwrap().len(), 1);
     let scoring = owl.scoring();
-    assert!(!scoring.phrases_meet && scoring.means.contains("a photo of a"));
+    assert!(!scoring.phrases_interact && scoring.means.contains("a photo of a"));
 }
 
 #[test]

@@ -16,7 +16,7 @@ use url::Url;
 const ADDRESS_SCHEMES: [&str; 10] = ["s3", "s3a", "gs", "az", "adl", "azure", "abfs", "abfss", "https", "file"];
 
 /// The schemes in which the part before the `@` is a container and not a user.
-const CONTAINER_FIRST: [&str; 5] = ["az", "adl", "azure", "abfs", "abfss"];
+const CONTAINER_SCHEMES: [&str; 5] = ["az", "adl", "azure", "abfs", "abfss"];
 
 const ADDRESS_HINT: &str = "write s3://BUCKET/PREFIX, gs://BUCKET/PREFIX, az://CONTAINER/PREFIX or file:///FOLDER";
 

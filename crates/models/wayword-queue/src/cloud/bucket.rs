@@ -9,7 +9,7 @@ use std::{fmt, sync::Arc, time::Duration};
 use tokio::runtime::{Builder, Handle, Runtime};
 
 /// The most objects that are listed; more are an error. A million names are about 200 MB.
-pub const MOST_OBJECTS: usize = 1_000_000;
+pub const MAX_LISTED_OBJECTS: usize = 1_000_000;
 
 /// How often a write is tried again after a conflict with another write of the same object.
 const MAX_CONFLICT_RETRIES: u32 = 5;
@@ -219,7 +219,7 @@ impl CloudBucket {
     /// The objects below a prefix, in the order of their names. An empty prefix is all.
     ///
     /// # Errors
-    /// When the store cannot be used, or there are more than [`MOST_OBJECTS`]. A name that [`CloudBucket::get_object`] would refuse is
+    /// When the store cannot be used, or there are more than [`MAX_LISTED_OBJECTS`]. A name that [`CloudBucket::get_object`] would refuse is
     /// an error too: no object is left out silently.
     pub fn list_objects(&self, prefix: &str) -> Result<Vec<StoredObject>, CloudError> {
         if !prefix.is_empty() {

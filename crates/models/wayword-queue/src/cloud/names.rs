@@ -9,7 +9,7 @@ use std::path::PathBuf;
 const MAX_NAME_BYTES: usize = 1024;
 
 /// The most bytes of a part between two `/`: the limit of file systems, minus room for the ending of unfinished files.
-const LONGEST_PART: usize = 200;
+const MAX_PART_BYTES: usize = 200;
 
 /// The problem of a name, as the end of a sentence; `None` if the name can be used.
 fn problem_of(name: &str) -> Option<&'static str> {

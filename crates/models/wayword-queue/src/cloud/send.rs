@@ -19,7 +19,7 @@ const CONCURRENT_PARTS: usize = 2;
 const PART_BYTES: u64 = 8 << 20;
 
 /// The most parts of a file: below the limit of S3, which is 10,000.
-const MOST_PARTS: u64 = 9_000;
+const MAX_PARTS: u64 = 9_000;
 
 /// Counts of a send.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -12,7 +12,7 @@ use std::{error::Error, io};
 const STORE_LOG_HINT: &str = "see what the store's own log says, and check the address";
 
 /// Codes of answers to invalid credentials. They come with 400, 401 or 403.
-const BAD_CREDENTIALS: [&str; 9] = [
+const BAD_CREDENTIALS_CODES: [&str; 9] = [
     "InvalidAccessKeyId",
     "SignatureDoesNotMatch",
     "ExpiredToken",
@@ -25,11 +25,11 @@ const BAD_CREDENTIALS: [&str; 9] = [
 ];
 
 /// Codes of answers about a missing bucket.
-const NO_BUCKET: [&str; 4] =
+const NO_BUCKET_CODES: [&str; 4] =
     ["NoSuchBucket", "ContainerNotFound", "ContainerBeingDeleted", "The specified bucket does not exist"];
 
 /// Texts of object_store when it finds no credentials. They are compared and never shown.
-const NO_CREDENTIALS: [&str; 7] = [
+const NO_CREDENTIALS_TEXTS: [&str; 7] = [
     "instance metadata",
     "169.254.169.254",
     "metadata.google.internal",

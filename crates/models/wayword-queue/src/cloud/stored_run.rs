@@ -24,9 +24,9 @@ const MARKS_FOLDER: &str = CHUNKS_FOLDER;
 /// The prefix of the results.
 const RESULTS_FOLDER: &str = "results";
 /// Largest file other than results that is fetched, bytes: enough for a plan of ten million items.
-const MOST_BYTES: u64 = 1 << 30;
+const MAX_FILE_BYTES: u64 = 1 << 30;
 /// Largest results of a chunk that are fetched, bytes.
-const MOST_CHUNK_BYTES: u64 = 1 << 40;
+const MAX_CHUNK_BYTES: u64 = 1 << 40;
 
 /// A run in an object store. A worker works in a folder of its machine, sends each chunk's results when they are finished, and
 /// then makes a mark in the store. Each try has a prefix for its results, and the mark names that prefix.
@@ -207,7 +207,7 @@ fn new_try() -> i64 {
 }
 
 /// The smallest number of a try. It is larger than any number of a claim, because no chunk is claimed so often.
-const FIRST_TRY: i64 = 1 << 40;
+const MIN_TRY_NUMBER: i64 = 1 << 40;
 
 /// Whether this is the number of a try, and not the claim of a queue.
 fn is_try(epoch: i64) -> bool {

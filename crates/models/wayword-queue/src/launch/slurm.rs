@@ -12,13 +12,13 @@ use serde::Serialize;
 const SLURM_TEMPLATE: &str = include_str!("slurm.j2");
 
 /// The default of a cluster's `MaxArraySize`: 1001 workers, of which the last has index 1000.
-const USUAL_ARRAY: u32 = 1001;
+const USUAL_ARRAY_WORKERS: u32 = 1001;
 /// How long before the end of its time a worker gets a warning signal, seconds.
 const WARNING_S: u32 = 120;
 /// How long a worker may wait for answers after the warning before it is ended, seconds.
 const PATIENCE_S: u32 = 90;
 /// By how much Slurm may send the warning signal too early, seconds.
-const EARLY_S: u32 = 60;
+const MAX_EARLY_S: u32 = 60;
 /// How often a worker is started again after it lost the simulator, a service or the disk.
 const MAX_WORKER_RESTARTS: u32 = 3;
 /// The environment variables that every program needs. The user names all others.
@@ -149,8 +149,8 @@ pub fn write_script(job: &SlurmJob) -> Result<String, LaunchError> {
             workers,
             last: workers.saturating_sub(1),
             needs_part: job.worker.needs_part(),
-            is_long: workers > USUAL_ARRAY,
-            usual_array: USUAL_ARRAY,
+            is_long: workers > USUAL_ARRAY_WORKERS,
+            usual_array: USUAL_ARRAY_WORKERS,
             warning_s: WARNING_S,
             patience_s: PATIENCE_S,
             tries: MAX_WORKER_RESTARTS,
@@ -161,7 +161,7 @@ pub fn write_script(job: &SlurmJob) -> Result<String, LaunchError> {
 /// Checks a time: Slurm must be able to read it, and it must be longer than the time from the earliest
 /// possible warning to the end.
 fn check_time(time: &str) -> Result<(), LaunchError> {
-    let least = WARNING_S + EARLY_S;
+    let least = WARNING_S + MAX_EARLY_S;
     match parse_seconds(time) {
         None => Err(value_error("--time", time, "is no time", "write minutes, H:MM:SS, or D-HH:MM:SS, as in 4:00:00")),
         Some(total) if total <= u64::from(least) => Err(value_error(

@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::time::Duration;
 
 /// Most characters of a service's message that an error of this program repeats. The rest is cut off.
-const LONGEST_MESSAGE: usize = 300;
+const MAX_MESSAGE_CHARS: usize = 300;
 
 /// The content of an error's body.
 #[derive(Debug, Default)]
@@ -126,9 +126,9 @@ pub(crate) fn one_line(text: &str) -> String {
         return "(a page of HTML)".to_owned();
     }
     let clean = text.chars().map(|c| if c.is_whitespace() || c.is_control() { ' ' } else { c });
-    let words: String = clean.take(4 * LONGEST_MESSAGE).collect();
+    let words: String = clean.take(4 * MAX_MESSAGE_CHARS).collect();
     let line = words.split(' ').filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ");
-    match line.char_indices().nth(LONGEST_MESSAGE) {
+    match line.char_indices().nth(MAX_MESSAGE_CHARS) {
         Some((end, _)) => format!("{}…", &line[..end]),
         None => line,
     }
@@ -160,7 +160,7 @@ mod tests {
     proptest! {
         #[test]
         fn short_bounds_every_text(text in ".{0,3000}", bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-            prop_assert!(one_line(&text).chars().count() <= LONGEST_MESSAGE + 1);
+            prop_assert!(one_line(&text).chars().count() <= MAX_MESSAGE_CHARS + 1);
             prop_assert!(!one_line(&text).chars().any(char::is_control));
             ServiceErrorBody::from_body(&bytes);
         }

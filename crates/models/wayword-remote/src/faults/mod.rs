@@ -8,7 +8,7 @@ mod delay;
 mod error_body;
 mod times;
 
-use crate::{secret::ServiceSecret, transport::LARGEST_BODY};
+use crate::{secret::ServiceSecret, transport::MAX_BODY_BYTES};
 use error_body::ServiceErrorBody;
 pub(crate) use error_body::one_line;
 use std::{
@@ -18,7 +18,7 @@ use std::{
 use ureq::{Timeout, http::HeaderMap};
 
 /// Longest wait that a service may ask for. If a service asks for a longer one, the run stops.
-const LONGEST_WAIT: Duration = Duration::from_secs(600);
+const MAX_REQUESTED_WAIT: Duration = Duration::from_secs(600);
 
 /// The reaction to a request without an answer.
 #[derive(Debug, Clone, PartialEq)]
@@ -132,7 +132,7 @@ pub(crate) fn of_response(
 /// The fault of an overloaded service, which may ask for a wait.
 fn overload_fault(reason: String, after: Option<Duration>, context: FaultContext<'_>) -> RemoteFault {
     match after {
-        Some(after) if after > LONGEST_WAIT => RemoteFault::Stop {
+        Some(after) if after > MAX_REQUESTED_WAIT => RemoteFault::Stop {
             reason: format!("{} asks to wait {} minutes: {reason}", context.provider, after.as_secs() / 60),
             hint: "all answers are kept: to continue, run the same command later".to_owned(),
         },
@@ -210,7 +210,7 @@ pub(crate) fn of_transport(
             retry("no complete answer in time; give it more time with --timeout-s".to_owned(), ServiceLoad::Slow, true)
         }
         E::BodyExceedsLimit(_) => RemoteFault::Final {
-            reason: format!("the answer is longer than {} MiB", LARGEST_BODY >> 20),
+            reason: format!("the answer is longer than {} MiB", MAX_BODY_BYTES >> 20),
             maybe_paid: true,
         },
         E::Io(_) | E::Protocol(_) | E::ConnectionFailed | E::BodyStalled => {

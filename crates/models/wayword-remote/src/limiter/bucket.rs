@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 /// A bucket's capacity, in seconds of its rate: this much may be sent at once after a pause.
-const HOLDS_S: f64 = 2.0;
+const BURST_S: f64 = 2.0;
 
 /// Allows a fixed amount per second, with a small burst. Its level may go below 0, so that a request larger than the
 /// bucket can be sent too. Later requests then wait until the bucket has filled again.
@@ -54,5 +54,5 @@ impl RateBucket {
 
 /// The capacity of a bucket with this rate: at least one request.
 fn bucket_capacity(per_s: f64) -> f64 {
-    (per_s * HOLDS_S).max(1.0)
+    (per_s * BURST_S).max(1.0)
 }

@@ -16,7 +16,7 @@ const INITIAL_ADAPTIVE_LIMIT: f64 = 8.0;
 const SHRINK_FACTOR: f64 = 0.7;
 
 /// A limit shrinks at most once in this time, or in the usual latency if that is longer.
-const SHORTEST_WINDOW: Duration = Duration::from_millis(100);
+const MIN_SHRINK_INTERVAL: Duration = Duration::from_millis(100);
 
 /// If the share of refusals, or of answers that came too late, is below this, they count as chance and not as a limit:
 /// a refusal then delays its own request and no other. Services in trouble refuse at random; without this rule each
@@ -68,9 +68,9 @@ pub(crate) enum RequestOutcome {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GateTicket {
     /// When the request was sent.
-    pub(super) left_at: Instant,
+    pub(super) sent_at: Instant,
     /// The same moment by the pace's clock, seconds.
-    left_s: f64,
+    sent_s: f64,
     /// About how many tokens it has.
     tokens: u64,
 }
@@ -83,7 +83,7 @@ pub(super) struct RequestGate {
     /// the user fixed the number, this value only spaces requests out after a refusal.
     limit: f64,
     /// How many requests are in flight.
-    out: usize,
+    in_flight: usize,
     /// The end of the pause that the service asked for.
     paused_until: Option<Instant>,
     /// The usual time until an answer: a mean in which older answers count less and less.
@@ -112,7 +112,7 @@ impl RequestGate {
         };
         Self {
             limit: limit.max(1.0),
-            out: 0,
+            in_flight: 0,
             paused_until: None,
             latency: Duration::ZERO,
             shrunk_at: None,
@@ -138,7 +138,7 @@ impl RequestGate {
             RequestConcurrency::Fixed(max_in_flight) => max_in_flight as f64,
             RequestConcurrency::Adaptive { .. } => self.limit,
         };
-        if self.out as f64 + 1.0 > max_in_flight + 1e-9 {
+        if self.in_flight as f64 + 1.0 > max_in_flight + 1e-9 {
             self.crowded_at = Some(now);
             return GateTurn::WhenOneIsBack;
         }
@@ -152,7 +152,7 @@ impl RequestGate {
 
     /// Notes that a request of about `tokens` tokens is sent.
     pub(super) fn note_sent(&mut self, now: Instant, tokens: u64) -> GateTicket {
-        self.out += 1;
+        self.in_flight += 1;
         // A service may refuse requests that arrive together, and accept them one by one.
         let spacing = self.refused.then(|| self.latency.div_f64(self.limit));
         let left_s = self.pace.note_sent(now, spacing);
@@ -162,28 +162,28 @@ impl RequestGate {
         if let Some(bucket) = &mut self.tokens {
             bucket.take_amount(tokens as f64);
         }
-        GateTicket { left_at: now, left_s, tokens }
+        GateTicket { sent_at: now, sent_s: left_s, tokens }
     }
 
     /// Notes that a request has ended.
     pub(super) fn note_ended(&mut self, ticket: GateTicket, now: Instant, outcome: RequestOutcome) {
-        self.out = self.out.saturating_sub(1);
+        self.in_flight = self.in_flight.saturating_sub(1);
         let paused = self.paused_until.is_some_and(|until| until > now);
         self.pace.advance_clock(now, paused);
         let over = self.over.count_request(matches!(outcome, RequestOutcome::Burdened { load: ServiceLoad::Over, .. }));
         let slow = self.slow.count_request(matches!(outcome, RequestOutcome::Burdened { load: ServiceLoad::Slow, .. }));
         match outcome {
             RequestOutcome::Answered { tokens: used } => {
-                self.pace.let_in(ticket.left_s);
-                self.note_answer(ticket.left_at, now);
+                self.pace.let_in(ticket.sent_s);
+                self.note_answer(ticket.sent_at, now);
                 if let Some(bucket) = &mut self.tokens {
                     bucket.take_amount(used as f64 - ticket.tokens as f64);
                 }
             }
-            RequestOutcome::Failed => self.pace.let_in(ticket.left_s),
+            RequestOutcome::Failed => self.pace.let_in(ticket.sent_s),
             RequestOutcome::Burdened { load: ServiceLoad::Slow, .. } if slow < CHANCE_SHARE => {}
             RequestOutcome::Burdened { load: ServiceLoad::Over, .. } if over < CHANCE_SHARE => {}
-            RequestOutcome::Burdened { load, after } => self.note_burden(ticket.left_at, now, load, after),
+            RequestOutcome::Burdened { load, after } => self.note_burden(ticket.sent_at, now, load, after),
         }
     }
 
@@ -202,7 +202,7 @@ impl RequestGate {
     /// Learns from a refusal or an answer that came too late: lowers the limit, and pauses if the service asks for it.
     fn note_burden(&mut self, left_at: Instant, now: Instant, load: ServiceLoad, after: Option<Duration>) {
         // Refusals of requests that were in flight together count as one.
-        let window = self.latency.max(SHORTEST_WINDOW);
+        let window = self.latency.max(MIN_SHRINK_INTERVAL);
         let is_first = self.shrunk_at.is_none_or(|shrunk_at| left_at >= shrunk_at && now >= shrunk_at + window);
         // The cases so far are forgotten, so that each refusal changes the limits only once.
         if load == ServiceLoad::Slow {
@@ -238,22 +238,22 @@ impl RequestGate {
 #[derive(Debug, Default)]
 pub(super) struct RecentShare {
     /// The weights of the requests that are such a case, and of all requests.
-    met: f64,
-    all: f64,
+    case_weight: f64,
+    total_weight: f64,
 }
 
 impl RecentShare {
     /// Counts a request, and returns the new share.
     pub(super) fn count_request(&mut self, met: bool) -> f64 {
         let kept = 1.0 - 1.0 / SHARE_MEMORY_REQUESTS;
-        self.met = self.met * kept + f64::from(u8::from(met));
-        self.all = self.all * kept + 1.0;
-        self.met / self.all
+        self.case_weight = self.case_weight * kept + f64::from(u8::from(met));
+        self.total_weight = self.total_weight * kept + 1.0;
+        self.case_weight / self.total_weight
     }
 
     /// Forgets the cases so far.
     pub(super) fn forget_cases(&mut self) {
-        self.met = 0.0;
+        self.case_weight = 0.0;
     }
 }
 

@@ -18,15 +18,15 @@ use std::{
 };
 
 /// How often a waiting thread checks whether the run was stopped.
-const LOOK_UP: Duration = Duration::from_millis(100);
+const STOP_CHECK_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Lets threads send requests to one endpoint, one after the other.
 pub(crate) struct EndpointLimiter {
     gate: Mutex<RequestGate>,
     /// Signalled when a request has ended.
-    back: Condvar,
+    request_ended: Condvar,
     /// Locked by the thread that is next. The others wait for this lock, so that not all of them wake up each time.
-    next: Mutex<()>,
+    turn: Mutex<()>,
 }
 
 /// Permission to have one request in flight.
@@ -40,12 +40,16 @@ pub(crate) struct RequestPermit<'a> {
 impl EndpointLimiter {
     /// A limiter with these rules.
     pub(crate) fn new(rules: LimiterRules) -> Self {
-        Self { gate: Mutex::new(RequestGate::new(rules, Instant::now())), back: Condvar::new(), next: Mutex::new(()) }
+        Self {
+            gate: Mutex::new(RequestGate::new(rules, Instant::now())),
+            request_ended: Condvar::new(),
+            turn: Mutex::new(()),
+        }
     }
 
     /// Waits until a request of about `tokens` tokens may be sent; `None` if `stopped` returns true first.
     pub(crate) fn wait_for_permit(&self, tokens: u64, stopped: impl Fn() -> bool) -> Option<RequestPermit<'_>> {
-        let _first_in_line = self.next.lock().unwrap_or_else(PoisonError::into_inner);
+        let _first_in_line = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
         let mut gate = self.lock_gate();
         loop {
             if stopped() {
@@ -57,10 +61,10 @@ impl EndpointLimiter {
                     let ticket = gate.note_sent(now, tokens);
                     return Some(RequestPermit { limiter: self, ticket, outcome: None });
                 }
-                GateTurn::In(wait) => wait.min(LOOK_UP),
-                GateTurn::WhenOneIsBack => LOOK_UP,
+                GateTurn::In(wait) => wait.min(STOP_CHECK_INTERVAL),
+                GateTurn::WhenOneIsBack => STOP_CHECK_INTERVAL,
             };
-            gate = self.back.wait_timeout(gate, wait).unwrap_or_else(PoisonError::into_inner).0;
+            gate = self.request_ended.wait_timeout(gate, wait).unwrap_or_else(PoisonError::into_inner).0;
         }
     }
 
@@ -77,12 +81,12 @@ impl RequestPermit<'_> {
 
     /// How long the request has been in flight.
     pub(crate) fn latency(&self) -> Duration {
-        self.ticket.left_at.elapsed()
+        self.ticket.sent_at.elapsed()
     }
 
     /// Notes that the request is sent only now: the wait before must not count as the service's latency.
     pub(crate) fn note_late_start(&mut self) {
-        self.ticket.left_at = Instant::now();
+        self.ticket.sent_at = Instant::now();
     }
 
     /// Takes over the limits that the service gives.
@@ -95,7 +99,7 @@ impl Drop for RequestPermit<'_> {
     fn drop(&mut self) {
         let outcome = self.outcome.take().unwrap_or(RequestOutcome::Failed);
         self.limiter.lock_gate().note_ended(self.ticket, Instant::now(), outcome);
-        self.limiter.back.notify_one();
+        self.limiter.request_ended.notify_one();
     }
 }
 

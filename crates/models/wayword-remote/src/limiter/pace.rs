@@ -18,13 +18,13 @@ const MIN_MEASURED_REQUESTS: usize = 16;
 const MAX_REMEMBERED_REQUESTS: usize = 4096;
 
 /// Shortest time over which a rate is measured, seconds. A shorter time may show only a burst that the service accepts.
-const LONG_ENOUGH_S: f64 = 0.8;
+const MIN_MEASURED_SPAN_S: f64 = 0.8;
 
 /// After a refusal, the pace is this share of the accepted rate.
 const CAUTION_SHARE: f64 = 0.98;
 
 /// If a refusal follows another one within this time, the pace is still far too high, seconds.
-const SOON_S: f64 = 3.0;
+const SOON_AFTER_REFUSAL_S: f64 = 3.0;
 
 /// A pace that was refused only once grows by this share of itself per second, by twice the share one second after the
 /// refusal, by three times the share after two seconds, and so on, until it is refused at about the same rate again.
@@ -44,17 +44,17 @@ const CALM_S: f64 = 10.0;
 const TRIED_RATE_FACTOR: f64 = 2.0;
 
 /// The highest pace, requests per second.
-const FASTEST_PER_S: f64 = 1e5;
+const MAX_PACE_PER_S: f64 = 1e5;
 
 /// A learned pace.
 #[derive(Debug)]
 pub(super) struct SendingPace {
     /// When the accepted requests were sent, by a clock that stops in pauses, seconds.
-    let_in: VecDeque<f64>,
+    accepted_s: VecDeque<f64>,
     /// The time by the clock that stops in pauses, seconds.
     active_s: f64,
     /// When that clock was last advanced.
-    seen_at: Instant,
+    advanced_at: Instant,
     learned: Option<LearnedRate>,
     /// When the next request may be sent, if they are spaced out.
     next: Option<Instant>,
@@ -75,13 +75,13 @@ struct LearnedRate {
 
 impl SendingPace {
     pub(super) fn new(now: Instant) -> Self {
-        Self { let_in: VecDeque::new(), active_s: 0.0, seen_at: now, learned: None, next: None }
+        Self { accepted_s: VecDeque::new(), active_s: 0.0, advanced_at: now, learned: None, next: None }
     }
 
     /// Advances the clock that stops in pauses, and increases the learned pace.
     pub(super) fn advance_clock(&mut self, now: Instant, paused: bool) {
-        let passed_s = now.saturating_duration_since(self.seen_at).as_secs_f64();
-        self.seen_at = self.seen_at.max(now);
+        let passed_s = now.saturating_duration_since(self.advanced_at).as_secs_f64();
+        self.advanced_at = self.advanced_at.max(now);
         if paused {
             return;
         }
@@ -90,7 +90,7 @@ impl SendingPace {
         self.active_s += passed_s;
         if let Some(learned) = &mut self.learned {
             learned.grow_rate(passed_s, self.active_s);
-            learned.per_s = learned.per_s.min(FASTEST_PER_S);
+            learned.per_s = learned.per_s.min(MAX_PACE_PER_S);
         }
     }
 
@@ -114,10 +114,10 @@ impl SendingPace {
 
     /// Notes that the service accepted a request that was sent at `left_s`, whatever its result.
     pub(super) fn let_in(&mut self, left_s: f64) {
-        if self.let_in.len() >= MAX_REMEMBERED_REQUESTS {
-            self.let_in.pop_front();
+        if self.accepted_s.len() >= MAX_REMEMBERED_REQUESTS {
+            self.accepted_s.pop_front();
         }
-        self.let_in.push_back(left_s);
+        self.accepted_s.push_back(left_s);
     }
 
     /// Notes that a request was refused as too much. `first` is false if another request in flight at the same time was
@@ -132,7 +132,7 @@ impl SendingPace {
             None => (careful, let_in_per_s, false),
             Some(old) => {
                 // The last refusal was a moment ago, so the pace is still far too high.
-                let is_soon = self.active_s - old.refused_s < SOON_S;
+                let is_soon = self.active_s - old.refused_s < SOON_AFTER_REFUSAL_S;
                 // The pace is near the one that was refused last.
                 let is_close = (0.87..1.15).contains(&(old.per_s / old.refused_per_s));
                 // A single refusal among many accepted requests is not a new limit, so the step down is bounded.
@@ -146,19 +146,19 @@ impl SendingPace {
         };
         let refused_s = self.active_s;
         self.learned =
-            Some(LearnedRate { per_s: per_s.clamp(0.05, FASTEST_PER_S), refused_per_s, refused_s, confirmed });
+            Some(LearnedRate { per_s: per_s.clamp(0.05, MAX_PACE_PER_S), refused_per_s, refused_s, confirmed });
     }
 
     /// The rate of the requests that were accepted lately, if there were enough.
     fn let_in_per_s(&self) -> Option<f64> {
-        let mut sent: Vec<f64> = self.let_in.iter().copied().collect();
+        let mut sent: Vec<f64> = self.accepted_s.iter().copied().collect();
         sent.sort_by(f64::total_cmp);
         let newest = *sent.last()?;
         let recent = sent.iter().rev().take_while(|&&at| at >= newest - LOOK_BACK_S).count();
         // For a slow service, a longer time is used, so that there are enough requests.
         let count = recent.max(sent.len().min(MIN_MEASURED_REQUESTS));
         let span_s = newest - sent[sent.len() - count];
-        (count >= MIN_MEASURED_REQUESTS && span_s >= LONG_ENOUGH_S).then(|| (count - 1) as f64 / span_s)
+        (count >= MIN_MEASURED_REQUESTS && span_s >= MIN_MEASURED_SPAN_S).then(|| (count - 1) as f64 / span_s)
     }
 }
 

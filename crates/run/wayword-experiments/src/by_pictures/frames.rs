@@ -162,7 +162,7 @@ impl PathPictures {
 /// Reads the pictures of a path from the folder in which a run stored them.
 fn read_kept_views(folder: &FilePath, path: &Path) -> Result<Vec<View>, CommandError> {
     let view = |(number, frame): (usize, &wayword_core::Frame)| {
-        let pixels = pictures::read_picture(folder, &path.id, number, pictures::MOST_BYTES)
+        let pixels = pictures::read_picture(folder, &path.id, number, pictures::MAX_PICTURE_BYTES)
             .and_then(|stored| stored.decode_pixels());
         let Some(image) = pixels else {
             let problem =

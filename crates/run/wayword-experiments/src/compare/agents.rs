@@ -2,7 +2,7 @@
 
 use super::{
     settings::ComparisonSettings,
-    thresholds::{BY_DETECTOR, READER_AGENT_NAME, READER_MAP, TOOLS_AGENT_NAME},
+    thresholds::{GLIP_NAV_AGENT_NAME, READER_AGENT_NAME, READER_MAP_AGENT_NAME, TOOLS_AGENT_NAME},
 };
 use crate::compare::args::AskedPrior;
 use wayword_navigation::{
@@ -44,11 +44,11 @@ impl WalkingAgent {
     pub(super) fn all_for_comparison(config: &ComparisonSettings, prior: AskedPrior) -> Vec<Self> {
         let agent = |name: &String| match name.as_str() {
             READER_AGENT_NAME => Some(Self::Reader(config.reader_threshold)),
-            READER_MAP => None,
+            READER_MAP_AGENT_NAME => None,
             TOOLS_AGENT_NAME => Some(Self::Tools),
             _ => {
                 let parameters = *config.parameters.get(name)?;
-                Some(Self::Phrases { name: name.clone(), parameters, by_detector: name == BY_DETECTOR })
+                Some(Self::Phrases { name: name.clone(), parameters, by_detector: name == GLIP_NAV_AGENT_NAME })
             }
         };
         let mut all: Vec<Self> = config.agents.iter().filter_map(agent).collect();
@@ -65,7 +65,7 @@ impl WalkingAgent {
             Self::Phrases { name, .. } => name.clone(),
             Self::Reader(_) => READER_AGENT_NAME.to_owned(),
             Self::Tools => TOOLS_AGENT_NAME.to_owned(),
-            Self::ReaderMap(_) => READER_MAP.to_owned(),
+            Self::ReaderMap(_) => READER_MAP_AGENT_NAME.to_owned(),
             Self::Random(hops) => format!("random/{hops}"),
             Self::Straight(hops) => format!("straight/{hops}"),
             Self::NearestRoom => "nearest-room".to_owned(),
@@ -81,6 +81,6 @@ impl WalkingAgent {
             Self::ReaderMap(_) | Self::NearestRoom => (AgentKind::Informed, true),
             Self::Oracle => (AgentKind::UpperBound, false),
         };
-        ComparedAgent { name: self.name(), kind, reads, has_floors: matches!(self, Self::ReaderMap(_)) }
+        ComparedAgent { name: self.name(), kind, reads, has_extra_rows: matches!(self, Self::ReaderMap(_)) }
     }
 }

@@ -135,9 +135,9 @@ const SELECTABLE_AGENTS: [&str; 6] = ["clip-nav", "seq-clip-nav", "glip-nav", "r
 pub struct AskedPrior(pub WalkPrior);
 
 /// Most hops of a walk that an agent considers.
-const MOST_HOPS: usize = 20;
+const MAX_PRIOR_HOPS: usize = 20;
 /// Hops of the walks of two pieces.
-const HOPS_OF_PIECES: usize = 8;
+const TWO_PIECE_PRIOR_HOPS: usize = 8;
 
 impl fmt::Display for AskedPrior {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -153,10 +153,10 @@ impl FromStr for AskedPrior {
 
     fn from_str(typed: &str) -> Result<Self, String> {
         let hops = typed.strip_prefix("shortest:1-").and_then(|hops| hops.parse().ok());
-        match hops.filter(|hops| (1..=MOST_HOPS).contains(hops)) {
+        match hops.filter(|hops| (1..=MAX_PRIOR_HOPS).contains(hops)) {
             Some(hops) => Ok(Self(WalkPrior::Shortest(hops))),
-            None if typed == "none" => Ok(Self(WalkPrior::TwoPieces(HOPS_OF_PIECES))),
-            None => Err(format!("give shortest:1-8 (with 1 to {MOST_HOPS} hops at most) or none")),
+            None if typed == "none" => Ok(Self(WalkPrior::TwoPieces(TWO_PIECE_PRIOR_HOPS))),
+            None => Err(format!("give shortest:1-8 (with 1 to {MAX_PRIOR_HOPS} hops at most) or none")),
         }
     }
 }

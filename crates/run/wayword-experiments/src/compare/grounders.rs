@@ -45,7 +45,7 @@ impl ComparisonGrounders {
             }
             ("labels/lexical", _) => Ok(lexical()),
             (name, _) if name.starts_with("hf/") => {
-                let walks_by_boxes = config.agents.iter().any(|agent| agent == super::thresholds::BY_DETECTOR);
+                let walks_by_boxes = config.agents.iter().any(|agent| agent == super::thresholds::GLIP_NAV_AGENT_NAME);
                 if walks_by_boxes && config.detector.is_none() {
                     return Err(CommandError::usage(
                         format!("--grounder {name}: glip-nav needs a detector, and none is named"),

@@ -27,7 +27,7 @@ use tools::{AgentToolbox, WithheldWalks};
 use wayword_core::{FailureKind, ModelError, RecentCache};
 use wayword_navigation::{
     WalkError,
-    directions::{ByModel, ByRules, InstructionSplitter},
+    directions::{InstructionSplitter, ModelSplitter, RuleSplitter},
 };
 use wayword_run::{
     calls::ModelCalls,
@@ -38,7 +38,7 @@ use wayword_run::{
     losses::LossCounter,
     output::CommandOutput,
     plan::JobModels,
-    platforms::SCENES_KEPT,
+    platforms::MAX_KEPT_SURVEYS,
     run_folder,
     run_folder::Journal,
     settings::RolePlayer,
@@ -123,7 +123,7 @@ pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit
     }
     let toolbox =
         AgentToolbox::open(&config, &job.settings, (calls.as_ref(), &models, items.len()), platform.as_ref())?;
-    let surveys = RecentCache::new(SCENES_KEPT);
+    let surveys = RecentCache::new(MAX_KEPT_SURVEYS);
     let walk_maker = ItemWalkMaker {
         platform: platform.as_ref(),
         grounders: &grounders,
@@ -175,8 +175,8 @@ fn open_splitter(
     calls: Option<&ModelCalls>,
 ) -> Result<Box<dyn InstructionSplitter>, CommandError> {
     match calls.zip(player.model_name()) {
-        Some((calls, name)) => Ok(Box::new(ByModel::new(calls.open_model(name)?))),
-        None => Ok(Box::new(ByRules)),
+        Some((calls, name)) => Ok(Box::new(ModelSplitter::new(calls.open_model(name)?))),
+        None => Ok(Box::new(RuleSplitter)),
     }
 }
 

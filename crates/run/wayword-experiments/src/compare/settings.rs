@@ -1,6 +1,6 @@
 //! The settings of a comparison. `config.toml` in its folder stores them, so that a later command continues with the same.
 
-use super::thresholds::{BY_NAME, READER_MAP, TOOLS_AGENT_NAME, read_thresholds};
+use super::thresholds::{DETECTOR_GROUNDER_NAME, READER_MAP_AGENT_NAME, TOOLS_AGENT_NAME, read_thresholds};
 use crate::compare::{
     args::{CompareArgs, SwapName},
     tool_agent_eyes::ToolAgentEyes,
@@ -156,21 +156,21 @@ impl ComparisonSettings {
             limit: settings.limit,
             seed: settings.seed,
             prior: prior_name(args)?,
-            reader_threshold: thresholds.of_reader,
-            tools: tool_agent_settings(args, settings, thresholds.of_tools),
-            parameters: thresholds.of_phrases,
+            reader_threshold: thresholds.reader_threshold,
+            tools: tool_agent_settings(args, settings, thresholds.tool_limits),
+            parameters: thresholds.phrase_parameters,
             inputs,
         })
     }
 
     /// Whether the detector scores whole views too.
     pub(super) fn detects_views(&self) -> bool {
-        self.grounder == BY_NAME || self.detector.as_deref() == Some(&*self.grounder)
+        self.grounder == DETECTOR_GROUNDER_NAME || self.detector.as_deref() == Some(&*self.grounder)
     }
 
     /// Whether the agent `reader-map` takes part.
     pub(super) fn knows_map(&self) -> bool {
-        self.agents.iter().any(|agent| agent == READER_MAP)
+        self.agents.iter().any(|agent| agent == READER_MAP_AGENT_NAME)
     }
 
     /// The platform.
@@ -193,11 +193,11 @@ fn is_name(name: &str) -> bool {
 
 /// The walks that the agent `reader-map` considers; `None` if it does not take part.
 fn prior_name(args: &CompareArgs) -> Result<Option<String>, CommandError> {
-    let knows_map = args.agents.iter().any(|agent| agent == READER_MAP);
+    let knows_map = args.agents.iter().any(|agent| agent == READER_MAP_AGENT_NAME);
     if let (false, Some(prior)) = (knows_map, args.prior) {
         return Err(CommandError::usage(
-            format!("--prior {prior} has no effect: it is for the agent {READER_MAP}"),
-            format!("add {READER_MAP} to --agents, or leave --prior out"),
+            format!("--prior {prior} has no effect: it is for the agent {READER_MAP_AGENT_NAME}"),
+            format!("add {READER_MAP_AGENT_NAME} to --agents, or leave --prior out"),
         ));
     }
     Ok(knows_map.then(|| args.prior.unwrap_or_default().to_string()))

@@ -8,24 +8,24 @@ use wayword_run::{error::CommandError, text_file};
 /// The agent that reads every clause and knows only the places where it was.
 pub(super) const READER_AGENT_NAME: &str = "reader";
 /// The agent that reads every clause and knows the map.
-pub(super) const READER_MAP: &str = "reader-map";
+pub(super) const READER_MAP_AGENT_NAME: &str = "reader-map";
 /// The agent whose moves a language model decides.
 pub(super) const TOOLS_AGENT_NAME: &str = "tools";
 /// The agent that walks by phrases and looks for them with a detector.
-pub(super) const BY_DETECTOR: &str = "glip-nav";
+pub(super) const GLIP_NAV_AGENT_NAME: &str = "glip-nav";
 
 /// The value of `--grounder` that means the detector of `--detector`.
-pub(super) const BY_NAME: &str = "detector";
+pub(super) const DETECTOR_GROUNDER_NAME: &str = "detector";
 
 /// The thresholds and limits of all agents of a comparison.
 #[derive(Debug, Default)]
 pub(super) struct AgentThresholds {
     /// The thresholds of the agents that walk by phrases, by agent.
-    pub(super) of_phrases: BTreeMap<String, PhraseWalkParameters>,
+    pub(super) phrase_parameters: BTreeMap<String, PhraseWalkParameters>,
     /// The lowest score with which the agent that reads counts a thing as seen; `None` if it takes things from labels.
-    pub(super) of_reader: Option<f32>,
+    pub(super) reader_threshold: Option<f32>,
     /// The limits of a walk of the agent `tools`: hops, calls and money.
-    pub(super) of_tools: ToolWalkLimits,
+    pub(super) tool_limits: ToolWalkLimits,
 }
 
 /// Reads the thresholds of each agent: the defaults for its grounder, overridden by the TOML file of `--parameters`.
@@ -51,23 +51,24 @@ pub(super) fn read_thresholds(
         let user_values = tables.remove(name);
         if name == TOOLS_AGENT_NAME {
             let limits = user_values.map_or(Ok(ToolWalkLimits::default()), parse_tool_limits);
-            thresholds.of_tools = limits.map_err(|problem| parameter_error(file.unwrap_or(Path::new("")), &problem))?;
+            thresholds.tool_limits =
+                limits.map_err(|problem| parameter_error(file.unwrap_or(Path::new("")), &problem))?;
             continue;
         }
         let is_reader = name == READER_AGENT_NAME && !grounder.starts_with("labels");
         let changed = match (name.as_str(), user_values) {
             (_, None) => Ok(default),
             (READER_AGENT_NAME, Some(user_values)) if is_reader => changed_for_reader(&default, user_values),
-            (READER_AGENT_NAME | READER_MAP, Some(_)) => {
+            (READER_AGENT_NAME | READER_MAP_AGENT_NAME, Some(_)) => {
                 Err(format!("{name} has no thresholds here: it is told the labels"))
             }
             (_, Some(user_values)) => change_parameters(&default, user_values),
         };
         let changed = changed.map_err(|problem| parameter_error(file.unwrap_or(Path::new("")), &problem))?;
         match name.as_str() {
-            READER_AGENT_NAME if is_reader => thresholds.of_reader = Some(changed.phrase_threshold),
-            READER_AGENT_NAME | READER_MAP => {}
-            _ => drop(thresholds.of_phrases.insert(name.clone(), changed)),
+            READER_AGENT_NAME if is_reader => thresholds.reader_threshold = Some(changed.phrase_threshold),
+            READER_AGENT_NAME | READER_MAP_AGENT_NAME => {}
+            _ => drop(thresholds.phrase_parameters.insert(name.clone(), changed)),
         }
     }
     match (tables.keys().next(), file) {
@@ -81,8 +82,8 @@ pub(super) fn read_thresholds(
 /// The name of the scorer for which an agent's default thresholds are looked up. It is the detector for an agent that walks by
 /// boxes, and the grounder for the others.
 pub(super) fn scored_by<'a>(agent: &str, grounder: &'a str, detector: Option<&str>) -> &'a str {
-    let by_boxes = agent == BY_DETECTOR && detector.is_some();
-    if by_boxes || detector == Some(grounder) { BY_NAME } else { grounder }
+    let by_boxes = agent == GLIP_NAV_AGENT_NAME && detector.is_some();
+    if by_boxes || detector == Some(grounder) { DETECTOR_GROUNDER_NAME } else { grounder }
 }
 
 fn parameter_error(file: &Path, problem: &str) -> CommandError {

@@ -8,7 +8,7 @@ use crate::compare::tool_agent_eyes::ToolAgentEyes;
 use std::sync::Arc;
 use wayword_core::{LanguageModel, ModelError, Platform, View};
 use wayword_navigation::{
-    agents::{MOST_TEXT_CHARS, ModelWalker, ToolAgentSight, ToolWalkLimits, ViewDescriber},
+    agents::{MAX_INSTRUCTION_CHARS, ModelWalker, ToolAgentSight, ToolWalkLimits, ViewDescriber},
     walk::AgentWalkRecord,
 };
 use wayword_run::{
@@ -160,7 +160,7 @@ pub(super) struct WithheldWalks {
 }
 
 /// The command gives up after this many walks in which no reply was of use.
-const FRUITLESS_WALKS: usize = 20;
+const MAX_FRUITLESS_WALKS: usize = 20;
 
 impl WithheldWalks {
     /// Takes the walks of an item. Returns those that can be written to the folder now.
@@ -179,7 +179,7 @@ impl WithheldWalks {
         if self.has_spoken {
             return Ok(std::mem::take(&mut self.items));
         }
-        if self.walks < FRUITLESS_WALKS {
+        if self.walks < MAX_FRUITLESS_WALKS {
             return Ok(Vec::new());
         }
         Err(CommandError::usage(
@@ -201,9 +201,9 @@ impl WithheldWalks {
 /// Warns of texts that are longer than the part that the model gets.
 pub(super) fn warn_of_long_texts(items: &[ComparisonItem], output: &CommandOutput) {
     let texts = || items.iter().flat_map(|item| &item.texts).map(|text| text.text.chars().count());
-    let long = texts().filter(|chars| *chars > MOST_TEXT_CHARS).count();
+    let long = texts().filter(|chars| *chars > MAX_INSTRUCTION_CHARS).count();
     if long > 0 {
         let texts = count_phrase(long, "text");
-        output.say(format_args!("warning: of {texts} the model is told the first {MOST_TEXT_CHARS} characters"));
+        output.say(format_args!("warning: of {texts} the model is told the first {MAX_INSTRUCTION_CHARS} characters"));
     }
 }

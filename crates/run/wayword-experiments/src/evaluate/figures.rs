@@ -15,7 +15,7 @@ use wayword_metrics::{MeanEstimate, TrajectoryMetric, TrajectorySuccessRule};
 use wayword_run::count::count_phrase;
 
 /// Figures that depend on the rule of success; the others are the same under every rule.
-const BY_RULE: [TrajectoryMetric; 4] =
+const RULE_DEPENDENT_METRICS: [TrajectoryMetric; 4] =
     [TrajectoryMetric::SuccessRate, TrajectoryMetric::OracleSuccessRate, TrajectoryMetric::Spl, TrajectoryMetric::Sdtw];
 
 /// The settings of the bootstrap that gives the intervals: the number of resamples and the seed.
@@ -83,7 +83,7 @@ impl SubmissionReport {
         let by_rule = |rule: &TrajectorySuccessRule| RuleFigures {
             rule: *rule,
             words: rule_in_words(*rule, has_objects),
-            figures: compute_figures(scores, *rule, drawn, |metric| BY_RULE.contains(&metric)),
+            figures: compute_figures(scores, *rule, drawn, |metric| RULE_DEPENDENT_METRICS.contains(&metric)),
         };
         Self {
             submission: args.submission.display().to_string(),
@@ -100,7 +100,7 @@ impl SubmissionReport {
             drawn,
             rules: rules.iter().map(by_rule).collect(),
             whatever_the_rule: compute_figures(scores, TrajectorySuccessRule::Distance, drawn, |metric| {
-                !BY_RULE.contains(&metric)
+                !RULE_DEPENDENT_METRICS.contains(&metric)
             }),
         }
     }

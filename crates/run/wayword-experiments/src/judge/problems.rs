@@ -39,7 +39,7 @@ impl TrajectoryProblems {
     pub fn from_file(found: &submission::SubmissionProblems) -> Self {
         let to_problem =
             |problem: &wayword_formats::FormatError| TrajectoryProblem { instr_id: None, problem: problem.to_string() };
-        Self { told: found.told.iter().map(to_problem).collect(), untold: found.untold, missing: 0 }
+        Self { told: found.listed.iter().map(to_problem).collect(), untold: found.unlisted_count, missing: 0 }
     }
 
     /// Appends other problems.

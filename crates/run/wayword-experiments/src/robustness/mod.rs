@@ -189,8 +189,8 @@ fn change_setting<'a>(
             _ => SightSource::Pictures,
         },
         has_poses: base.paths.iter().all(|path| path.motion.is_known()),
-        draws: !matches!(name, "matterport" | "recording"),
-        graph,
+        can_render: !matches!(name, "matterport" | "recording"),
+        is_graph_bound: graph,
     })
 }
 
@@ -268,8 +268,14 @@ fn make_texts(
             _ => None,
         };
         let (scenes, demands) = (KnownScenes::new(), PlatformDemands::new(walked_platform.as_ref()));
-        let context =
-            ArmContext { arm, scenes, walks: walked_platform.as_ref(), demands, elsewhere, unchanged: &unchanged };
+        let context = ArmContext {
+            arm,
+            scenes,
+            walk_platform: walked_platform.as_ref(),
+            demands,
+            elsewhere,
+            unchanged: &unchanged,
+        };
         bar.inc((base.paths.len() - unwritten.len()) as u64);
         let make = |path: &&Path| {
             interrupt::check_interrupt()?;

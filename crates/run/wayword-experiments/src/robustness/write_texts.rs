@@ -50,7 +50,7 @@ pub(super) struct ArmContext<'a> {
     pub(super) arm: &'a RobustnessArm,
     pub(super) scenes: KnownScenes,
     /// The platform in which the agent walks, and the distances in its scenes.
-    pub(super) walks: &'a dyn Platform,
+    pub(super) walk_platform: &'a dyn Platform,
     pub(super) demands: PlatformDemands<'a>,
     /// The other platform, in an arm that changes the platform.
     pub(super) elsewhere: Option<OtherPlatformScenes>,
@@ -127,7 +127,7 @@ impl ArmTextWriter<'_> {
         if context.arm.is_walked() {
             for arm_text in &mut texts {
                 let Some(text) = &arm_text.text else { continue };
-                arm_text.arrived = reader::reader_arrives(context.walks, &context.demands, walked, text)?;
+                arm_text.arrived = reader::reader_arrives(context.walk_platform, &context.demands, walked, text)?;
             }
         }
         let path = Path { scene: walked.scene.clone(), ..path };
@@ -196,8 +196,8 @@ impl ArmTextWriter<'_> {
             let own_context = ArmContext {
                 arm: context.arm,
                 scenes: KnownScenes::new(),
-                walks: context.walks,
-                demands: PlatformDemands::new(context.walks),
+                walk_platform: context.walk_platform,
+                demands: PlatformDemands::new(context.walk_platform),
                 elsewhere: None,
                 unchanged: context.unchanged,
             };

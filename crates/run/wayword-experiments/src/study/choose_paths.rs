@@ -23,7 +23,7 @@ use wayword_world::path_of;
 
 /// The names of the two control conditions: texts that people wrote, and texts of other paths.
 const PEOPLE_CONDITION: &str = "people";
-const OTHER_PATH: &str = "other-path";
+const OTHER_PATH_CONDITION: &str = "other-path";
 
 /// A path with one text for each condition, in the order of the conditions.
 #[derive(Debug)]
@@ -32,7 +32,7 @@ pub(super) struct StudyWalk {
     pub(super) path: Path,
     pub(super) viewpoints: Vec<ViewpointId>,
     pub(super) start_heading: Heading,
-    pub(super) told: Vec<StudyText>,
+    pub(super) condition_texts: Vec<StudyText>,
 }
 
 /// A path that may become part of the study. It has no texts of the conditions yet.
@@ -66,7 +66,7 @@ pub(super) fn study_conditions(args: &StudyNew) -> Result<Vec<StudyCondition>, C
     }
     if args.include.contains(&StudyControl::OtherPath) {
         let of = if args.include.contains(&StudyControl::People) { PEOPLE_CONDITION } else { &args.run[0].name };
-        all.push(condition(OTHER_PATH, ConditionKind::OtherPath, of.to_owned()));
+        all.push(condition(OTHER_PATH_CONDITION, ConditionKind::OtherPath, of.to_owned()));
     }
     check_doubts(args, &all)?;
     let names: BTreeSet<&str> = all.iter().map(|condition| condition.name.as_str()).collect();
@@ -184,7 +184,7 @@ pub(super) fn choose_walks(
     let walk = |at: usize| {
         let CandidatePath { name, path, viewpoints, .. } = candidates[at].take()?;
         let start_heading = path.frames.first().map_or(Heading::NORTH, |frame| frame.pose.heading);
-        Some(StudyWalk { name, path, viewpoints, start_heading, told: chosen_texts.remove(&at)? })
+        Some(StudyWalk { name, path, viewpoints, start_heading, condition_texts: chosen_texts.remove(&at)? })
     };
     Ok(order.into_iter().filter_map(walk).collect())
 }

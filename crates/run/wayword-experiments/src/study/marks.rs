@@ -22,14 +22,19 @@ pub(super) fn mark_doubts(
     let is_shown = |text: &&StudyText| shown.contains(text.condition.as_str());
     let texts: Vec<(Path, String)> = walks
         .iter()
-        .flat_map(|walk| walk.told.iter().filter(is_shown).map(|text| (walk.path.clone(), text.text.clone())))
+        .flat_map(|walk| {
+            walk.condition_texts.iter().filter(is_shown).map(|text| (walk.path.clone(), text.text.clone()))
+        })
         .collect();
     if texts.is_empty() {
         return Ok(());
     }
     // The doubts come in the order of the texts, which is that of the loop below.
     let mut doubts = doubts_of(texts, platform, output)?.into_iter();
-    for text in walks.iter_mut().flat_map(|walk| &mut walk.told).filter(|text| shown.contains(text.condition.as_str()))
+    for text in walks
+        .iter_mut()
+        .flat_map(|walk| &mut walk.condition_texts)
+        .filter(|text| shown.contains(text.condition.as_str()))
     {
         text.marks = doubts.next().unwrap_or_default().into_iter().map(TextMark::from).collect();
     }

@@ -150,8 +150,8 @@ fn study_items(walks: &[StudyWalk], mode: StudyTask, has_practice: bool) -> Vec<
     for (route, walk) in (0..).zip(walks) {
         let is_practice = has_practice && route as usize == walks.len() - 1;
         let text_groups: Vec<Vec<StudyText>> = match mode {
-            StudyTask::Pair => text_pairs(&walk.told),
-            StudyTask::Follow | StudyTask::Rate => walk.told.iter().map(|text| vec![text.clone()]).collect(),
+            StudyTask::Pair => text_pairs(&walk.condition_texts),
+            StudyTask::Follow | StudyTask::Rate => walk.condition_texts.iter().map(|text| vec![text.clone()]).collect(),
         };
         let text_groups = if is_practice { &text_groups[..1] } else { &text_groups[..] };
         for texts in text_groups {

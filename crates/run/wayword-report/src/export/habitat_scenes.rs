@@ -11,7 +11,7 @@ use wayword_run::{error::CommandError, platforms, run_folder::settings_of, store
 /// The folder in which habitat-lab keeps scenes; a `scene_id` is a path below it.
 const SCENES_FOLDER: &str = "scene_datasets";
 /// Corners closer together than this count as one, metres.
-const SAME_M: f64 = 1e-3;
+const SAME_CORNER_M: f64 = 1e-3;
 
 /// Where the scenes of a run can be looked up: its Habitat scenes and its generated houses.
 pub(super) struct HabitatSceneSource {
@@ -20,7 +20,7 @@ pub(super) struct HabitatSceneSource {
     /// The generated houses, if the run has any.
     houses: Option<Box<dyn Platform>>,
     /// Why the first Habitat scene that failed could not be read.
-    lack: Option<String>,
+    first_problem: Option<String>,
 }
 
 impl HabitatSceneSource {
@@ -29,8 +29,8 @@ impl HabitatSceneSource {
         let has = |platform: &str| records.iter().any(|record| record.platform == platform);
         let houses = has("house").then(|| platforms::open_named("house", None, None, None).ok()).flatten();
         match has("habitat").then(|| open_scenes(run)).transpose() {
-            Ok(scenes) => Self { scenes, houses, lack: None },
-            Err(error) => Self { scenes: None, houses, lack: Some(first_line(&error)) },
+            Ok(scenes) => Self { scenes, houses, first_problem: None },
+            Err(error) => Self { scenes: None, houses, first_problem: Some(first_line(&error)) },
         }
     }
 
@@ -40,7 +40,7 @@ impl HabitatSceneSource {
         match (record.platform.as_str(), &self.scenes) {
             ("habitat", Some((platform, data))) => {
                 if let Err(error) = tell_of_scene(&**platform, data, &record.path, episode) {
-                    self.lack.get_or_insert_with(|| first_line(&error));
+                    self.first_problem.get_or_insert_with(|| first_line(&error));
                     episode.in_habitat = without_scene(scene);
                 }
             }
@@ -66,7 +66,7 @@ impl HabitatSceneSource {
                  come from the frames, not from the navmesh; make the scenes available and export again"
             )
         };
-        self.lack.as_ref().map(warning)
+        self.first_problem.as_ref().map(warning)
     }
 }
 
@@ -147,8 +147,8 @@ fn around_corners(platform: &dyn Platform, walk: &Walk, episode: &Episode) -> Re
         let corners = route.as_ref().map_or(&[][..], |route| &route.corners);
         // The first and the last corner are the two frames themselves.
         for corner in corners.iter().skip(1).rev().skip(1).rev() {
-            let is_new = path.last().is_none_or(|last| last.distance(*corner) > SAME_M);
-            if is_new && corner.distance(*floor) > SAME_M {
+            let is_new = path.last().is_none_or(|last| last.distance(*corner) > SAME_CORNER_M);
+            if is_new && corner.distance(*floor) > SAME_CORNER_M {
                 path.push(*corner);
             }
         }

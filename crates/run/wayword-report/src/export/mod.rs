@@ -43,7 +43,7 @@ use wayword_run::{
 };
 
 /// Most scenes for which the screen lists what the user has to do.
-const NEEDS_SHOWN: usize = 5;
+const MAX_SHOWN_SCENE_NEEDS: usize = 5;
 
 /// Result of an export into one file.
 #[derive(Debug, Serialize)]
@@ -234,8 +234,8 @@ fn tell_needs(scene_needs: &BTreeSet<String>, output: &CommandOutput) {
         return;
     }
     output.say(format_args!("do this so that Habitat finds the scenes (SCENES is its folder of scenes, scenes_dir):"));
-    scene_needs.iter().take(NEEDS_SHOWN).for_each(|needs| output.say(format_args!("  {needs}")));
-    if let Some(more) = scene_needs.len().checked_sub(NEEDS_SHOWN).filter(|more| *more > 0) {
+    scene_needs.iter().take(MAX_SHOWN_SCENE_NEEDS).for_each(|needs| output.say(format_args!("  {needs}")));
+    if let Some(more) = scene_needs.len().checked_sub(MAX_SHOWN_SCENE_NEEDS).filter(|more| *more > 0) {
         output.say(format_args!("  and {more} more; info.scene_needs of each episode says what it needs"));
     }
 }

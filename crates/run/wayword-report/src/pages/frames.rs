@@ -13,13 +13,13 @@ use wayword_core::{
 use wayword_run::run_folder::WalkRecord;
 
 /// Most sightings that a frame's card names. It only counts the others.
-const MOST_ON_CARD: usize = 6;
+const MAX_CARD_SIGHTINGS: usize = 6;
 
 /// Most boxes that are drawn on a picture; those with the lowest scores are left out.
-const MOST_BOXES: usize = 8;
+const MAX_PICTURE_BOXES: usize = 8;
 
 /// Directions that differ by less count as the same, radians.
-const SAME_RAD: f64 = 0.01;
+const SAME_DIRECTION_RAD: f64 = 0.01;
 
 /// A frame.
 #[derive(Debug, Serialize)]
@@ -99,8 +99,8 @@ pub(super) fn frame_views(walk: &WalkRecord, item: &str, shown: usize, pictures:
             room: observation.looks.iter().find_map(|look| look.caption.room.clone()),
             level: frame.level.filter(|_| walk.path.motion.is_known()),
             caption: observation.summary.clone(),
-            seen: seen.iter().take(MOST_ON_CARD).map(|sighting| sighting_words(sighting)).collect(),
-            seen_left_out: seen.len().saturating_sub(MOST_ON_CARD),
+            seen: seen.iter().take(MAX_CARD_SIGHTINGS).map(|sighting| sighting_words(sighting)).collect(),
+            seen_left_out: seen.len().saturating_sub(MAX_CARD_SIGHTINGS),
             turn: next.map(|next| turn_sign(next.turn())),
             then: next.map(move_words),
             looks: observation.looks.iter().map(|look| look_view(look, frame.pose.heading)).collect(),
@@ -115,7 +115,7 @@ fn sightings_by_witness(looks: &[CaptionedView], witness: WitnessAnswer) -> impl
 
 /// The boxes of a detector in the view ahead, because the picture shows this view.
 fn box_views(looks: &[CaptionedView], heading: Heading) -> Vec<BoxView> {
-    let ahead = looks.iter().filter(|look| look.gaze.heading.turn_to(heading).abs() < SAME_RAD);
+    let ahead = looks.iter().filter(|look| look.gaze.heading.turn_to(heading).abs() < SAME_DIRECTION_RAD);
     let seen =
         ahead.flat_map(|look| &look.caption.sightings).filter(|sighting| sighting.witness == WitnessAnswer::Seen);
     let mut found: Vec<(&ObjectSighting, DetectedBox)> =
@@ -133,7 +133,7 @@ fn box_views(looks: &[CaptionedView], heading: Heading) -> Vec<BoxView> {
                 height: (bottom - top).max(0.0),
             }
         };
-    found.into_iter().take(MOST_BOXES).map(view).collect()
+    found.into_iter().take(MAX_PICTURE_BOXES).map(view).collect()
 }
 
 fn sighting_words(sighting: &ObjectSighting) -> String {
@@ -184,7 +184,7 @@ fn exchange_view(exchange: &DialogueExchange) -> ExchangeView {
 
 /// The direction of a gaze in words: ahead if it follows the walker's heading, else a point of the compass or a side of the walker.
 fn direction_words(gaze: Heading, walker: Heading) -> &'static str {
-    let looks_to = |other: Heading| gaze.turn_to(other).abs() < SAME_RAD;
+    let looks_to = |other: Heading| gaze.turn_to(other).abs() < SAME_DIRECTION_RAD;
     if looks_to(walker) {
         return "ahead";
     }

@@ -12,7 +12,7 @@ use serde::Serialize;
 use wayword_core::{ObjectDistinction, PathTarget};
 
 /// Most frames of an item that are shown.
-const MOST_FRAMES: usize = 200;
+const MAX_ITEM_FRAMES: usize = 200;
 
 /// The template's values for an item.
 #[derive(Debug, Serialize)]
@@ -41,7 +41,7 @@ impl ItemView {
     /// An item with its pictures; `number` from 1.
     pub(super) fn new(number: usize, record: &ItemRecord, pictures: &mut PagePictures) -> Self {
         let (path, anchor) = (&record.walk.path, item_anchor(number));
-        let shown = path.frames.len().min(MOST_FRAMES);
+        let shown = path.frames.len().min(MAX_ITEM_FRAMES);
         let map = MapView::new(path, &record.walk.map, shown);
         let length_m = path.length_m().map(|length_m| format!("{length_m:.1}"));
         Self {

@@ -73,13 +73,13 @@ const ITEM_MAP_LIMITS: SheetLimits =
 /// Radius of the badge with a frame's number, units of the drawing.
 pub(crate) const BADGE_RADIUS: f64 = 9.5;
 /// The smallest distance between the centres of two badges, units: they may overlap a little, but each has to be readable.
-const LEAST_APART: f64 = 1.5 * BADGE_RADIUS;
+const MIN_BADGE_DISTANCE: f64 = 1.5 * BADGE_RADIUS;
 /// How far the control point of a hop back is from the straight line, units.
 const HOP_BACK_BEND: f64 = 32.0;
 /// A map with a stop farther than this from the first one, on either axis, is not drawn; nodes that far are left out. Metres.
-pub(crate) const MOST_SPAN_M: f64 = 2_000.0;
+pub(crate) const MAX_MAP_SPAN_M: f64 = 2_000.0;
 /// Most nodes of the graph that are drawn. The limits on edges are multiples of it.
-pub(crate) const MOST_NODES: usize = 4_000;
+pub(crate) const MAX_MAP_NODES: usize = 4_000;
 
 impl MapView {
     /// The map of the first `frames` frames, or `None` if their positions are not known or cannot be drawn.
@@ -95,13 +95,13 @@ impl MapView {
     /// The map of a trail, or `None` if its positions cannot be drawn.
     pub(super) fn draw_trail(map: &PathMap, trail: &MapTrail<'_>) -> Option<Self> {
         let first = *trail.stops.first()?;
-        let is_near = |x: f64, y: f64| (x - first.x).abs() <= MOST_SPAN_M && (y - first.y).abs() <= MOST_SPAN_M;
+        let is_near = |x: f64, y: f64| (x - first.x).abs() <= MAX_MAP_SPAN_M && (y - first.y).abs() <= MAX_MAP_SPAN_M;
         let all_stops = || trail.stops.iter().chain(trail.annotated);
         if !all_stops().all(|stop| is_near(stop.x, stop.y) && stop.z.is_finite()) {
             return None;
         }
         let nodes: Vec<Option<[f64; 2]>> =
-            map.nodes.iter().take(MOST_NODES).map(|[x, y]| is_near(*x, *y).then_some([*x, *y])).collect();
+            map.nodes.iter().take(MAX_MAP_NODES).map(|[x, y]| is_near(*x, *y).then_some([*x, *y])).collect();
         let sheet = MapSheet::around_points(all_stops().map(|stop| [stop.x, stop.y]), &ITEM_MAP_LIMITS)?;
         let places: Vec<Option<[f64; 2]>> = nodes.iter().map(|node| node.map(|node| sheet.place_point(node))).collect();
         let at: Vec<[f64; 2]> = trail.stops.iter().map(|stop| sheet.place_point([stop.x, stop.y])).collect();
@@ -145,7 +145,7 @@ impl<'a> MapTrail<'a> {
 
 fn edge_data(places: &[Option<[f64; 2]>], edges: &[[usize; 2]]) -> String {
     let mut data = String::new();
-    for [from, to] in edges.iter().take(2 * MOST_NODES) {
+    for [from, to] in edges.iter().take(2 * MAX_MAP_NODES) {
         if let (Some(Some(from)), Some(Some(to))) = (places.get(*from), places.get(*to)) {
             data.push_str(&line_data(*from, *to));
         }
@@ -210,7 +210,9 @@ pub(crate) fn place_spots(trail: &MapTrail<'_>, at: &[[f64; 2]], size: [f64; 2])
         let is_free = |spot: &[f64; 2]| {
             let is_inside = (0..2).all(|axis| spot[axis] >= BADGE_RADIUS && spot[axis] <= size[axis] - BADGE_RADIUS);
             is_inside
-                && spots.iter().all(|other| (spot[0] - other.badge[0]).hypot(spot[1] - other.badge[1]) >= LEAST_APART)
+                && spots
+                    .iter()
+                    .all(|other| (spot[0] - other.badge[0]).hypot(spot[1] - other.badge[1]) >= MIN_BADGE_DISTANCE)
         };
         // Distances from the frame, in radii of a badge.
         let beside = [2.3, 3.6, 5.0].into_iter().flat_map(|far| {
@@ -285,7 +287,7 @@ mod tests {
         for (at, spot) in map.spots.iter().enumerate() {
             for other in &map.spots[..at] {
                 let apart = (spot.badge[0] - other.badge[0]).hypot(spot.badge[1] - other.badge[1]);
-                assert!(apart >= LEAST_APART);
+                assert!(apart >= MIN_BADGE_DISTANCE);
             }
         }
         assert_eq!(map.spots.iter().map(|spot| spot.is_aside).collect::<Vec<_>>(), [false, true, true]);

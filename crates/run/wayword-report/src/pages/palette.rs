@@ -23,7 +23,7 @@ const VIRIDIS_STEPS: [[u8; 3]; 8] = [
     [170, 220, 50],
 ];
 /// Up to this many thousandths of the scale a white number is easier to read than a black one.
-const WHITE_UNTIL: usize = 498;
+const WHITE_INK_MAX_THOUSANDTHS: usize = 498;
 
 /// The colour of frame `at` (from 0) of `frames`.
 pub(crate) fn frame_colour(at: usize, frames: usize) -> FrameColour {
@@ -37,7 +37,7 @@ pub(crate) fn frame_colour(at: usize, frames: usize) -> FrameColour {
         (from * (1000 - rest) + to * rest + 500) / 1000
     };
     let fill = format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2));
-    FrameColour { fill, ink: if thousandths <= WHITE_UNTIL { "#fff" } else { "#000" } }
+    FrameColour { fill, ink: if thousandths <= WHITE_INK_MAX_THOUSANDTHS { "#fff" } else { "#000" } }
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use wayword_run::{
 };
 
 /// Most bytes of all pictures of a page together, 64 MiB, so that a phone can open it. Pictures beyond are left out.
-const MOST_BYTES_TOGETHER: u64 = 64 << 20;
+const MAX_PAGE_PICTURE_BYTES: u64 = 64 << 20;
 
 /// A picture inside a page.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -33,7 +33,7 @@ pub(super) struct PagePictures {
 
 impl PagePictures {
     pub(super) fn from_run(run: &Path) -> Self {
-        Self { folder: run.join(file::FRAMES), left_bytes: MOST_BYTES_TOGETHER, shown: 0, left_out: 0 }
+        Self { folder: run.join(file::FRAMES), left_bytes: MAX_PAGE_PICTURE_BYTES, shown: 0, left_out: 0 }
     }
 
     /// The picture of a frame (from 0) of an item.
@@ -55,7 +55,7 @@ mod tests {
     use super::*;
     use image::ImageFormat;
     use std::{fs, io::Cursor};
-    use wayword_run::pictures::{MOST_BYTES, MOST_SIDE_PX};
+    use wayword_run::pictures::{MAX_PICTURE_BYTES, MAX_PICTURE_SIDE_PX};
 
     fn jpeg(width_px: u32, height_px: u32) -> Vec<u8> {
         let mut bytes = Vec::new();
@@ -107,8 +107,8 @@ mod tests {
     fn take_leaves_out_large_files_and_other_formats() {
         let run = run();
         fs::write(run.path().join("frames/a_0.jpg"), "<svg onload='alert(1)'/>").unwrap();
-        fs::write(run.path().join("frames/a_1.jpg"), vec![0xff; MOST_BYTES as usize + 1]).unwrap();
-        fs::write(run.path().join("frames/a_2.jpg"), jpeg(MOST_SIDE_PX + 1, 1)).unwrap();
+        fs::write(run.path().join("frames/a_1.jpg"), vec![0xff; MAX_PICTURE_BYTES as usize + 1]).unwrap();
+        fs::write(run.path().join("frames/a_2.jpg"), jpeg(MAX_PICTURE_SIDE_PX + 1, 1)).unwrap();
         let mut pictures = PagePictures::from_run(run.path());
         assert!((0..3).all(|frame| pictures.take_picture("a", frame).is_none()));
     }

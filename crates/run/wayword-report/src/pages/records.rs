@@ -24,11 +24,11 @@ use wayword_run::{
 };
 
 /// Most bytes of lines in memory, 128 MiB, however many items the user wants to see. Items beyond are only counted.
-const MOST_BYTES: usize = 128 << 20;
+const MAX_LOADED_BYTES: usize = 128 << 20;
 /// Most different sets of roles that are shown.
-const MOST_ROLES: usize = 16;
+const MAX_ROLE_SETS: usize = 16;
 /// Most styles that are counted.
-const MOST_STYLES: usize = 64;
+const MAX_COUNTED_STYLES: usize = 64;
 
 /// A run as far as the page shows it.
 pub(super) struct ReportRecords {
@@ -104,7 +104,7 @@ impl ReportRecords {
             records.note_failed(line.parse()?, most_items);
             Ok(())
         })?;
-        let order = ItemOrder::from_walks(&run.join(file::WALKS), most_items, MOST_BYTES, &worst)?;
+        let order = ItemOrder::from_walks(&run.join(file::WALKS), most_items, MAX_LOADED_BYTES, &worst)?;
         records.take_items(run, &order)?;
         Ok(records)
     }
@@ -119,7 +119,7 @@ impl ReportRecords {
             } += 1;
             counts.ambiguous += usize::from(named.ambiguity.is_some_and(|ambiguity| ambiguity.is_ambiguous()));
         }
-        if self.roles.len() < MOST_ROLES {
+        if self.roles.len() < MAX_ROLE_SETS {
             self.roles.insert(named.provenance.into());
         }
         worst.note_state(named.path.id, state_from_verdict(named.verdict));
@@ -156,7 +156,7 @@ impl ReportRecords {
 
     /// The counts of a style; `None` for a new style beyond the limit.
     fn counts_of(&mut self, style: &str) -> Option<&mut StyleCounts> {
-        if !self.counts.contains_key(style) && self.counts.len() >= MOST_STYLES {
+        if !self.counts.contains_key(style) && self.counts.len() >= MAX_COUNTED_STYLES {
             return None;
         }
         Some(self.counts.entry(style.to_owned()).or_default())

@@ -15,10 +15,10 @@ use wayword_run::error::CommandError;
 pub(super) const WALKS_PER_PAGE: usize = 50;
 
 /// Characters that are escaped in an address: all but letters, digits and `-._~`.
-const IN_ADDRESS: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
+const ESCAPED_IN_ADDRESS: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
 
 /// How many bytes from the beginning of a page are searched for its mark. The mark ends within them, however long its names are.
-const MARK_WITHIN: u64 = 4096;
+const MARK_SEARCH_BYTES: u64 = 4096;
 
 /// The files of a report.
 pub(super) struct ReportFiles<'a> {
@@ -137,7 +137,7 @@ impl<'a> ReportFiles<'a> {
     /// Whether a file carries the mark of this report, so that it is one of the report's pages of paths.
     fn is_ours(&self, file: &Path) -> bool {
         let mut beginning = Vec::new();
-        let read = File::open(file).and_then(|file| file.take(MARK_WITHIN).read_to_end(&mut beginning));
+        let read = File::open(file).and_then(|file| file.take(MARK_SEARCH_BYTES).read_to_end(&mut beginning));
         read.is_ok() && String::from_utf8_lossy(&beginning).contains(&page_mark(&self.page_of))
     }
 }
@@ -150,7 +150,7 @@ fn page_mark(page_of: &str) -> String {
 /// The link to a file in the same folder.
 fn file_address(file: &Path) -> String {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
-    utf8_percent_encode(&name, IN_ADDRESS).to_string()
+    utf8_percent_encode(&name, ESCAPED_IN_ADDRESS).to_string()
 }
 
 #[cfg(test)]

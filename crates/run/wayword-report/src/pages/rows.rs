@@ -9,9 +9,9 @@ use std::collections::BTreeSet;
 use wayword_run::run_folder::FailedItem;
 
 /// Most characters of a text in a row. The rest is cut off; the section of the path shows the whole text.
-const MOST_CHARS: usize = 700;
+const MAX_ROW_CHARS: usize = 700;
 /// Most styles, and most scenes, that a reader can choose from. With more of them there is no choice.
-const MOST_CHOICES: usize = 200;
+const MAX_FILTER_CHOICES: usize = 200;
 /// Most rows that are printed on paper; the screen shows all.
 const MAX_PRINTED_ROWS: usize = 100;
 
@@ -94,7 +94,11 @@ impl TextList {
 /// Different names in their order; empty if there is only one, or too many to choose from.
 fn choices_among<'n>(names: impl Iterator<Item = &'n str>) -> Vec<String> {
     let names: BTreeSet<&str> = names.filter(|name| !name.is_empty()).collect();
-    if (2..=MOST_CHOICES).contains(&names.len()) { names.into_iter().map(str::to_owned).collect() } else { Vec::new() }
+    if (2..=MAX_FILTER_CHOICES).contains(&names.len()) {
+        names.into_iter().map(str::to_owned).collect()
+    } else {
+        Vec::new()
+    }
 }
 
 fn failed_row(failed: &FailedItem) -> TextRow {
@@ -140,7 +144,7 @@ fn of_item(item: &ItemRecord, href: &str) -> Vec<TextRow> {
 }
 
 fn cut_text(text: &str) -> String {
-    match text.char_indices().nth(MOST_CHARS) {
+    match text.char_indices().nth(MAX_ROW_CHARS) {
         Some((end, _)) => format!("{} …", &text[..end]),
         None => text.to_owned(),
     }
@@ -156,6 +160,6 @@ mod tests {
             let names: Vec<String> = (0..number).map(|name| format!("style-{name:03}")).collect();
             choices_among(names.iter().map(String::as_str)).len()
         };
-        assert_eq!([1, 2, MOST_CHOICES, MOST_CHOICES + 1].map(choice), [0, 2, MOST_CHOICES, 0]);
+        assert_eq!([1, 2, MAX_FILTER_CHOICES, MAX_FILTER_CHOICES + 1].map(choice), [0, 2, MAX_FILTER_CHOICES, 0]);
     }
 }

@@ -24,7 +24,7 @@ pub(crate) struct MapSheet {
 }
 
 /// Longest scale bar, units.
-const LONGEST_BAR: f64 = 90.0;
+const MAX_BAR_UNITS: f64 = 90.0;
 
 impl MapSheet {
     /// The sheet for places in world coordinates, metres; `None` if there are none, or they are too far apart for
@@ -60,7 +60,7 @@ impl MapSheet {
     /// The scale bar: its length in units, and in metres.
     pub(crate) fn scale_bar(&self) -> (f64, u32) {
         let bars = [1, 2, 5, 10, 20, 50, 100, 200, 500];
-        let bar_m = bars.into_iter().rfind(|m| f64::from(*m) * self.scale <= LONGEST_BAR).unwrap_or(1);
+        let bar_m = bars.into_iter().rfind(|m| f64::from(*m) * self.scale <= MAX_BAR_UNITS).unwrap_or(1);
         (round_to_tenth(f64::from(bar_m) * self.scale), bar_m)
     }
 }

@@ -12,7 +12,7 @@ use wayword_core::{
 };
 
 /// Most findings of an instruction that are shown.
-const MOST_FINDINGS: usize = 100;
+const MAX_SHOWN_FINDINGS: usize = 100;
 
 /// An instruction.
 #[derive(Debug, Serialize)]
@@ -149,7 +149,7 @@ fn finding_views(instruction: &Instruction) -> Vec<FindingView> {
         reason: finding.reason.clone(),
         words: finding.span.and_then(|span| instruction.text.get(span[0]..span[1])).map(str::to_owned),
     };
-    instruction.findings.iter().take(MOST_FINDINGS).map(view).collect()
+    instruction.findings.iter().take(MAX_SHOWN_FINDINGS).map(view).collect()
 }
 
 /// The possible meanings of an instruction, if there are several, and the thing by which its own end differs from the others.

@@ -13,7 +13,7 @@ use wayword_remote::{PriceTable, ProviderConfig, RemoteConfig, RequestConcurrenc
 
 /// Most requests at a time to one provider, where the user gives no number: the program raises the number step by step
 /// up to this.
-const MOST_AT_A_TIME: usize = 64;
+const MAX_CONCURRENT_REQUESTS: usize = 64;
 
 /// The path of the ledger: the one that a flag or the settings file gives, or else a file in the user's data folder. All runs share
 /// that file, so that a run does not pay again for a call of an earlier run.
@@ -87,7 +87,9 @@ pub(super) fn service_config(
 
 /// Requests at a time for each provider.
 pub(super) fn service_concurrency(service: &Service) -> RequestConcurrency {
-    service.concurrency.map_or(RequestConcurrency::Adaptive { most: MOST_AT_A_TIME }, RequestConcurrency::Fixed)
+    service
+        .concurrency
+        .map_or(RequestConcurrency::Adaptive { most: MAX_CONCURRENT_REQUESTS }, RequestConcurrency::Fixed)
 }
 
 /// The user's list of prices, or the built-in one. The errors of a list end in a hint, which is split off here.

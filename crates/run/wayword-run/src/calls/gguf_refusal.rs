@@ -9,7 +9,7 @@ use std::{borrow::Cow, path::Path};
 
 /// Longest tag that Ollama takes, characters. No Ollama command is shown for a longer file name, and aliases are cut to
 /// this.
-const LONGEST_TAG: usize = 80;
+const MAX_TAG_CHARS: usize = 80;
 
 /// The error for a model in process that is named by a GGUF file; `None` for any other name.
 pub(super) fn refuse_gguf(name: &str) -> Option<CommandError> {
@@ -32,7 +32,7 @@ fn on_hub(repo: &str, file: &str) -> String {
     let alias = model_alias(file);
     let mut servers = String::new();
     // Ollama takes no tag that has to be escaped, or that names a file in a folder.
-    if file.len() <= LONGEST_TAG && file.chars().all(is_plain) {
+    if file.len() <= MAX_TAG_CHARS && file.chars().all(is_plain) {
         servers =
             server_line("Ollama", &format!("ollama run hf.co/{repo}:{file}"), &format!("ollama/hf.co/{repo}:{file}"));
     }
@@ -57,7 +57,7 @@ fn server_line(server: &str, command: &str, name: &str) -> String {
 /// The name of a model, made from its file's name.
 fn model_alias(file: &str) -> String {
     let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
-    stem.chars().map(|c| if is_plain(c) { c } else { '-' }).take(LONGEST_TAG).collect()
+    stem.chars().map(|c| if is_plain(c) { c } else { '-' }).take(MAX_TAG_CHARS).collect()
 }
 
 fn is_plain(c: char) -> bool {

@@ -41,13 +41,13 @@ pub struct ModelCalls {
     /// The name in the ledger that the calls are booked under, with its limits.
     run: LedgerRun,
     /// The ledger, if each chunk of the run keeps its calls in a recording of its own; else `None`.
-    in_chunks: Option<Ledger>,
+    chunk_ledger: Option<Ledger>,
     /// The file of `--record`.
     record: Option<PathBuf>,
     /// Number of items to make at the same time.
     workers: usize,
     /// Whether calls wait for a network.
-    waits: bool,
+    waits_for_network: bool,
 }
 
 impl ModelCalls {
@@ -121,7 +121,15 @@ impl ModelCalls {
         // cores.
         let waits = models.iter().any(|name| !is_in_process(name));
         let workers = if waits { service_concurrency(service).thread_count() } else { core_count() };
-        Ok(Some(Self { services, local, run, in_chunks, record: service.record.clone(), workers, waits }))
+        Ok(Some(Self {
+            services,
+            local,
+            run,
+            chunk_ledger: in_chunks,
+            record: service.record.clone(),
+            workers,
+            waits_for_network: waits,
+        }))
     }
 
     /// A model by its name.
@@ -173,7 +181,7 @@ impl ModelCalls {
     /// # Errors
     /// When the recording cannot be read or written.
     pub fn turn_to(&self, recording: &Path) -> Result<(), CommandError> {
-        self.in_chunks.as_ref().map_or(Ok(()), |ledger| Ok(ledger.turn_to(recording)?))
+        self.chunk_ledger.as_ref().map_or(Ok(()), |ledger| Ok(ledger.turn_to(recording)?))
     }
 
     /// The calls, tokens and money of this command so far.
@@ -203,7 +211,7 @@ impl ModelCalls {
     /// with one view each; the views of a last single path are spread over all workers.
     #[must_use]
     pub fn views_at_once(&self, items_left: usize) -> usize {
-        if self.waits { self.workers.div_ceil(items_left.clamp(1, self.workers.max(1))) } else { 1 }
+        if self.waits_for_network { self.workers.div_ceil(items_left.clamp(1, self.workers.max(1))) } else { 1 }
     }
 
     /// A function that stops the sending. Calls in flight are finished, and their answers kept.

@@ -227,15 +227,15 @@ impl TextChecker<'_> {
         let text_world = |text: &FileText| world_of(text, how.world, platform.name(), source);
         let some_are_open = walk.texts.iter().any(|text| text_world(text) == CheckWorld::Open);
         let scene = Some(self.scenes.get_or_survey(platform, &walk.path.scene)?);
-        evidence.beyond = scene.as_ref().map(|scene| scene.listed.beyond_end(&walk.path)).unwrap_or_default();
-        let surroundings = scene.as_ref().and_then(|scene| PathSurroundings::around_path(&scene.listed, &walk.path));
+        evidence.beyond = scene.as_ref().map(|scene| scene.inventory.beyond_end(&walk.path)).unwrap_or_default();
+        let surroundings = scene.as_ref().and_then(|scene| PathSurroundings::around_path(&scene.inventory, &walk.path));
         let reach = WorldReach { surroundings: surroundings.as_ref(), calibration: self.calibration };
         let followed = (!how.without_route).then(|| FollowedPath::new(scene.as_deref(), &walk.path, &evidence));
         let uses_witnesses = some_are_open && !how.without_witnesses && walk.texts.len() > 1;
         // A text of a Wayword record is no witness: one writer wrote all texts of its run, with the same mistakes in
         // each.
         let testimony = |text: &FileText| {
-            (uses_witnesses && text.made.is_none()).then(|| Testimony::from_text(&text.words, &evidence))
+            (uses_witnesses && text.origin.is_none()).then(|| Testimony::from_text(&text.words, &evidence))
         };
         let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
         let checked = walk.texts.iter().zip(&testimonies).map(|(text, own_testimony)| {

@@ -28,13 +28,13 @@ pub(super) struct FileText {
     /// The tag of its language, where the file gives one.
     pub(super) tag: Option<String>,
     /// Its platform and provenance, if the file has them.
-    pub(super) made: Option<(String, TextProvenance)>,
+    pub(super) origin: Option<(String, TextProvenance)>,
 }
 
 impl FileText {
     /// A text of a dataset, which has no provenance.
     fn of_dataset(path: &Path, words: String, tag: Option<String>) -> Self {
-        Self { at: 0, path: path.id.clone(), words, style: None, tag, made: None }
+        Self { at: 0, path: path.id.clone(), words, style: None, tag, origin: None }
     }
 }
 
@@ -59,7 +59,7 @@ pub(super) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
                     name: instruction.style,
                     hash: instruction.provenance.style_hash.clone(),
                 }),
-                made: Some((made_on, instruction.provenance)),
+                origin: Some((made_on, instruction.provenance)),
             };
             walks.add_text(path, text);
         }

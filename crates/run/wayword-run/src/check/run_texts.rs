@@ -134,7 +134,7 @@ fn read_texts(file: &FilePath) -> Result<Vec<RunText>, CommandError> {
         {
             let style = StyleReference { name: instruction.style, hash: instruction.provenance.style_hash.clone() };
             let (words, made) = (instruction.text, Some((platform, instruction.provenance)));
-            let text = FileText { at, path: path.id.clone(), words, tag: None, style: Some(style), made };
+            let text = FileText { at, path: path.id.clone(), words, tag: None, style: Some(style), origin: made };
             all.push(RunText { text, path: RunPathKey::Id(path.id) });
         }
         return Ok(all);
@@ -148,7 +148,7 @@ fn read_texts(file: &FilePath) -> Result<Vec<RunText>, CommandError> {
                 words: words.clone(),
                 tag,
                 style: None,
-                made: None,
+                origin: None,
             };
             let path = RunPathKey::Way {
                 scene: episode.scene.clone(),

@@ -8,7 +8,7 @@ use wayword_checks::{CheckWorld, EvidenceSource};
 /// source of evidence as in this check, because such a text was written from this evidence, and open for every other
 /// text.
 pub(super) fn world_of(text: &FileText, asked: AskedWorld, platform: &str, source: EvidenceSource) -> CheckWorld {
-    match (asked, &text.made) {
+    match (asked, &text.origin) {
         (AskedWorld::Open, _) | (AskedWorld::Auto, None) => CheckWorld::Open,
         (AskedWorld::Closed, _) => CheckWorld::Closed,
         (AskedWorld::Auto, Some((made_on, provenance))) => CheckWorld::of_record(provenance, made_on, platform, source),

@@ -15,7 +15,7 @@ pub(super) struct ItemSpan {
     /// The part that failed, if it is known before the item is kept.
     failed: &'static str,
     /// Whether the outcome of the item was recorded.
-    is_told: bool,
+    is_recorded: bool,
 }
 
 impl ItemSpan {
@@ -32,7 +32,7 @@ impl ItemSpan {
             making_s = Empty,
             otel.status_code = Empty,
         );
-        Self { span, written: 0, failed: "other", is_told: false }
+        Self { span, written: 0, failed: "other", is_recorded: false }
     }
 
     /// Makes the item within the span. Finished items wait for their turn to be kept, so the time of the making is recorded in a
@@ -77,14 +77,14 @@ impl ItemSpan {
     }
 
     fn record_outcome(&mut self, outcome: &str) {
-        self.is_told = true;
+        self.is_recorded = true;
         self.span.record("outcome", outcome);
     }
 }
 
 impl Drop for ItemSpan {
     fn drop(&mut self) {
-        if !self.is_told {
+        if !self.is_recorded {
             self.record_outcome("dropped");
         }
     }

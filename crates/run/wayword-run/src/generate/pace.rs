@@ -16,7 +16,7 @@ use std::{
 const PACE_WINDOW: Duration = Duration::from_secs(60);
 /// After this many finished items, their real number of calls counts as much as the expected number; after more, it
 /// counts more.
-const HALF_TRUSTED: f64 = 3.0;
+const HALF_TRUST_ITEMS: f64 = 3.0;
 /// Time between two looks at the calls.
 const LOOK_INTERVAL: Duration = Duration::from_secs(1);
 /// Without a terminal, lines are printed instead of a bar: the first after this time, the next ones at growing
@@ -96,7 +96,7 @@ impl CallPace {
         let (items, done) = (self.items as f64, self.done.load(Ordering::Relaxed) as f64);
         // Items in work are half done on average.
         let begun = done + (items - done).min(self.workers as f64) / 2.0;
-        let trust = done / (done + HALF_TRUSTED);
+        let trust = done / (done + HALF_TRUST_ITEMS);
         let per_item = trust * made / begun.max(1.0) + (1.0 - trust) * self.expected;
         if done >= items { made } else { (per_item * items).max(made) }
     }

@@ -7,7 +7,7 @@ use crate::{
     error::{CommandError, Exit},
     interrupt,
     lookout::DetectorLookout,
-    losses::{LossCounter, MOST_IN_A_ROW},
+    losses::{LossCounter, MAX_FAILURES_IN_A_ROW},
     output::CommandOutput,
     run_folder::RunFolder,
 };
@@ -37,7 +37,7 @@ pub(super) struct RunProgress<'a> {
     unflushed: usize,
     losses: LossCounter,
     /// The reason and the number of the items so far, if all have failed for the same reason.
-    nothing_but: Option<(String, usize)>,
+    same_lack: Option<(String, usize)>,
     /// Set once the run has to stop.
     stop: Option<RunStop>,
 }
@@ -62,7 +62,7 @@ impl<'a> RunProgress<'a> {
             left,
             unflushed: 0,
             losses: LossCounter::default(),
-            nothing_but: Some((String::new(), 0)),
+            same_lack: Some((String::new(), 0)),
             stop: None,
         }
     }
@@ -104,7 +104,10 @@ impl<'a> RunProgress<'a> {
                 (false, true) => ("failed for the same reason", Exit::BadInput),
                 (false, false) => return None,
             };
-            Some(RunStop { reason: format!("{MOST_IN_A_ROW} items in a row {what}; the last reason: {reason}"), exit })
+            Some(RunStop {
+                reason: format!("{MAX_FAILURES_IN_A_ROW} items in a row {what}; the last reason: {reason}"),
+                exit,
+            })
         });
         Ok(self.stop.is_none())
     }
@@ -112,12 +115,12 @@ impl<'a> RunProgress<'a> {
     /// Whether the first items of a run all failed because the same thing is missing (for example a model that sees), so that
     /// the other items would fail too.
     fn lacks_for_all(&mut self, failed: Option<&(FailureKind, String)>) -> bool {
-        self.nothing_but = match (self.nothing_but.take(), failed) {
+        self.same_lack = match (self.same_lack.take(), failed) {
             (Some((_, 0)), Some((FailureKind::Missing, reason))) => Some((reason.clone(), 1)),
             (Some((same, number)), Some((FailureKind::Missing, reason))) if same == *reason => Some((same, number + 1)),
             _ => None,
         };
-        self.nothing_but.as_ref().is_some_and(|(_, number)| *number >= MOST_IN_A_ROW)
+        self.same_lack.as_ref().is_some_and(|(_, number)| *number >= MAX_FAILURES_IN_A_ROW)
     }
 
     /// Finishes the bar. Returns the reason if the run stopped before its end.

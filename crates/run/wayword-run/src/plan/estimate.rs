@@ -78,7 +78,7 @@ const TYPICAL_CAPTION: &str = "A living room with a grey sofa on the left, a woo
 const TYPICAL_INSTRUCTION: &str = "Walk past the grey sofa and turn left at the bookcase. Go through the doorway into the hallway and stop next to the small table.";
 /// The share of its possible follow-up questions that a dialogue asks on average, because it ends after two answers
 /// without news.
-const USUAL_SHARE: f64 = 0.55;
+const USUAL_QUESTION_SHARE: f64 = 0.55;
 /// Questions that a structured answer leaves open, for each hundred views. The scripted eye leaves about as many.
 const OPEN_PER_HUNDRED_VIEWS: u64 = 60;
 /// Tokens of a typical reply of each kind: a question, an answer, a structured answer, and so on.
@@ -163,7 +163,7 @@ fn max_questions(settings: &RunSettings) -> usize {
 /// The average number of questions per view.
 fn usual_questions(settings: &RunSettings) -> usize {
     match settings.perception {
-        Perception::Dialogue => 1 + (settings.questions as f64 * USUAL_SHARE).round() as usize,
+        Perception::Dialogue => 1 + (settings.questions as f64 * USUAL_QUESTION_SHARE).round() as usize,
         Perception::Fixed | Perception::Single | Perception::Structured => max_questions(settings),
         Perception::FollowUp => 1,
     }
@@ -259,7 +259,8 @@ fn write_load(
     let walk = ObservedWalk::new(path.clone(), vec![seen; path.frames.len()]);
     let memory = walk.memory();
     let mut load = CallLoad::default();
-    let pictures = if settings.roles.write_sees { path.frames.len().min(pipeline::MOST_SHOWN) as u64 } else { 0 };
+    let pictures =
+        if settings.roles.write_sees { path.frames.len().min(pipeline::MAX_SHOWN_PICTURES) as u64 } else { 0 };
     for MeasuredStyle { style, profile, .. } in styles {
         let earlier: Vec<String> = (0..settings.per_path).map(|_| TYPICAL_INSTRUCTION.to_owned()).collect();
         for number in 0..settings.per_path {

@@ -41,12 +41,12 @@ pub(super) fn hash_inputs(job: &RunJob, styles: &[MeasuredStyle]) -> Result<BTre
 }
 
 /// Fields of a provider that have no influence on answers, and so may change between two commands of a run.
-const WITHOUT_EFFECT: [&str; 3] = ["requests_per_minute", "tokens_per_minute", "key_env"];
+const FIELDS_WITHOUT_EFFECT: [&str; 3] = ["requests_per_minute", "tokens_per_minute", "key_env"];
 
 fn hash_providers(providers: &ProviderTables) -> String {
     let mut hash = Sha256::new();
     for (name, table) in providers {
-        let effective = table.iter().filter(|(field, _)| !WITHOUT_EFFECT.contains(&field.as_str()));
+        let effective = table.iter().filter(|(field, _)| !FIELDS_WITHOUT_EFFECT.contains(&field.as_str()));
         hash.update(format!("{name}: {:?}\n", effective.collect::<Vec<_>>()));
     }
     short_hex(hash)

@@ -27,7 +27,7 @@ pub use python_worlds::{forget_inside, put_inside};
 pub use remembering::RememberingPlatform;
 
 /// Number of scene surveys that a command keeps in memory.
-pub const SCENES_KEPT: usize = 128;
+pub const MAX_KEPT_SURVEYS: usize = 128;
 
 /// Whether random paths of a platform can have hops. Elsewhere they run over open ground, and `--hops` has no effect. A
 /// recording with poses has none either, but whether it has poses is known only once it is opened.

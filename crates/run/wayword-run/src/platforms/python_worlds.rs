@@ -9,7 +9,7 @@ use std::{
 use wayword_platforms::process::ProcessOptions;
 
 /// The prefix of `--data` for a registered world, as in `python:Rooms`.
-const INSIDE_SCHEME: &str = "python:";
+const PYTHON_SCHEME: &str = "python:";
 
 /// The registered worlds, by their values of `--data`.
 static INSIDE_WORLDS: Mutex<BTreeMap<String, ProcessOptions>> = Mutex::new(BTreeMap::new());
@@ -17,7 +17,7 @@ static INSIDE_WORLDS: Mutex<BTreeMap<String, ProcessOptions>> = Mutex::new(BTree
 /// Registers a world under a name, and replaces an older one of that name. Returns the value of `--data` for it.
 #[must_use]
 pub fn put_inside(name: &str, options: ProcessOptions) -> PathBuf {
-    let data = format!("{INSIDE_SCHEME}{name}");
+    let data = format!("{PYTHON_SCHEME}{name}");
     lock_worlds().insert(data.clone(), options);
     data.into()
 }
@@ -33,7 +33,7 @@ pub fn forget_inside(data: &Path) {
 /// When no world of that name is registered.
 pub(super) fn find_inside(data: &Path) -> Result<Option<ProcessOptions>, CommandError> {
     let data = data.to_string_lossy();
-    let Some(name) = data.strip_prefix(INSIDE_SCHEME) else { return Ok(None) };
+    let Some(name) = data.strip_prefix(PYTHON_SCHEME) else { return Ok(None) };
     lock_worlds().get(&*data).cloned().map(Some).ok_or_else(|| {
         CommandError::usage(
             format!("world {name} is an object of a Python program, and is not here"),

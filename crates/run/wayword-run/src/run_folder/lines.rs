@@ -10,7 +10,7 @@ use std::{
 };
 
 /// Longest line that is read, bytes. A longer one is an error.
-const MOST_LINE_BYTES: usize = 16 << 20;
+const MAX_LINE_BYTES: usize = 16 << 20;
 
 /// A whole line of a file.
 pub struct RecordLine<'a> {
@@ -36,11 +36,11 @@ pub fn each_line(
     let mut bytes = Vec::new();
     for number in 1.. {
         bytes.clear();
-        let most = MOST_LINE_BYTES as u64 + 1;
+        let most = MAX_LINE_BYTES as u64 + 1;
         reader.by_ref().take(most).read_until(b'\n', &mut bytes).map_err(CommandError::io(path, "read"))?;
         let line = RecordLine { path, number, bytes: &bytes };
-        if bytes.len() > MOST_LINE_BYTES {
-            return Err(line.broken_line(format_args!("it is longer than {} MiB", MOST_LINE_BYTES >> 20)));
+        if bytes.len() > MAX_LINE_BYTES {
+            return Err(line.broken_line(format_args!("it is longer than {} MiB", MAX_LINE_BYTES >> 20)));
         }
         if bytes.last() != Some(&b'\n') {
             break;
@@ -106,6 +106,6 @@ mod tests {
 
     #[test]
     fn a_line_without_end_is_refused() {
-        assert!(numbers(&" ".repeat(MOST_LINE_BYTES + 1)).unwrap_err().to_string().contains("longer than"));
+        assert!(numbers(&" ".repeat(MAX_LINE_BYTES + 1)).unwrap_err().to_string().contains("longer than"));
     }
 }

@@ -13,7 +13,7 @@ use std::{
 use wayword_core::{Platform, PlatformError, SceneId};
 
 /// A file up to this size, bytes, is hashed whole; of a larger one only its beginning, middle and end are hashed.
-const MOST_WHOLE: u64 = 8 << 20;
+const MAX_WHOLE_BYTES: u64 = 8 << 20;
 /// Size of each of these three samples, bytes.
 const SAMPLE_BYTES: u64 = 64 << 10;
 /// How much of the beginning of a picture is hashed, bytes, because a scene may have thousands of pictures. The length
@@ -160,7 +160,7 @@ fn hash_of(path: &Path) -> io::Result<String> {
     let is_picture = path.extension().is_some_and(|ending| ["jpg", "jpeg", "png"].iter().any(|known| ending == *known));
     if is_picture {
         io::copy(&mut file.take(PICTURE_HEAD_BYTES), &mut hash)?;
-    } else if length <= MOST_WHOLE {
+    } else if length <= MAX_WHOLE_BYTES {
         io::copy(&mut file, &mut hash)?;
     } else {
         for start in [0, (length - SAMPLE_BYTES) / 2, length - SAMPLE_BYTES] {
@@ -179,7 +179,7 @@ mod tests {
     fn hash_of_a_large_file_depends_on_its_end_and_length() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.glb");
-        let mut bytes = vec![7; MOST_WHOLE as usize + 5];
+        let mut bytes = vec![7; MAX_WHOLE_BYTES as usize + 5];
         fs::write(&path, &bytes).unwrap();
         let before = hash_of(&path).unwrap();
         assert_eq!(hash_of(&path).unwrap(), before);

@@ -175,19 +175,19 @@ const DEFAULT_PATHS: usize = 10;
 /// Default of how often a text that failed is written again.
 const DEFAULT_REPAIRS: u32 = 8;
 /// Default of the repairs if a model writes: fewer, because each repair costs a call.
-const REPAIRS_OF_MODELS: u32 = 3;
+const DEFAULT_MODEL_REPAIRS: u32 = 3;
 /// Default of how many texts are written, of which one is kept. If a model writes, it is 1, because each costs a call.
 const DEFAULT_CANDIDATES: u32 = 4;
 /// Largest `--candidates`, texts. A larger number is refused, as for the limits below.
-const MOST_CANDIDATES: u32 = 32;
+const MAX_CANDIDATES: u32 = 32;
 /// Largest `--repairs`.
-const MOST_REPAIRS: u32 = 100;
+const MAX_REPAIRS: u32 = 100;
 /// Largest `--questions`: each question carries the whole dialogue before it.
-const MOST_QUESTIONS: usize = 100;
+const MAX_QUESTIONS: usize = 100;
 /// Largest `--per-path`: later texts of a path differ ever less from the earlier ones.
-const MOST_PER_PATH: usize = 9;
+const MAX_PER_PATH: usize = 9;
 /// Largest `--paths`.
-const MOST_PATHS: usize = 1_000_000;
+const MAX_PATHS: usize = 1_000_000;
 
 /// The settings of a run, and how it may reach models.
 #[derive(Debug, Clone, PartialEq)]
@@ -247,9 +247,9 @@ impl AskedSettings {
                 "give at least 1, or leave the flag out for all",
             ));
         }
-        if paths > MOST_PATHS {
+        if paths > MAX_PATHS {
             return Err(CommandError::usage(
-                format!("--paths {paths} is more than {MOST_PATHS}"),
+                format!("--paths {paths} is more than {MAX_PATHS}"),
                 "make several runs, each with its own --seed",
             ));
         }
@@ -259,34 +259,34 @@ impl AskedSettings {
                 "give one of them",
             ));
         }
-        if writing.repairs.is_some_and(|repairs| repairs > MOST_REPAIRS) {
+        if writing.repairs.is_some_and(|repairs| repairs > MAX_REPAIRS) {
             return Err(CommandError::usage(
-                format!("--repairs is more than {MOST_REPAIRS}"),
+                format!("--repairs is more than {MAX_REPAIRS}"),
                 "give fewer: a text that fails that often will not pass later",
             ));
         }
-        if writing.candidates.is_some_and(|candidates| !(1..=MOST_CANDIDATES).contains(&candidates)) {
+        if writing.candidates.is_some_and(|candidates| !(1..=MAX_CANDIDATES).contains(&candidates)) {
             return Err(CommandError::usage(
-                format!("--candidates is not from 1 to {MOST_CANDIDATES}"),
+                format!("--candidates is not from 1 to {MAX_CANDIDATES}"),
                 "give a number in that range: each further text gains less",
             ));
         }
-        if writing.per_path.is_some_and(|number| !(1..=MOST_PER_PATH).contains(&number)) {
+        if writing.per_path.is_some_and(|number| !(1..=MAX_PER_PATH).contains(&number)) {
             return Err(CommandError::usage(
-                format!("--per-path is not from 1 to {MOST_PER_PATH}"),
+                format!("--per-path is not from 1 to {MAX_PER_PATH}"),
                 "for more texts make several runs, each with its own --seed",
             ));
         }
-        if writing.questions.is_some_and(|questions| questions > MOST_QUESTIONS) {
+        if writing.questions.is_some_and(|questions| questions > MAX_QUESTIONS) {
             return Err(CommandError::usage(
-                format!("--questions is more than {MOST_QUESTIONS}"),
+                format!("--questions is more than {MAX_QUESTIONS}"),
                 "give fewer: after about nine questions a dialogue brings little that is new",
             ));
         }
         let request = resolve_request(walks.hops.as_deref(), walks.metres.as_deref())?;
         let roles = roles.resolve()?;
         let (repairs, candidates) = match roles.write {
-            RolePlayer::Model(_) => (REPAIRS_OF_MODELS, 1),
+            RolePlayer::Model(_) => (DEFAULT_MODEL_REPAIRS, 1),
             RolePlayer::Rules | RolePlayer::Labels => (DEFAULT_REPAIRS, DEFAULT_CANDIDATES),
         };
         let perception = writing.perception.unwrap_or_else(|| Perception::default_for(&roles.see));
@@ -474,7 +474,7 @@ mod tests {
             }
             .resolve()
         };
-        assert!(asked(MOST_QUESTIONS).is_ok() && asked(MOST_QUESTIONS + 1).is_err() && asked(usize::MAX).is_err());
+        assert!(asked(MAX_QUESTIONS).is_ok() && asked(MAX_QUESTIONS + 1).is_err() && asked(usize::MAX).is_err());
     }
 
     #[test]

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// Default for the longer side of the pictures that models are sent, pixels.
-const PICTURE_PX: u32 = 512;
+const DEFAULT_PICTURE_PX: u32 = 512;
 /// Largest `--picture-px`, pixels. A larger number is refused.
-const MOST_PICTURE_PX: u32 = 4096;
+const MAX_PICTURE_PX: u32 = 4096;
 
 group! {
     /// Who plays which role in a run: flags, and the table `[roles]` of a settings file.
@@ -127,7 +127,7 @@ impl Default for RunRoles {
             write_sees: false,
             finish: FailureFinish::default(),
             base_url: None,
-            picture_px: PICTURE_PX,
+            picture_px: DEFAULT_PICTURE_PX,
             precision: None,
             prompts: None,
         }
@@ -157,9 +157,9 @@ impl AskedRoles {
             (None, None) => Ok(none),
         };
         let picture_px = self.picture_px.unwrap_or(default.picture_px);
-        if !(32..=MOST_PICTURE_PX).contains(&picture_px) {
+        if !(32..=MAX_PICTURE_PX).contains(&picture_px) {
             return Err(CommandError::usage(
-                format!("--picture-px {picture_px} is not from 32 to {MOST_PICTURE_PX}"),
+                format!("--picture-px {picture_px} is not from 32 to {MAX_PICTURE_PX}"),
                 "most models look at 300 to 1600 pixels",
             ));
         }

@@ -99,7 +99,7 @@ impl Service {
         if self.max_usd.is_some_and(|usd| !usd.is_finite() || usd < 0.0) {
             return refuse("--max-usd", "give US dollars, as in --max-usd 2.50");
         }
-        if self.concurrency.is_some_and(|at_a_time| !(1..=MOST_CONCURRENCY).contains(&at_a_time)) {
+        if self.concurrency.is_some_and(|at_a_time| !(1..=MAX_CONCURRENCY).contains(&at_a_time)) {
             return refuse("--concurrency", "give a number from 1 to 512");
         }
         if self.timeout_s.is_some_and(|timeout_s| !(0.1..=3600.0).contains(&timeout_s)) {
@@ -123,7 +123,7 @@ impl Service {
 }
 
 /// Largest `--concurrency`, requests at the same time. A larger number is refused.
-const MOST_CONCURRENCY: usize = 512;
+const MAX_CONCURRENCY: usize = 512;
 
 #[cfg(test)]
 mod tests {

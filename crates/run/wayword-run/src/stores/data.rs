@@ -14,7 +14,7 @@ use wayword_core::hex_text;
 use wayword_queue::{QueueError, cloud::CloudBucket};
 
 /// Largest data of one address that is fetched, bytes (4 TiB). More is an error.
-const MOST_BYTES: u64 = 1 << 42;
+const MAX_FETCHED_BYTES: u64 = 1 << 42;
 /// Time between two messages about the progress.
 const PROGRESS_INTERVAL: Duration = Duration::from_secs(10);
 

@@ -11,11 +11,11 @@ use wayword_queue::{ChunkBoard, ChunkPlan, PLAN, QueueError, WORKERS_FILE, worke
 /// The place of a run.
 pub struct RunPlace {
     /// The folder or address that the user gave.
-    named: PathBuf,
+    named_path: PathBuf,
     /// The folder in which this process works. For a run in an object store this is a folder of this process alone.
     folder: PathBuf,
     /// The run in its object store; `None` for a run in a folder.
-    stored: Option<CloudRun>,
+    cloud_run: Option<CloudRun>,
 }
 
 impl RunPlace {
@@ -26,12 +26,12 @@ impl RunPlace {
     /// When the address cannot be used, or this build cannot reach object stores.
     pub fn open_named(named: &Path) -> Result<Self, CommandError> {
         let Some(address) = store_address(named) else {
-            return Ok(Self { named: named.to_owned(), folder: named.to_owned(), stored: None });
+            return Ok(Self { named_path: named.to_owned(), folder: named.to_owned(), cloud_run: None });
         };
         let folder = std::env::temp_dir().join(format!("wayword-{}", worker_name()));
         own_folder(&folder).map_err(CommandError::io(&folder, "make a folder for temporary files"))?;
         let stored = CloudRun::open(address, &folder)?;
-        let place = Self { named: named.to_owned(), folder, stored: Some(stored) };
+        let place = Self { named_path: named.to_owned(), folder, cloud_run: Some(stored) };
         place.with_store(|stored| {
             stored.fetch_file(PLAN)?;
             stored.fetch_file(WORKERS_FILE)
@@ -72,17 +72,17 @@ impl RunPlace {
 
     /// The place as the user named it, for messages.
     pub fn shown_path(&self) -> &Path {
-        &self.named
+        &self.named_path
     }
 
     /// Whether the run is in an object store.
     pub fn is_stored(&self) -> bool {
-        self.stored.is_some()
+        self.cloud_run.is_some()
     }
 
     /// Does something with the object store; nothing for a run in a folder.
     fn with_store(&self, work: impl FnOnce(&CloudRun) -> Result<(), QueueError>) -> Result<(), CommandError> {
-        Ok(self.stored.as_ref().map_or(Ok(()), work)?)
+        Ok(self.cloud_run.as_ref().map_or(Ok(()), work)?)
     }
 
     /// Tests that the store lets exactly one of several concurrent writers create a file.
@@ -128,7 +128,7 @@ impl RunPlace {
 
     /// Runs `work` with a board. If the run is in an object store, each chunk is sent before the board marks it as finished.
     pub(crate) fn with_sending<T>(&self, board: &dyn ChunkBoard, work: impl FnOnce(&dyn ChunkBoard) -> T) -> T {
-        match &self.stored {
+        match &self.cloud_run {
             None => work(board),
             Some(stored) => work(&stored.sending_board(board)),
         }

@@ -31,7 +31,7 @@ pub(crate) struct CommandWatch {
     /// The name of this worker.
     worker: String,
     /// Where spans go; `None` if no spans are wanted.
-    to: Option<Dispatch>,
+    dispatch: Option<Dispatch>,
     /// The connection to a collector, if the environment names one.
     telemetry: Option<SpanTelemetry>,
 }
@@ -55,7 +55,7 @@ impl CommandWatch {
             let sent = telemetry.as_ref().map(SpanTelemetry::tracing_layer);
             Dispatch::new(Registry::default().with(own_spans).with(lines).with(sent))
         });
-        Ok(Self { worker, to, telemetry })
+        Ok(Self { worker, dispatch: to, telemetry })
     }
 
     /// Runs `work` within the worker's span, and passes it the worker's name, which is also the name of its file.
@@ -63,7 +63,7 @@ impl CommandWatch {
         self,
         work: impl FnOnce(&str) -> Result<Exit, CommandError>,
     ) -> Result<Exit, CommandError> {
-        let Some(to) = self.to else { return work(&self.worker) };
+        let Some(to) = self.dispatch else { return work(&self.worker) };
         let ended = dispatcher::with_default(&to, || within_worker_span(&self.worker, work));
         if let Some(telemetry) = self.telemetry {
             telemetry.send_rest();

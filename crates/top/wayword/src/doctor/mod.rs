@@ -120,7 +120,7 @@ fn problem_finding(about: &str, error: &CommandError) -> DoctorFinding {
 /// Opens the platform and takes one view.
 fn world_finding(settings: &RunSettings) -> DoctorFinding {
     let about = format!("platform {}", settings.platform);
-    let look = || -> Result<ModelExamination, CommandError> {
+    let look = || -> Result<PlatformExamination, CommandError> {
         let platform = platforms::open_platform(settings)?;
         let first_only = RunSettings { limit: Some(1), ..settings.clone() };
         let items = run_items(&first_only, platform.as_ref())?;
@@ -130,7 +130,7 @@ fn world_finding(settings: &RunSettings) -> DoctorFinding {
         let picture = view.image.is_some();
         let first_stop = Path { frames: vec![path.frames[0].clone()], ..path };
         let labels = Evidence::from_labels(&first_stop, &[vec![view]]).is_some();
-        Ok(ModelExamination { scenes: platform.list_scenes()?.len(), picture, labels })
+        Ok(PlatformExamination { scenes: platform.list_scenes()?.len(), picture, labels })
     };
     match look() {
         Err(error) => problem_finding(&about, &error),
@@ -139,13 +139,13 @@ fn world_finding(settings: &RunSettings) -> DoctorFinding {
 }
 
 /// The result of trying out a platform: the number of scenes, and whether the first view has a picture and labels.
-struct ModelExamination {
+struct PlatformExamination {
     scenes: usize,
     picture: bool,
     labels: bool,
 }
 
-impl ModelExamination {
+impl PlatformExamination {
     fn to_finding(&self, about: String, settings: &RunSettings) -> DoctorFinding {
         let Self { scenes, picture, labels } = *self;
         let has = match (picture, labels) {

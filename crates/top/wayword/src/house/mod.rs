@@ -25,7 +25,7 @@ use wayword_run::{
 const SCENE_SET: &str = "houses.scene_dataset_config.json";
 
 /// Most houses of one set. A larger number is refused.
-const MOST_HOUSES: u64 = 100_000;
+const MAX_HOUSES: u64 = 100_000;
 
 /// The files that were written.
 #[derive(Debug, Serialize)]
@@ -91,8 +91,8 @@ pub(crate) fn run_house(args: &HouseArgs, output: &CommandOutput) -> Result<Exit
 
 /// The seeds that the user asks for.
 fn house_seeds(args: &HouseArgs) -> Result<Vec<u64>, CommandError> {
-    if !(1..=MOST_HOUSES).contains(&args.houses) {
-        let hint = format!("give the number of houses, from 1 to {MOST_HOUSES}, as in --houses 20");
+    if !(1..=MAX_HOUSES).contains(&args.houses) {
+        let hint = format!("give the number of houses, from 1 to {MAX_HOUSES}, as in --houses 20");
         return Err(CommandError::usage(format!("--houses {}", args.houses), hint));
     }
     let last = args.seed.checked_add(args.houses - 1).ok_or_else(|| {

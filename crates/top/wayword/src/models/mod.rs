@@ -20,7 +20,7 @@ pub(crate) fn run_models(args: &ModelsArgs, output: &CommandOutput) -> Result<Ex
     match &args.command {
         ModelsCommand::List => {
             let hub = ModelHub::new(config)?;
-            let listed = ListedModel { models: hub.list_models()?, cache: hub.cache_folder().to_owned() };
+            let listed = ModelListing { models: hub.list_models()?, cache: hub.cache_folder().to_owned() };
             output.print_result(&listed, &listed);
         }
         ModelsCommand::Fetch { name, tokenizer } => {
@@ -69,12 +69,12 @@ fn print_fetched(name: &ModelName, folder: ModelFolder, output: &CommandOutput) 
 
 /// The models on this machine.
 #[derive(Serialize)]
-struct ListedModel {
+struct ModelListing {
     models: Vec<CachedModel>,
     cache: PathBuf,
 }
 
-impl fmt::Display for ListedModel {
+impl fmt::Display for ModelListing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for model in &self.models {
             let commit = model.commit.get(..SHOWN_DIGITS).unwrap_or(&model.commit);

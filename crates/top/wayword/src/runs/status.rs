@@ -21,7 +21,7 @@ use wayword_run::{
 /// How often the status is shown again.
 const STATUS_INTERVAL: Duration = Duration::from_secs(5);
 /// The pace is measured over the chunks that were finished within this many seconds before now.
-const WINDOW_S: u64 = 600;
+const PACE_WINDOW_S: u64 = 600;
 /// Most slow chunks, and most reasons of each kind, that are shown.
 const MAX_SHOWN_ENTRIES: usize = 5;
 
@@ -85,12 +85,12 @@ pub(super) struct RunStatus {
     pub(super) minutes_left: Option<f64>,
     /// The chunks that took longest, in seconds.
     pub(super) slowest: Vec<(usize, f64)>,
-    pub(super) workers: Vec<AtWork>,
+    pub(super) workers: Vec<WorkerAtWork>,
 }
 
 /// A worker.
 #[derive(Debug, Serialize)]
-pub(super) struct AtWork {
+pub(super) struct WorkerAtWork {
     pub(super) worker: String,
     /// Its part, or the chunk that it has.
     pub(super) has: String,
@@ -139,7 +139,7 @@ impl RunStatus {
             }
         }
         status.done = done.len();
-        status.workers = read_heartbeats(folder)?.into_iter().map(AtWork::from).collect();
+        status.workers = read_heartbeats(folder)?.into_iter().map(WorkerAtWork::from).collect();
         status.running = status.workers.iter().filter(|worker| worker.is_fresh).count();
         status.running = status.running.min(status.chunks - status.done - status.dead.len());
         status.open = status.chunks - status.done - status.running - status.dead.len();
@@ -161,10 +161,10 @@ impl RunStatus {
     /// Fills in the items a minute over the last ten minutes, and how long the rest takes at that pace.
     fn fill_pace(&mut self, plan: &ChunkPlan, done: &[ChunkRecord]) {
         let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-        let recent: Vec<&ChunkRecord> = done.iter().filter(|record| record.at_unix_s + WINDOW_S >= now).collect();
+        let recent: Vec<&ChunkRecord> = done.iter().filter(|record| record.at_unix_s + PACE_WINDOW_S >= now).collect();
         let begun = |record: &&ChunkRecord| record.at_unix_s.saturating_sub(record.seconds as u64);
         let Some(first) = recent.iter().map(begun).min() else { return };
-        let minutes = now.saturating_sub(first.max(now.saturating_sub(WINDOW_S))).max(1) as f64 / 60.0;
+        let minutes = now.saturating_sub(first.max(now.saturating_sub(PACE_WINDOW_S))).max(1) as f64 / 60.0;
         let items: usize = recent.iter().map(|record| plan.chunk_range(record.chunk).len()).sum();
         self.items_per_minute = items as f64 / minutes;
         let dead: usize = self.dead.keys().map(|chunk| plan.chunk_range(*chunk).len()).sum();
@@ -178,7 +178,7 @@ impl RunStatus {
         (self.open, self.running, self.done) = (queue.open, queue.running, queue.done);
         self.dead = queue.dead.into_iter().collect();
         self.retries = queue.retries.into_iter().collect();
-        self.workers.extend(queue.workers.into_iter().map(|worker| AtWork {
+        self.workers.extend(queue.workers.into_iter().map(|worker| WorkerAtWork {
             has: worker.chunk.map_or_else(
                 || "no chunk".to_owned(),
                 |chunk| format!("chunk {chunk} for {:.0} s", worker.chunk_s.unwrap_or_default()),
@@ -190,7 +190,7 @@ impl RunStatus {
     }
 }
 
-impl From<HeartbeatEntry> for AtWork {
+impl From<HeartbeatEntry> for WorkerAtWork {
     fn from(HeartbeatEntry { beat, age, .. }: HeartbeatEntry) -> Self {
         Self { worker: beat.worker, has: beat.part, beat_s: age.as_secs_f64(), is_fresh: age < HEARTBEAT_LEASE }
     }

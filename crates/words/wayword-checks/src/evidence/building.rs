@@ -18,7 +18,7 @@ pub struct BuildingInventory {
     /// The index of each viewpoint in `viewpoints`.
     pub(super) places: BTreeMap<ViewpointId, usize>,
     /// The number of viewpoints that list at least one object.
-    pub(super) listing: usize,
+    pub(super) listing_count: usize,
 }
 
 /// A viewpoint of the building.
@@ -92,7 +92,7 @@ impl BuildingInventory {
             names: spots.into_iter().map(name).collect(),
             viewpoints: viewpoints.iter().map(viewpoint).collect(),
             places: viewpoints.iter().enumerate().map(|(at, viewpoint)| (viewpoint.id.clone(), at)).collect(),
-            listing: viewpoints.iter().filter(lists).count(),
+            listing_count: viewpoints.iter().filter(lists).count(),
         }
     }
 

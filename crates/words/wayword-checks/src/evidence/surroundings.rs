@@ -218,7 +218,7 @@ impl PathSurroundings {
     /// How many viewpoints of the building list objects.
     #[must_use]
     pub fn listing_viewpoints(&self) -> usize {
-        self.building.listing
+        self.building.listing_count
     }
 }
 

@@ -112,8 +112,9 @@ fn run_of_turns(moves: &[PathMove], first: usize) -> usize {
 /// the longest first (of equal ones, the part that turns farthest), then those in the rest of the run.
 fn join_bends(moves: &[PathMove], run: Range<usize>, bends: &mut Vec<WalkBend>) {
     let total = |part: &Range<usize>| part.clone().map(|at| turn_deg(moves, at)).sum::<f64>().abs();
-    let parts =
-        run.clone().flat_map(|first| (first + 2..=run.end.min(first + motion::BEND_MOVES)).map(move |end| first..end));
+    let parts = run
+        .clone()
+        .flat_map(|first| (first + 2..=run.end.min(first + motion::MAX_BEND_MOVES)).map(move |end| first..end));
     let fits = |part: &Range<usize>| (motion::BEND_DEG..=ONE_BEND_DEG).contains(&total(part));
     // A full turn that is followed by another full turn is not joined with it.
     let is_full = |at: &usize| turn_deg(moves, *at).abs() >= motion::FULL_DEG;

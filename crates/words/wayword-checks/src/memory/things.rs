@@ -66,14 +66,14 @@ impl RememberedThing {
 }
 
 /// Sightings without ids that lie up to this far apart are of one thing, metres.
-const SAME_M: f64 = 0.8;
+const SAME_THING_M: f64 = 0.8;
 /// The same limit where the positions come from measured distances. Those lead to the visible face
 /// of a thing, which is its front from one side and its back from the other.
 const SAME_FRONT_M: f64 = 1.5;
 /// Two directions cross where they differ by more than this, radians.
 const CROSSING_RAD: f64 = 0.17;
 /// Things without a known position are taken to be up to this far from the eye, metres.
-const FARTHEST_M: f64 = 8.0;
+const MAX_RAY_M: f64 = 8.0;
 
 /// A sighting with the eye that had it.
 struct EyeSighting<'a> {
@@ -134,7 +134,7 @@ fn is_same(group: &[EyeSighting<'_>], new: &EyeSighting<'_>) -> bool {
         return false;
     }
     if let (Some(a), Some(b)) = (last.thing.position, new.thing.position) {
-        return a.distance(b) <= SAME_M;
+        return a.distance(b) <= SAME_THING_M;
     }
     if let (Some(a), Some(b)) = (last.measured_place(), new.measured_place()) {
         return a.1.distance(b.1) <= SAME_FRONT_M;
@@ -149,7 +149,7 @@ fn is_same(group: &[EyeSighting<'_>], new: &EyeSighting<'_>) -> bool {
 /// Whether two rays over the floor can show one thing: they cross ahead of both eyes, or run along one line.
 fn can_meet(a: (DVec3, Heading), b: (DVec3, Heading)) -> bool {
     match ray_crossing(a, b) {
-        Some((_, far_a, far_b)) => far_a.min(far_b) > 0.0 && far_a.max(far_b) <= FARTHEST_M,
+        Some((_, far_a, far_b)) => far_a.min(far_b) > 0.0 && far_a.max(far_b) <= MAX_RAY_M,
         None => a.1.turn_to(b.1).abs() < FRAC_PI_4,
     }
 }
@@ -195,7 +195,7 @@ fn thing_position(group: &[EyeSighting<'_>]) -> Option<DVec3> {
     let rays: Vec<(DVec3, Heading)> = group.iter().filter_map(|sighted| sighted.eye.zip(sighted.towards)).collect();
     let crossed = || {
         let (first, last) = (rays.first()?, rays.last()?);
-        ray_crossing(*first, *last).filter(|(_, a, b)| a.min(*b) > 0.0 && a.max(*b) <= FARTHEST_M).map(|(at, ..)| at)
+        ray_crossing(*first, *last).filter(|(_, a, b)| a.min(*b) > 0.0 && a.max(*b) <= MAX_RAY_M).map(|(at, ..)| at)
     };
     listed.or_else(|| nearest_sighting(group)).or_else(crossed)
 }
@@ -207,7 +207,7 @@ fn nearest_sighting(group: &[EyeSighting<'_>]) -> Option<DVec3> {
 }
 
 /// A thing is passed where it lies at the side of a hop, at most this far before its beginning or after its end, metres.
-const SLACK_M: f64 = 0.3;
+const PASSING_SLACK_M: f64 = 0.3;
 /// A thing farther off the way than this is not passed, metres.
 const BESIDE_M: f64 = 4.0;
 /// A thing nearer to the line of the walk than this lies on neither side, metres.
@@ -223,7 +223,7 @@ fn passed_at(position: DVec3, eyes: &[DVec3]) -> Option<ThingPassing> {
         if length_m > 0.0 {
             let along_m = to.dot(along) / length_m;
             let off_m = along.perp_dot(to) / length_m;
-            let beside = (-SLACK_M..=length_m + SLACK_M).contains(&along_m);
+            let beside = (-PASSING_SLACK_M..=length_m + PASSING_SLACK_M).contains(&along_m);
             let is_near = (IN_THE_WAY_M..=BESIDE_M).contains(&off_m.abs());
             if beside && is_near && best.as_ref().is_none_or(|(nearest, _)| off_m.abs() < *nearest) {
                 let side = if off_m > 0.0 { Side::Left } else { Side::Right };

@@ -17,15 +17,17 @@ const STEP_M: f64 = 0.1;
 const FLIGHT_M: f64 = 0.5;
 /// Next to stairs the other way, a gain is no climb if it is less than this share of them, in a text with climbs both
 /// ways.
-const SHARE_OF_BOTH: f64 = 0.15;
+const MIN_CLIMB_SHARE_BOTH_WAYS: f64 = 0.15;
 /// The same share for a text with climbs in one direction only.
-const SHARE_OF_ONE: f64 = 0.45;
+const MIN_CLIMB_SHARE_ONE_WAY: f64 = 0.45;
 
 /// The mistakes in the climbs and storeys of a text.
 pub(super) fn check_climbs(text: &str, reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
     let tokens = split_tokens(text);
-    let heights =
-        PathHeights::from_subject(subject, if tells_both_ways(reading) { SHARE_OF_BOTH } else { SHARE_OF_ONE });
+    let heights = PathHeights::from_subject(
+        subject,
+        if tells_both_ways(reading) { MIN_CLIMB_SHARE_BOTH_WAYS } else { MIN_CLIMB_SHARE_ONE_WAY },
+    );
     let mut found = Vec::new();
     for event in &reading.events {
         let wording = climb_wording(&tokens, event.span);

@@ -15,7 +15,7 @@ use wayword_language::{
 };
 
 /// How far before a place the words may be that identify it, words.
-const WORDS_BEFORE: usize = 3;
+const IDENTIFYING_REACH_WORDS: usize = 3;
 
 /// A motion by a place: it goes into it, out of it, through it or past it.
 struct TextMotion<'a> {
@@ -169,7 +169,7 @@ fn compared_name(claim: &PlaceClaim) -> String {
 fn identifying_words<'a>(tokens: &'a [TextToken], claim: &PlaceClaim) -> Vec<&'a str> {
     let at = tokens.partition_point(|token| token.span[0] < claim.span[0]);
     let end = tokens.partition_point(|token| token.span[1] <= claim.span[1]);
-    let before = || tokens[..at].iter().rev().take(WORDS_BEFORE);
+    let before = || tokens[..at].iter().rev().take(IDENTIFYING_REACH_WORDS);
     let article = before().position(|token| is_article(&token.word)).unwrap_or(0);
     before().take(article).chain(&tokens[at..end]).map(|token| token.word.as_str()).collect()
 }
@@ -193,7 +193,9 @@ fn says_where(tokens: &[TextToken], claim: &PlaceClaim) -> bool {
         // "Past the foot of the bed".
         return true;
     }
-    let Some(way) = (at.saturating_sub(WORDS_BEFORE + 1)..at).rev().find(|at| is_way(word(*at))) else { return false };
+    let Some(way) = (at.saturating_sub(IDENTIFYING_REACH_WORDS + 1)..at).rev().find(|at| is_way(word(*at))) else {
+        return false;
+    };
     let before = way.checked_sub(1).map_or("", word);
     let is_side = || matches!(before, "left" | "right") && way > 1 && is_ordinal(word(way - 2));
     let name = normal_word(before);

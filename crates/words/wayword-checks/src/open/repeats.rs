@@ -11,7 +11,7 @@ use wayword_language::{
 };
 
 /// A sentence of at least this many words fails where it is repeated, however many stretches of it the path has.
-const MANY_WORDS: usize = 8;
+const LONG_SENTENCE_WORDS: usize = 8;
 
 /// The repetitions of a text: whole sentences, and the same motion by the same place.
 pub(super) fn check_repeats(text: &str, reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
@@ -63,7 +63,7 @@ fn repeated_sentences(tokens: &[TextToken], reading: &TextReading, stretches: &P
             claims.iter().filter(|claim| within(claim.span)).filter(|claim| claim.relation != WalkerRelation::Beside);
         let counts: Vec<usize> = moves.chain(places.map(|claim| stretches.count_places(claim))).collect();
         let has_all = counts.iter().all(|count| *count >= *times);
-        if is_in_a_row || words.len() >= MANY_WORDS || !has_all {
+        if is_in_a_row || words.len() >= LONG_SENTENCE_WORDS || !has_all {
             let reason = match is_in_a_row {
                 true => "the text says this sentence twice in a row",
                 false => "the text says this sentence again, and the path has fewer stretches of it",

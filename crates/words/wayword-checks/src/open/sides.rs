@@ -15,7 +15,7 @@ const SIGHT_M: f64 = 9.0;
 /// Each hop is divided into this many equal parts, and the sides are compared at the ends of the parts.
 const POINTS_PER_HOP: usize = 5;
 /// A direction is clearly on a side if it is at least this far from straight ahead and from straight behind, degrees.
-const CLEARLY_DEG: f64 = 20.0;
+const CLEAR_SIDE_DEG: f64 = 20.0;
 
 /// The doubt about the side of a place: every thing of its name near the path is clearly on the other side all along
 /// the path, or the motion is unknown.
@@ -32,7 +32,7 @@ pub(super) fn unclear_side(place: &PlaceMention, subject: CheckSubject<'_>) -> O
         Side::Ahead | Side::Behind => return None,
     };
     let turns = directions_to(name, place.is_room, subject.reach.surroundings?);
-    let is_wrong = |deg: &f64| deg * sign <= -CLEARLY_DEG && deg.abs() <= 180.0 - CLEARLY_DEG;
+    let is_wrong = |deg: &f64| deg * sign <= -CLEAR_SIDE_DEG && deg.abs() <= 180.0 - CLEAR_SIDE_DEG;
     let all_wrong = !turns.is_empty() && turns.iter().all(is_wrong);
     let reason = || format!("every {name:?} that is listed near the path is on another side, which says little");
     all_wrong.then(|| (Verdict::Unverified, reason()))

@@ -14,7 +14,7 @@ use wayword_language::{
 /// door" of the one before them, and "the two chairs" of those that they see.
 const MIN_COUNTED_NUMBER: u32 = 3;
 /// How far before a turn the words may be that give its number, words.
-const WORDS_BEFORE: usize = 2;
+const NUMBER_REACH_WORDS: usize = 2;
 
 /// The statements of a text that cannot be checked; `reading` still has its denied events.
 pub(super) fn find_unjudged(text: &str, reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
@@ -97,7 +97,7 @@ fn is_counted(place: &PlaceMention, subject: CheckSubject<'_>) -> bool {
 /// Whether the words before a turn number it: "take the third left".
 fn is_numbered(tokens: &[TextToken], span: [usize; 2]) -> bool {
     let at = tokens.partition_point(|token| token.span[0] < span[0]);
-    let before = tokens[..at].iter().rev().take_while(|token| token.is_word()).take(WORDS_BEFORE);
+    let before = tokens[..at].iter().rev().take_while(|token| token.is_word()).take(NUMBER_REACH_WORDS);
     before.into_iter().any(
         |token| matches!(ordinal_word(&token.word), Some(PlaceOrdinal::Number(number)) if number >= MIN_COUNTED_NUMBER),
     )

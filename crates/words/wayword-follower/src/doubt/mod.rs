@@ -13,13 +13,13 @@ use crate::{
     change::{StepChange, StepChangeKind, rank_changes},
     guide::Guide,
     one_walk::OneWalk,
-    route::{KnownWalk, MOST_STEPS},
+    route::{KnownWalk, MAX_FOLLOWED_STEPS},
     swap::best_swap,
     weights::FeatureWeights,
 };
 pub use bounds::{DoubtBound, DoubtBounds};
 use wayword_core::{
-    CheckFinding, ClimbDirection, DoubtAlternative, DoubtCause, DoubtGrade, TextDoubt, doubt::MOST_ALTERNATIVES,
+    CheckFinding, ClimbDirection, DoubtAlternative, DoubtCause, DoubtGrade, TextDoubt, doubt::MAX_ALTERNATIVES,
 };
 use wayword_language::{
     lexicon::room_name,
@@ -27,7 +27,7 @@ use wayword_language::{
 };
 
 /// Most places of a text that are examined, because the work grows with their number. Later places are ignored.
-const MOST_PLACES: usize = 14;
+const MAX_EXAMINED_PLACES: usize = 14;
 
 /// The kind of change that led to a doubt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -197,7 +197,7 @@ fn offered_doubt(site: &DoubtSite, doubt: &TextDoubt) -> Option<TextDoubt> {
 /// Whether a text has too many steps to examine its changes.
 #[must_use]
 pub fn is_too_long(guide: &Guide) -> bool {
-    guide.len() > MOST_STEPS
+    guide.len() > MAX_FOLLOWED_STEPS
 }
 
 /// The gains of single changes of a text for a walk; empty if the text has too many steps.
@@ -269,7 +269,7 @@ fn best_first(alternatives: impl Iterator<Item = DoubtAlternative>) -> Vec<Doubt
     let gain = |alternative: &DoubtAlternative| alternative.gain.filter(|gain| gain.is_finite());
     let mut best: Vec<DoubtAlternative> = alternatives.filter(|alternative| gain(alternative).is_some()).collect();
     best.sort_by(|a, b| gain(b).unwrap_or(0.0).total_cmp(&gain(a).unwrap_or(0.0)));
-    best.truncate(MOST_ALTERNATIVES);
+    best.truncate(MAX_ALTERNATIVES);
     best
 }
 

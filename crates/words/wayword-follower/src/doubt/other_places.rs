@@ -1,6 +1,6 @@
 //! Finds other places along the walk that would fit it better than the ones in the text.
 
-use super::{DoubtSite, DoubtSource, MOST_PLACES, best_first, is_stairs};
+use super::{DoubtSite, DoubtSource, MAX_EXAMINED_PLACES, best_first, is_stairs};
 use crate::{
     building::KnownBuilding,
     guide::{Guide, GuideMention, GuideTrial},
@@ -16,9 +16,9 @@ use wayword_language::{
 };
 
 /// Most names of rooms, and of things, that are tried for each place.
-const MOST_NAMES: usize = 20;
+const MAX_TRIED_NAMES: usize = 20;
 /// Least salience in the lexicon (how easily one notices a thing) of a thing that is suggested to readers.
-const LEAST_SALIENCE: u8 = 2;
+const MIN_SALIENCE: u8 = 2;
 
 /// Tries the rooms and things along the walk in place of each place that the text names.
 pub(super) fn other_place_sites(
@@ -31,11 +31,11 @@ pub(super) fn other_place_sites(
     let trial = GuideTrial::new(guide, known.building);
     let base_score = walk.score(guide);
     let mut sites = Vec::new();
-    for (step, place) in guide.named_places().take(MOST_PLACES) {
+    for (step, place) in guide.named_places().take(MAX_EXAMINED_PLACES) {
         let mention = &guide.steps[step].mentions[place];
         // A word before the name may belong to the old thing alone: "the water fountain".
         let Some(span) = mention.span.filter(|span| spelt.is_bare(*span)) else { continue };
-        let is_found = trial.found[step].iter().any(|found| std::ptr::eq(found.mention, mention));
+        let is_found = trial.located[step].iter().any(|found| std::ptr::eq(found.mention, mention));
         let whole = spelt.with_its_article(span);
         let alternative = |name: &PlaceQuery| {
             let mut changed = guide.clone();
@@ -58,7 +58,7 @@ fn names_along(building: &KnownBuilding, walk: &[usize]) -> Vec<PlaceQuery> {
     let mut things: BTreeMap<&str, u8> = BTreeMap::new();
     for seen in &building.things {
         let salience = find_thing(&seen.name).map_or(0, |thing| thing.salience);
-        if salience >= LEAST_SALIENCE && seen.seen_from.iter().any(|at| walk.contains(at)) {
+        if salience >= MIN_SALIENCE && seen.seen_from.iter().any(|at| walk.contains(at)) {
             things.insert(&seen.name, salience);
         }
     }
@@ -66,7 +66,7 @@ fn names_along(building: &KnownBuilding, walk: &[usize]) -> Vec<PlaceQuery> {
     things.sort_by_key(|(name, salience)| (Reverse(*salience), *name));
     let room = rooms.into_iter().map(|name| PlaceQuery { is_room: true, name: name.to_owned() });
     let thing = things.into_iter().map(|(name, _)| PlaceQuery { is_room: false, name: name.to_owned() });
-    room.take(MOST_NAMES).chain(thing.take(MOST_NAMES)).collect()
+    room.take(MAX_TRIED_NAMES).chain(thing.take(MAX_TRIED_NAMES)).collect()
 }
 
 /// Whether a name can replace a mention: it means something else, and is a room for a room and a thing for a thing.

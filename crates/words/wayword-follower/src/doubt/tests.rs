@@ -126,11 +126,11 @@ fn doubts_never_overlap_and_are_few() {
         let words: Vec<&str> = (0..14).filter_map(|_| WORDS.choose(&mut random).copied()).collect();
         let text = words.join(" ");
         let all = found(&text, &DoubtBounds::all());
-        assert!(all.len() <= wayword_core::doubt::MOST_DOUBTS, "{text}");
+        assert!(all.len() <= wayword_core::doubt::MAX_DOUBTS, "{text}");
         assert!(all.windows(2).all(|pair| pair[0].span[1] <= pair[1].span[0]), "{text}");
         for doubt in &all {
             assert!(text.get(doubt.span[0]..doubt.span[1]).is_some_and(|words| !words.is_empty()), "{text}");
-            assert!(doubt.alternatives.len() <= MOST_ALTERNATIVES, "{text}");
+            assert!(doubt.alternatives.len() <= MAX_ALTERNATIVES, "{text}");
         }
     }
 }

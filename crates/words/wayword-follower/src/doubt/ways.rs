@@ -1,6 +1,6 @@
 //! Finds better prepositions for how the walk passes a place: "walk to the sofa" for "walk past the sofa".
 
-use super::{DoubtSite, DoubtSource, MOST_PLACES, best_first, is_stairs};
+use super::{DoubtSite, DoubtSource, MAX_EXAMINED_PLACES, best_first, is_stairs};
 use crate::{
     guide::{Guide, GuideMention},
     one_walk::OneWalk,
@@ -28,7 +28,7 @@ pub(super) fn way_sites(spelt: &TokenisedText<'_>, guide: &Guide, walk: &OneWalk
     }
     let base_score = walk.score(guide);
     let mut sites = Vec::new();
-    for (step, place) in guide.named_places().take(MOST_PLACES) {
+    for (step, place) in guide.named_places().take(MAX_EXAMINED_PLACES) {
         let guide_step = &guide.steps[step];
         let mention = &guide_step.mentions[place];
         let is_way = WAY_PREPOSITIONS.iter().any(|(relation, _)| *relation == mention.relation);

@@ -27,7 +27,7 @@ pub(crate) fn ending_features(trial: &GuideTrial<'_>, tree: &WalkTree, end: usiz
     }
     let viewpoint = |node: usize| tree.nodes[node].viewpoint;
     let is_goal = (usize::from(trial.guide.is_goal), 2);
-    let places = || trial.found.iter().flatten();
+    let places = || trial.located.iter().flatten();
     for (is_room, table) in [(true, LAST_ROOM), (false, LAST_THING)] {
         if let Some(place) = places().rfind(|place| place.is_room == is_room) {
             let near = (place.near.class[viewpoint(end)], CLASSES);
@@ -58,7 +58,7 @@ fn room_features(
     found: &mut Vec<FeatureNumber>,
 ) {
     let room = |node: usize| trial.building.viewpoints[tree.nodes[node].viewpoint].room.as_deref();
-    let is_named = |node: usize| trial.tells_room[tree.nodes[node].viewpoint];
+    let is_named = |node: usize| trial.is_room_named[tree.nodes[node].viewpoint];
     let mut unnamed: Vec<&str> = Vec::new();
     for node in tree.nodes_back(end).filter(|node| *node != 0 && is_named(*node) == Some(false)) {
         let room = room(node).unwrap_or_default();

@@ -9,7 +9,7 @@ mod stretch;
 pub(crate) mod tables;
 
 pub(crate) use ending::ending_features;
-pub(crate) use stretch::{MOST_HOPS, WalkStretch};
+pub(crate) use stretch::{MAX_STEP_HOPS, WalkStretch};
 
 use crate::guide::GuideTrial;
 

@@ -25,7 +25,7 @@ pub(super) fn place_features(
     found: &mut Vec<FeatureNumber>,
 ) {
     let is_last = step + 1 == trial.guide.len();
-    for place in &trial.found[step] {
+    for place in &trial.located[step] {
         near_features(place, stretch, is_last, found);
         towards_features(trial, place, stretch, found);
         side_features(trial, place, stretch, found);

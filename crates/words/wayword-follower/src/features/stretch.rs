@@ -19,7 +19,7 @@ use wayword_core::{ClimbDirection, Side};
 use wayword_language::reading::steps::{StepRelation, StepStairs};
 
 /// Most hops of a step. A walk on which a step would have to lead farther does not fit at all.
-pub(crate) const MOST_HOPS: usize = 8;
+pub(crate) const MAX_STEP_HOPS: usize = 8;
 /// Turns of at least this angle are more than a bend of a corridor, radians.
 const CLEAR_TURN_RAD: f64 = 0.7;
 
@@ -28,14 +28,14 @@ const CLEAR_TURN_RAD: f64 = 0.7;
 pub(crate) struct WalkStretch<'a> {
     pub(crate) tree: &'a WalkTree,
     /// The first `hops + 1` entries are the nodes of the stretch, in the order of the walk.
-    nodes: [usize; MOST_HOPS + 1],
+    nodes: [usize; MAX_STEP_HOPS + 1],
     pub(crate) hops: usize,
 }
 
 impl<'a> WalkStretch<'a> {
-    /// The stretch of `hops` hops, [`MOST_HOPS`] at most, that ends at a node.
+    /// The stretch of `hops` hops, [`MAX_STEP_HOPS`] at most, that ends at a node.
     pub(crate) fn to_node(tree: &'a WalkTree, end: usize, hops: usize) -> Self {
-        let mut nodes = [end; MOST_HOPS + 1];
+        let mut nodes = [end; MAX_STEP_HOPS + 1];
         for at in (0..hops).rev() {
             nodes[at] = tree.nodes[nodes[at + 1]].before;
             if at + 1 == hops {

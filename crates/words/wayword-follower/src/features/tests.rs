@@ -434,7 +434,7 @@ fn place_found(
     let guide = make_guide(vec![bare_step(GuideStepKind::Go); steps]);
     let mut found: Vec<Vec<LocatedMention<'_>>> = (0..steps).map(|_| Vec::new()).collect();
     found[step].push(located(mention, class, nearest, commonness));
-    let trial = GuideTrial { guide: &guide, building: &building, found, tells_room: vec![None; 9] };
+    let trial = GuideTrial { guide: &guide, building: &building, located: found, is_room_named: vec![None; 9] };
     found_in(&trial, step, &tree, end, hops)
 }
 
@@ -608,10 +608,10 @@ fn ending_features_compare_the_last_places_with_the_end_and_all_with_the_walk() 
         guide.is_goal = is_goal;
         let (building, tree) = corridor();
         let mut trial = GuideTrial::new(&guide, &building);
-        trial.found[0].push(located(&mentions[0], [2, 3, 4, 5, 5, 5, 5, 5, 5], [0.0; 2], 0));
-        trial.found[0].push(located(&mentions[2], [5, 5, 5, 5, 5, 0, 0, 0, 0], [0.0; 2], 1));
-        trial.found[1].push(located(&mentions[1], [5, 4, 3, 3, 4, 5, 5, 5, 5], [0.0; 2], 0));
-        trial.found[1].push(located(&mentions[3], [5, 5, 2, 5, 1, 4, 4, 4, 4], [0.0; 2], 2));
+        trial.located[0].push(located(&mentions[0], [2, 3, 4, 5, 5, 5, 5, 5, 5], [0.0; 2], 0));
+        trial.located[0].push(located(&mentions[2], [5, 5, 5, 5, 5, 0, 0, 0, 0], [0.0; 2], 1));
+        trial.located[1].push(located(&mentions[1], [5, 4, 3, 3, 4, 5, 5, 5, 5], [0.0; 2], 0));
+        trial.located[1].push(located(&mentions[3], [5, 5, 2, 5, 1, 4, 4, 4, 4], [0.0; 2], 2));
         let mut found = Vec::new();
         ending_features(&trial, &tree, 4, &mut found);
         let goal = usize::from(is_goal);
@@ -629,7 +629,7 @@ fn ending_features_count_the_rooms_that_the_text_does_not_name() {
     let guide = make_guide(vec![bare_step(GuideStepKind::Go)]);
     let found = |end: usize, tells: [Option<bool>; 9]| {
         let mut trial = GuideTrial::new(&guide, &building);
-        trial.tells_room = tells.to_vec();
+        trial.is_room_named = tells.to_vec();
         let mut found = Vec::new();
         ending_features(&trial, &tree, end, &mut found);
         (

@@ -239,7 +239,7 @@ fn guide_trial_takes_the_first_meaning_that_the_building_has() {
     let places = |trial: &GuideTrial<'_>| {
         let of_place =
             |place: &LocatedMention<'_>| (place.mention.meanings[0].name.clone(), place.is_room, place.near.exists);
-        trial.found[0].iter().map(of_place).collect::<Vec<_>>()
+        trial.located[0].iter().map(of_place).collect::<Vec<_>>()
     };
     let trial = GuideTrial::new(&guide, &building);
     assert_eq!(places(&trial), [("bar".to_owned(), true, true), ("wooden table".to_owned(), false, true)]);
@@ -255,12 +255,12 @@ fn guide_trial_takes_the_first_meaning_that_the_building_has() {
             ("garage".to_owned(), true, false)
         ]
     );
-    assert_eq!(trial.found[0][2].near.class[2], UNKNOWN_CLASS);
+    assert_eq!(trial.located[0][2].near.class[2], UNKNOWN_CLASS);
 }
 
 #[test]
 fn guide_trial_notes_at_which_viewpoints_the_text_names_the_room() {
     let building = make_corridor(&["kitchen", "garage", ""]);
     let guide = Guide::read_text("Walk through the kitchen.");
-    assert_eq!(GuideTrial::new(&guide, &building).tells_room, [Some(true), Some(false), None]);
+    assert_eq!(GuideTrial::new(&guide, &building).is_room_named, [Some(true), Some(false), None]);
 }

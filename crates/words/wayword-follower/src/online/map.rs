@@ -54,7 +54,7 @@ impl WalkerHop {
 /// differ a little each time.
 const SAME_PLACE_M: f64 = 0.05;
 /// Largest assumed distance of an object that is seen in the direction of a hop, metres; over a shorter hop, the hop's length.
-const THING_M: f64 = 1.5;
+const MAX_THING_DISTANCE_M: f64 = 1.5;
 
 /// A map of where a walker was.
 #[derive(Debug, Default)]
@@ -104,7 +104,7 @@ impl WalkerMap {
         self.ways[self.here] = ways;
         for (name, hop) in &sighting.things {
             let Some(off) = offsets.get(*hop) else { continue };
-            let position = here_m + off.normalize_or_zero() * off.length().min(THING_M);
+            let position = here_m + off.normalize_or_zero() * off.length().min(MAX_THING_DISTANCE_M);
             self.building.things.push(BuildingThing {
                 name: normalise_name(name),
                 position,

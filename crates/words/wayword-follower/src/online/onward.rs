@@ -2,7 +2,7 @@
 //! last begun step still in progress.
 
 use crate::{
-    features::{FeatureNumber, MOST_HOPS, WalkStretch, stretch_features, tables},
+    features::{FeatureNumber, MAX_STEP_HOPS, WalkStretch, stretch_features, tables},
     fit::{WalkFit, log_sum},
     guide::GuideTrial,
     learn::{AdamDescent, FitPlan, hold_strengths},
@@ -128,7 +128,7 @@ impl OnwardFit {
         let mut parts = vec![Vec::new(); tree.len()];
         let is_new = |node: &usize| !trial.building.viewpoints[tree.end_viewpoint(*node)].is_known;
         for end in (1..tree.len()).filter(is_new) {
-            for (hops, from) in tree.nodes_back(end).take(MOST_HOPS + 1).enumerate().skip(1) {
+            for (hops, from) in tree.nodes_back(end).take(MAX_STEP_HOPS + 1).enumerate().skip(1) {
                 for step in 0..steps {
                     let sum = fit.sum_after(step, from);
                     if !sum.is_finite() {
@@ -200,7 +200,7 @@ impl OnwardSlope {
         let mut by_sum = vec![vec![0.0; tree.len()]; steps];
         let mut found: Vec<FeatureNumber> = Vec::new();
         for (end, by) in by_going.iter().enumerate().filter(|(_, by)| **by != 0.0) {
-            let froms: Vec<usize> = tree.nodes_back(end).take(MOST_HOPS + 1).collect();
+            let froms: Vec<usize> = tree.nodes_back(end).take(MAX_STEP_HOPS + 1).collect();
             for (step, hops, value) in &onward.parts[end] {
                 let share = by * (value - onward.scores[end]).exp();
                 by_sum[*step][froms[*hops]] += share;

@@ -31,9 +31,9 @@ pub struct WalkingFollower<'a> {
 }
 
 /// Most hops of a walker. After these it stops wherever it is.
-const MOST_STEPS: usize = 24;
+const MAX_WALKER_HOPS: usize = 24;
 /// Most hops of the walks from the start that a walker considers.
-const MOST_HOPS: usize = 10;
+const MAX_CONSIDERED_HOPS: usize = 10;
 /// Deduction for each hop to an option, natural logs, in addition to the fitted weights. The fit only rewards reaching the goal;
 /// going back and forth on the way has a cost too.
 const HOP_COST: f64 = 0.3;
@@ -63,7 +63,7 @@ impl<'a> WalkingFollower<'a> {
     /// Adds a sighting to the map, and decides.
     pub fn decide_next(&mut self, sighting: &WalkerSighting) -> WalkerDecision {
         self.look_around(sighting);
-        if self.hops >= MOST_STEPS || self.guide.is_empty() {
+        if self.hops >= MAX_WALKER_HOPS || self.guide.is_empty() {
             return WalkerDecision::Stop;
         }
         let next = self.next_viewpoint();
@@ -105,7 +105,7 @@ impl<'a> WalkingFollower<'a> {
     /// Scores stopping at each known viewpoint, and going on to each unvisited one.
     fn find_choices(&self, trial: &GuideTrial<'_>) -> WalkerChoices {
         let building = &self.map.building;
-        let tree = WalkTree::from_prior(building, 0, 0.0, WalkPrior::Shortest(MOST_HOPS));
+        let tree = WalkTree::from_prior(building, 0, 0.0, WalkPrior::Shortest(MAX_CONSIDERED_HOPS));
         let back = WalkTree::shortest_paths(building, self.map.here, 0.0, usize::MAX);
         let (mut away, mut next) = (vec![HOPS_AWAY_CLASSES - 1; building.len()], vec![self.map.here; building.len()]);
         for node in &back.nodes {

@@ -17,7 +17,7 @@ use crate::{
 type WeightSetter<'a> = dyn FnMut(&FeatureTable, &[(usize, usize)], f64) + 'a;
 
 /// For each kind of step: the weight of zero hops, the number of hops without a loss, and the loss for each further hop.
-const OF_HOPS: [(f64, usize, f64); GuideStepKind::COUNT] = [
+const HOP_WEIGHTS: [(f64, usize, f64); GuideStepKind::COUNT] = [
     (-2.5, 1, 1.0), // Turn
     (-2.0, 1, 1.0), // SlightTurn
     (-1.0, 1, 1.2), // TurnAround
@@ -32,9 +32,9 @@ const OF_HOPS: [(f64, usize, f64); GuideStepKind::COUNT] = [
     (0.0, 0, 0.7),  // Task
 ];
 /// Weights of a described climb by the rise of the stretch, from 3 m against it to 3 m along it.
-const OF_RISE: [f64; 11] = [-4.0, -4.0, -4.0, -3.5, -3.0, -2.0, 0.5, 1.5, 2.0, 2.5, 2.5];
+const CLIMB_RISE_WEIGHTS: [f64; 11] = [-4.0, -4.0, -4.0, -3.5, -3.0, -2.0, 0.5, 1.5, 2.0, 2.5, 2.5];
 /// Weights of any other step by the rise of the stretch.
-const OF_FLAT: [f64; 11] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.3, -0.3, -0.8, -1.2, -1.5, -2.0];
+const OTHER_RISE_WEIGHTS: [f64; 11] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.3, -0.3, -0.8, -1.2, -1.5, -2.0];
 
 /// The weights of all tables; those that no rule sets are 0.
 pub(super) fn weights_by_hand() -> FeatureWeights {
@@ -53,7 +53,7 @@ pub(super) fn weights_by_hand() -> FeatureWeights {
 
 /// Weights of the lengths of stretches and walks.
 fn set_lengths(set: &mut WeightSetter<'_>) {
-    for (kind, (none, free, loss)) in OF_HOPS.into_iter().enumerate() {
+    for (kind, (none, free, loss)) in HOP_WEIGHTS.into_iter().enumerate() {
         for hops in 0..HOPS_CLASSES {
             let weight = if hops == 0 { none } else { -loss * hops.saturating_sub(free) as f64 };
             for is_last in 0..2 {
@@ -191,7 +191,7 @@ fn set_ways(set: &mut WeightSetter<'_>) {
 
 /// Weights of climbs, stairs and storeys.
 fn set_storeys(set: &mut WeightSetter<'_>) {
-    for (class, (climb, flat)) in OF_RISE.iter().zip(OF_FLAT).enumerate() {
+    for (class, (climb, flat)) in CLIMB_RISE_WEIGHTS.iter().zip(OTHER_RISE_WEIGHTS).enumerate() {
         set(&RISE, &[(0, 2), (class, 11)], *climb);
         set(&RISE, &[(1, 2), (class, 11)], flat);
     }

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     dialogue::{CaptionSummariser, RulesSummariser},
-    observe::{CONDENSED_WORDS, ObserveError},
+    observe::{CONDENSED_WORD_LIMIT, ObserveError},
     seeing::{FAR_M, caption_text},
 };
 use std::collections::BTreeSet;
@@ -222,7 +222,7 @@ fn reword_changed_captions(
         return Ok(());
     }
     let captions: Vec<(&str, &Caption)> = observation.looks.iter().map(|look| ("", &look.caption)).collect();
-    observation.summary = RulesSummariser.condense(&captions, CONDENSED_WORDS)?.text;
+    observation.summary = RulesSummariser.condense(&captions, CONDENSED_WORD_LIMIT)?.text;
     observation.by = Some(RulesSummariser.name().to_owned());
     Ok(())
 }

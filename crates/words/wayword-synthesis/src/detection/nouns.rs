@@ -12,7 +12,7 @@ use wayword_language::{
 const HOUSEHOLD_NOUNS: &str = include_str!("nouns.txt");
 
 /// Most names that one style adds; the rarer ones are left out.
-const MOST_OF_STYLE: usize = 30;
+const MAX_STYLE_NOUNS: usize = 30;
 
 /// Most names of a list, because each costs time in every view. A longer list is refused.
 const MAX_NOUNS: usize = 300;
@@ -49,7 +49,7 @@ fn of_style(style: &InstructionStyle) -> Vec<String> {
     }
     let mut names: Vec<(String, usize)> = counts.into_iter().filter(|(_, count)| *count > 1).collect();
     names.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
-    names.into_iter().take(MOST_OF_STYLE).map(|(name, _)| name).collect()
+    names.into_iter().take(MAX_STYLE_NOUNS).map(|(name, _)| name).collect()
 }
 
 #[cfg(test)]

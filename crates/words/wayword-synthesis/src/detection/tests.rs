@@ -54,7 +54,7 @@ impl ObjectDetector for Finds {
     }
 
     fn scoring(&self) -> DetectorScoring {
-        DetectorScoring { means: "given", found_from: 0.5, phrases_meet: false }
+        DetectorScoring { means: "given", find_threshold: 0.5, phrases_interact: false }
     }
 
     fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {

@@ -3,22 +3,22 @@
 use wayword_language::{answers::ASKING, text::split_words};
 
 /// Longest question, characters. A longer text is no question.
-const QUESTION_CHARS: usize = 300;
+const MAX_QUESTION_CHARS: usize = 300;
 /// Longest answer, characters; a longer one ends with its last whole sentence.
-const ANSWER_CHARS: usize = 1200;
+const MAX_ANSWER_CHARS: usize = 1200;
 /// Longest part of a reply that is examined, bytes; the rest is ignored.
-const MOST_BYTES: usize = 16_384;
+const MAX_REPLY_BYTES: usize = 16_384;
 /// Labels that models put before a question.
 const QUESTION_LABELS: [&str; 4] = ["question:", "q:", "next question:", "new question:"];
 /// Marks that begin another turn within an answer, wherever they are.
 const TURN_MARKS: [&str; 5] = ["question:", "user:", "### ", "<|", "</s>"];
 /// Marks that begin another turn only after a whole sentence, because "the short answer: no" is one answer.
-const TURNS_BEHIND_SENTENCES: [&str; 5] = ["q:", "a:", "answer:", "human:", "assistant:"];
+const TURN_MARKS_AFTER_SENTENCE: [&str; 5] = ["q:", "a:", "answer:", "human:", "assistant:"];
 
 /// The one question in a reply, without labels, quotes, chatter, further questions or an invented answer. `None` if
 /// there is no question, or it is longer than the limit.
 pub(super) fn extract_question(reply: &str) -> Option<String> {
-    let reply = first_bytes(reply, MOST_BYTES);
+    let reply = first_bytes(reply, MAX_REPLY_BYTES);
     let label_end = QUESTION_LABELS
         .iter()
         .filter_map(|label| label_positions(reply, label).last().map(|at| at + label.len()))
@@ -33,20 +33,20 @@ pub(super) fn extract_question(reply: &str) -> Option<String> {
     };
     let bare = asked.trim().trim_matches(|c: char| matches!(c, '"' | '“' | '”' | '*' | '_' | '`') || c.is_whitespace());
     let bare = bare.trim_start_matches(['\'', '-', '‘', '(']).trim_start();
-    let fits = bare.chars().count() <= QUESTION_CHARS && bare.contains(char::is_alphanumeric);
+    let fits = bare.chars().count() <= MAX_QUESTION_CHARS && bare.contains(char::is_alphanumeric);
     fits.then(|| bare.split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
 /// The answer in a reply, without a repetition of the question before it and invented turns after it, cut to the length
 /// limit.
 pub(super) fn extract_answer(reply: &str, question: &str) -> String {
-    let reply = without_lead(first_bytes(reply, MOST_BYTES).trim(), question);
+    let reply = without_lead(first_bytes(reply, MAX_REPLY_BYTES).trim(), question);
     let is_behind_sentence = |at: &usize| {
         let before = reply[..*at].trim_end_matches([' ', '*', '"']);
         before.is_empty() || before.ends_with(['.', '!', '?', '\n'])
     };
     let marked_turns = TURN_MARKS.iter().filter_map(|label| label_positions(reply, label).find(|at| *at > 0));
-    let turns_after_sentence = TURNS_BEHIND_SENTENCES
+    let turns_after_sentence = TURN_MARKS_AFTER_SENTENCE
         .iter()
         .filter_map(|label| label_positions(reply, label).filter(is_behind_sentence).find(|at| *at > 0));
     let cut = marked_turns.chain(turns_after_sentence).min();
@@ -100,7 +100,7 @@ fn without_lead<'a>(reply: &'a str, question: &str) -> &'a str {
 
 /// The answer, if it is within the limit; otherwise its whole sentences within the limit.
 fn bounded_answer(text: &str) -> &str {
-    let Some((end, _)) = text.char_indices().nth(ANSWER_CHARS) else { return text };
+    let Some((end, _)) = text.char_indices().nth(MAX_ANSWER_CHARS) else { return text };
     let whole = &text[..end];
     whole.rfind(['.', '!', '?']).map_or(whole, |at| &whole[..=at]).trim()
 }
@@ -164,14 +164,14 @@ mod tests {
     fn a_long_answer_ends_with_a_sentence() {
         let long = "There is a chair and a long table. ".repeat(100);
         let kept = extract_answer(&long, "?");
-        assert!(kept.len() <= ANSWER_CHARS && kept.ends_with("table."), "{kept}");
+        assert!(kept.len() <= MAX_ANSWER_CHARS && kept.ends_with("table."), "{kept}");
     }
 
     proptest! {
         #[test]
         fn any_reply_is_bounded(reply in "(\\PC|[\n:?Qq. ]){0,400}", asked in "\\PC{0,40}") {
-            prop_assert!(extract_answer(&reply.repeat(8), &asked).chars().count() <= ANSWER_CHARS);
-            prop_assert!(extract_question(&reply).is_none_or(|question| question.chars().count() <= QUESTION_CHARS));
+            prop_assert!(extract_answer(&reply.repeat(8), &asked).chars().count() <= MAX_ANSWER_CHARS);
+            prop_assert!(extract_question(&reply).is_none_or(|question| question.chars().count() <= MAX_QUESTION_CHARS));
         }
     }
 }

@@ -7,15 +7,15 @@ use wayword_language::{
 };
 
 /// Longest phrase of an answer that repeats itself, words. A repetition of a longer phrase is not looked for.
-const LOOP_WORDS: usize = 8;
+const MAX_LOOP_PHRASE_WORDS: usize = 8;
 /// Least number of times in a row that such an answer has the phrase.
-const LOOP_TIMES: usize = 3;
+const MIN_LOOP_REPETITIONS: usize = 3;
 /// Least number of words of an answer for which a repetition counts as a fault: a shorter one may well fit two
 /// questions ("It is made of wood").
-const REPEAT_WORDS: usize = 6;
+const MIN_REPEATED_WORDS: usize = 6;
 
 /// How many words at the beginning of an answer are examined for a refusal.
-const REFUSAL_WORDS: usize = 40;
+const MAX_REFUSAL_WORDS: usize = 40;
 
 /// The reason why an answer is unusable; `None` if it is usable.
 pub(super) fn answer_trouble(question: &str, answer: &str, before: &[DialogueExchange]) -> Option<AnswerTrouble> {
@@ -41,7 +41,7 @@ pub(crate) fn refuses_to_look(answer: &str) -> bool {
 /// Whether an answer begins like a refusal and declines, or consists of words of refusal only.
 fn is_refusal(words: &[String]) -> bool {
     let begins = REFUSING.iter().any(|phrase| is_at(words, 0, phrase));
-    let beginning = &words[..words.len().min(REFUSAL_WORDS)];
+    let beginning = &words[..words.len().min(MAX_REFUSAL_WORDS)];
     let declines = |at| UNHELPING.iter().any(|phrase| is_at(beginning, at, phrase));
     let is_bare = || words.iter().all(|word| BARE_REFUSAL.contains(&word.as_str()));
     begins && ((0..beginning.len()).any(declines) || is_bare())
@@ -75,7 +75,7 @@ fn is_echo(asked: &[String], answer: &[String]) -> bool {
 
 /// Whether a run of up to eight words, repeated at least three times in a row, makes up most of the answer.
 fn is_loop(answer: &[String]) -> bool {
-    (1..=LOOP_WORDS.min(answer.len() / LOOP_TIMES)).any(|length| {
+    (1..=MAX_LOOP_PHRASE_WORDS.min(answer.len() / MIN_LOOP_REPETITIONS)).any(|length| {
         let mut longest = 0;
         let mut run = 0;
         for at in length..answer.len() {
@@ -83,7 +83,7 @@ fn is_loop(answer: &[String]) -> bool {
             longest = longest.max(run);
         }
         let words = longest + length;
-        words >= length * LOOP_TIMES && longest > 0 && 2 * words > answer.len()
+        words >= length * MIN_LOOP_REPETITIONS && longest > 0 && 2 * words > answer.len()
     })
 }
 
@@ -91,7 +91,7 @@ fn is_loop(answer: &[String]) -> bool {
 fn is_repeat(question: &str, answer: &[String], before: &[DialogueExchange]) -> bool {
     // A short "I am not sure" may come again.
     let is_unsure = answer.len() <= 8 && answer.windows(2).any(|pair| pair[0] == "not" && pair[1] == "sure");
-    answer.len() >= REPEAT_WORDS
+    answer.len() >= MIN_REPEATED_WORDS
         && !is_unsure
         && before.iter().any(|exchange| {
             split_words(&exchange.question) != split_words(question) && split_words(&exchange.answer) == answer

@@ -26,7 +26,7 @@ pub struct ModelAnswerer {
 const ANSWER_SAMPLING: SamplingOptions = SamplingOptions { temperature: 0.0, max_tokens: 160, seed: PERCEPTION_SEED };
 
 /// Enough tokens for the JSON of about twenty things.
-const OF_JSON: SamplingOptions = SamplingOptions { max_tokens: 1_000, ..ANSWER_SAMPLING };
+const JSON_SAMPLING: SamplingOptions = SamplingOptions { max_tokens: 1_000, ..ANSWER_SAMPLING };
 
 impl ModelAnswerer {
     /// An answerer that asks a model, with prompts of the form that it expects.
@@ -46,7 +46,7 @@ impl ModelAnswerer {
                 (self.prompts.answer_prompt(self.manner, ask.question, ask.history)?, ANSWER_SAMPLING, None)
             }
             AnswerForm::Json(schema) => {
-                (self.prompts.view_prompt(complaint_in_question(ask.question))?, OF_JSON, Some(schema))
+                (self.prompts.view_prompt(complaint_in_question(ask.question))?, JSON_SAMPLING, Some(schema))
             }
         };
         let message = ChatMessage::about_images(text, vec![image]);

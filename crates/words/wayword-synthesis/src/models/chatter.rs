@@ -7,9 +7,9 @@ use wayword_language::{
 };
 
 /// Most words of a sentence that announces a text; a longer one belongs to the text.
-const ANNOUNCING_WORDS: usize = 24;
+const MAX_ANNOUNCING_WORDS: usize = 24;
 /// How much of a sentence is examined, bytes. Its beginning is enough to classify it.
-const LOOKED_AT: usize = 300;
+const MAX_EXAMINED_BYTES: usize = 300;
 
 /// The text without code fences, announcing sentences before it, and remarks after it.
 pub(super) fn without_chatter(text: &str) -> &str {
@@ -77,7 +77,7 @@ fn announces_text(sentence: &str) -> bool {
     };
     let names_text = words.iter().any(|word| ANNOUNCED.contains(&word.as_str()));
     let leads = sentence.trim_end_matches('*').ends_with(':');
-    names_text && words.len() <= ANNOUNCING_WORDS && (leads || begins_with_phrase(words, &ANNOUNCING))
+    names_text && words.len() <= MAX_ANNOUNCING_WORDS && (leads || begins_with_phrase(words, &ANNOUNCING))
 }
 
 /// Whether a sentence after a text does not belong to it: a remark, or a count of its words.
@@ -104,7 +104,7 @@ fn begins_with_phrase(words: &[String], phrases: &PhraseList) -> bool {
 
 /// The words at the beginning of a sentence, with straight apostrophes.
 fn sentence_words(sentence: &str) -> Vec<String> {
-    split_words(&sentence[..sentence.floor_char_boundary(LOOKED_AT)].replace('’', "'"))
+    split_words(&sentence[..sentence.floor_char_boundary(MAX_EXAMINED_BYTES)].replace('’', "'"))
 }
 
 #[cfg(test)]

@@ -12,8 +12,8 @@ use crate::{
 };
 use std::sync::Arc;
 use wayword_core::{
-    Caption, ChatMessage, DialogueExchange, FinishReason, LONGEST_TEXT_BYTES, LanguageModel, ModelError,
-    ObjectSighting, SamplingOptions, WitnessAnswer,
+    Caption, ChatMessage, DialogueExchange, FinishReason, LanguageModel, MAX_TEXT_BYTES, ModelError, ObjectSighting,
+    SamplingOptions, WitnessAnswer,
 };
 use wayword_language::{lexicon::names_agree, text::word_count};
 
@@ -51,8 +51,8 @@ impl ModelSummariser {
             let text = plain_text(whole_sentences(&reply), &["caption", "summary"]);
             let new_complaints = match text.len() {
                 0 => vec!["it was empty".to_owned()],
-                bytes if bytes > LONGEST_TEXT_BYTES => {
-                    vec![format!("it has {bytes} bytes, more than {LONGEST_TEXT_BYTES}")]
+                bytes if bytes > MAX_TEXT_BYTES => {
+                    vec![format!("it has {bytes} bytes, more than {MAX_TEXT_BYTES}")]
                 }
                 _ if is_refusal(&text) => vec!["it refused to describe the picture".to_owned()],
                 // The whole sentences of the last attempt are better than a summary by rules.

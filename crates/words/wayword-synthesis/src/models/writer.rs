@@ -6,7 +6,7 @@ use crate::{
     writer::{InstructionWriter, WriteError, WritingBrief},
 };
 use std::sync::Arc;
-use wayword_core::{ChatMessage, FinishReason, LONGEST_TEXT_BYTES, LanguageModel, ModelError, SamplingOptions};
+use wayword_core::{ChatMessage, FinishReason, LanguageModel, MAX_TEXT_BYTES, ModelError, SamplingOptions};
 
 /// Lets a language model write. Its prompt includes the reasons why earlier texts failed.
 #[derive(Clone)]
@@ -20,7 +20,7 @@ const WRITING_TEMPERATURE: f64 = 0.7;
 /// Room for the longest instruction of a fine-grained style.
 const MAX_TOKENS: u32 = 300;
 /// How much of an over-long text the next prompt shows, bytes.
-const SHOWN_BYTES: usize = 500;
+const MAX_SHOWN_BYTES: usize = 500;
 
 impl ModelWriter {
     /// A writer behind a model.
@@ -42,9 +42,9 @@ impl InstructionWriter for ModelWriter {
         let sampling = SamplingOptions { temperature: WRITING_TEMPERATURE, max_tokens: MAX_TOKENS, seed };
         let reply = send_message(self.model.as_ref(), ChatMessage::about_images(prompt, pictures), sampling)?;
         let text = plain_text(&reply.text, &["instruction"]);
-        if text.len() > LONGEST_TEXT_BYTES {
-            let reason = format!("it has {} bytes, more than {LONGEST_TEXT_BYTES}: write a few sentences", text.len());
-            let text = format!("{} ...", &text[..text.floor_char_boundary(SHOWN_BYTES)]);
+        if text.len() > MAX_TEXT_BYTES {
+            let reason = format!("it has {} bytes, more than {MAX_TEXT_BYTES}: write a few sentences", text.len());
+            let text = format!("{} ...", &text[..text.floor_char_boundary(MAX_SHOWN_BYTES)]);
             return Err(WriteError::Unusable { text, reason });
         }
         let unusable = |reason: &str| Err(WriteError::Unusable { text: text.clone(), reason: reason.to_owned() });

@@ -24,7 +24,7 @@ pub struct LabelAnswerer {
 }
 
 /// Most groups of like objects that a description names, the nearest first; farther ones are left out.
-const MOST_NAMED: usize = 12;
+const MAX_NAMED_GROUPS: usize = 12;
 
 impl ViewAnswerer for LabelAnswerer {
     fn name(&self) -> &str {
@@ -53,7 +53,9 @@ impl LabelAnswerer {
                 truth.room.as_deref().map_or_else(not_sure, |room| format!("It is {}.", with_article(room)))
             }
             QuestionSubject::IsRoom(name) => truth.room.as_deref().map_or_else(not_sure, |room| is_room(room, &name)),
-            QuestionSubject::Presence { wanted, or } => self.answer_presence(view, truth, &wanted, or),
+            QuestionSubject::Presence { wanted, are_alternatives: or } => {
+                self.answer_presence(view, truth, &wanted, or)
+            }
             QuestionSubject::Colour { name, .. } => answer_colour(truth, &name),
             QuestionSubject::Number(wanted) => self.answer_number(truth, &wanted),
             QuestionSubject::Place(wanted) => self.answer_presence(view, truth, &[wanted], false),
@@ -71,7 +73,7 @@ impl LabelAnswerer {
             return match label {
                 Some(label) => format!("Yes, {}.", place_phrase(third_of_view(view, label))),
                 None if self.is_open(truth, wanted) => not_sure(),
-                None => denial_answer(&wanted.said, wanted.several),
+                None => denial_answer(&wanted.phrase, wanted.several),
             };
         }
         let there: Vec<String> = found
@@ -82,7 +84,7 @@ impl LabelAnswerer {
             .collect();
         let absent = found.iter().filter(|(_, label)| label.is_none());
         let (open, missing): (Vec<_>, Vec<_>) = absent.partition(|(wanted, _)| self.is_open(truth, wanted));
-        let missing: Vec<&str> = missing.iter().map(|(wanted, _)| wanted.said.as_str()).collect();
+        let missing: Vec<&str> = missing.iter().map(|(wanted, _)| wanted.phrase.as_str()).collect();
         match (there.as_slice(), missing.as_slice()) {
             ([], []) if !open.is_empty() => not_sure(),
             ([], missing) => denial_answer(&missing.join(" or "), false),
@@ -153,7 +155,7 @@ fn describe_view(view: &View, truth: &GroundTruth, only: Option<ViewThird>) -> A
     groups.sort_by(|a, b| a.2.total_cmp(&b.2));
     let items: Vec<String> = groups
         .iter()
-        .take(MOST_NAMED)
+        .take(MAX_NAMED_GROUPS)
         .map(|(name, third, _, count)| format!("{} {}", counted_name(*count, name), place_phrase(*third)))
         .collect();
     let verb = if groups.first().is_some_and(|group| group.3 > 1) { "are" } else { "is" };

@@ -7,7 +7,7 @@ use wayword_core::{GroundTruth, ObjectLabel, View, ViewThird};
 use wayword_language::lexicon::{ThingClass, find_thing, to_plural};
 
 /// Most entries for things in the answer, the nearest first; farther ones are left out.
-const MOST_LISTED: usize = 14;
+const MAX_LISTED_THINGS: usize = 14;
 
 /// The labels of a view as JSON in the form of [`crate::seeing::VIEW_SCHEMA`].
 pub(super) fn labels_as_json(view: &View, truth: &GroundTruth) -> String {
@@ -40,7 +40,7 @@ pub(super) fn labels_as_json(view: &View, truth: &GroundTruth) -> String {
             "sure": "sure",
         }));
     }
-    things.truncate(MOST_LISTED);
+    things.truncate(MAX_LISTED_THINGS);
     let room = truth.room.as_deref().unwrap_or("unknown");
     json!({ "room": room, "room_sure": "sure", "ways_out": ways, "things": things, "stands_out": [] }).to_string()
 }

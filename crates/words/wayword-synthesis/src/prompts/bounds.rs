@@ -18,17 +18,17 @@ use std::{
 };
 
 /// Longest template, bytes; a longer one is refused.
-const SOURCE_BYTES: usize = 1 << 16;
+const MAX_SOURCE_BYTES: usize = 1 << 16;
 /// Most bytes that a prompt writes, and most bytes that its filters make on the way; beyond them, filling the prompt
 /// fails. Twice the longest style.
-const MOST_BYTES: usize = 8 << 20;
+const MAX_PROMPT_BYTES: usize = 8 << 20;
 /// Most steps of minijinja for a prompt; beyond them, filling it fails. A prompt with a thousand references and a
 /// thousand frames takes a tenth of them.
-const MOST_STEPS: u64 = 200_000;
+const MAX_STEPS: u64 = 200_000;
 /// Most numbers of a `range`; a longer range is an error.
-const MOST_NUMBERS: usize = 1000;
+const MAX_RANGE_NUMBERS: usize = 1000;
 /// Most `~` and `+` of a template, because each of them may double a text. A template with more is refused.
-const MOST_JOINS: usize = 64;
+const MAX_JOINS: usize = 64;
 /// Assumed size of a list item besides its text, bytes.
 const ITEM_BYTES: usize = 32;
 
@@ -37,19 +37,19 @@ const OFFERED_STATEMENTS: [&str; 6] = ["for", "endfor", "if", "elif", "else", "e
 
 /// The message for a prompt that writes more than its limit.
 pub(super) fn too_many_bytes() -> String {
-    format!("it writes more than {MOST_BYTES} bytes")
+    format!("it writes more than {MAX_PROMPT_BYTES} bytes")
 }
 
 /// The message for a prompt that takes more steps than its limit.
 pub(super) fn too_many_steps() -> String {
-    format!("it takes more than {MOST_STEPS} steps")
+    format!("it takes more than {MAX_STEPS} steps")
 }
 
 /// Refuses a template that uses an unlimited construct.
 pub(super) fn check_template(name: &str, source: &str) -> Result<(), PromptError> {
     let refused = |line: usize, what: String| Err(PromptError::Refused { name: name.to_owned(), line, what });
-    if source.len() > SOURCE_BYTES {
-        return refused(1, format!("it is longer than {SOURCE_BYTES} bytes"));
+    if source.len() > MAX_SOURCE_BYTES {
+        return refused(1, format!("it is longer than {MAX_SOURCE_BYTES} bytes"));
     }
     let mut joins = 0;
     let mut before = None;
@@ -73,8 +73,8 @@ pub(super) fn check_template(name: &str, source: &str) -> Result<(), PromptError
             (_, Token::Tilde | Token::Plus) => joins += 1,
             _ => {}
         }
-        if joins > MOST_JOINS {
-            return refused(line, format!("a prompt may use `~` and `+` at most {MOST_JOINS} times"));
+        if joins > MAX_JOINS {
+            return refused(line, format!("a prompt may use `~` and `+` at most {MAX_JOINS} times"));
         }
         before = Some(token);
     }
@@ -84,7 +84,7 @@ pub(super) fn check_template(name: &str, source: &str) -> Result<(), PromptError
 /// The environment in which prompts are filled: with limits, and only with filters that keep to them.
 pub(super) fn bounded_environment() -> Environment<'static> {
     let mut environment = Environment::new();
-    environment.set_fuel(Some(MOST_STEPS));
+    environment.set_fuel(Some(MAX_STEPS));
     for name in ["debug", "dict", "namespace"] {
         environment.remove_global(name);
     }
@@ -152,7 +152,7 @@ fn counted(state: &State<'_, '_>, filter: &str, value: Value, more: &[Value]) ->
 
 fn join(state: &State<'_, '_>, value: &Value, between: Option<Value>) -> Result<String, Error> {
     let between = between.map_or_else(|| Ok(String::new()), |between| text_of(state, &between))?;
-    let mut text = Counted { state, text: String::new() };
+    let mut text = CountedFilterText { state, text: String::new() };
     for (at, item) in value.try_iter()?.enumerate() {
         if at > 0 {
             text.push_display(&between)?;
@@ -205,8 +205,8 @@ fn string(state: &State<'_, '_>, value: &Value) -> Result<String, Error> {
 /// At most a thousand numbers.
 fn bounded_range(lower: isize, upper: Option<isize>, step: Option<isize>) -> Result<Value, Error> {
     let numbers = minijinja::functions::range(lower, upper, step)?;
-    if numbers.len().is_none_or(|count| count > MOST_NUMBERS) {
-        let why = format!("a `range` has at most {MOST_NUMBERS} numbers in prompts");
+    if numbers.len().is_none_or(|count| count > MAX_RANGE_NUMBERS) {
+        let why = format!("a `range` has at most {MAX_RANGE_NUMBERS} numbers in prompts");
         return Err(Error::new(ErrorKind::InvalidOperation, why));
     }
     Ok(numbers)
@@ -217,7 +217,7 @@ fn text_of(state: &State<'_, '_>, value: &Value) -> Result<String, Error> {
     if value.kind() == ValueKind::Undefined {
         return Err(Error::from(ErrorKind::UndefinedError));
     }
-    let mut text = Counted { state, text: String::new() };
+    let mut text = CountedFilterText { state, text: String::new() };
     text.push_display(value)?;
     Ok(text.text)
 }
@@ -231,8 +231,8 @@ impl Object for FilterByteCount {}
 /// Counts bytes that a filter makes, and fails beyond the limit.
 fn count_bytes(state: &State<'_, '_>, bytes: usize) -> Result<(), Error> {
     let made = state.get_or_set_temp_object("made by filters", FilterByteCount::default);
-    let before = made.0.fetch_add(bytes.min(MOST_BYTES + 1), Ordering::Relaxed);
-    if before.saturating_add(bytes) > MOST_BYTES { Err(too_much()) } else { Ok(()) }
+    let before = made.0.fetch_add(bytes.min(MAX_PROMPT_BYTES + 1), Ordering::Relaxed);
+    if before.saturating_add(bytes) > MAX_PROMPT_BYTES { Err(too_much()) } else { Ok(()) }
 }
 
 fn too_much() -> Error {
@@ -240,18 +240,18 @@ fn too_much() -> Error {
 }
 
 /// A text of a filter, counted as it grows.
-struct Counted<'a, 'b, 'c> {
+struct CountedFilterText<'a, 'b, 'c> {
     state: &'a State<'b, 'c>,
     text: String,
 }
 
-impl Counted<'_, '_, '_> {
+impl CountedFilterText<'_, '_, '_> {
     fn push_display(&mut self, what: impl fmt::Display) -> Result<(), Error> {
         write!(self, "{what}").map_err(|_| too_much())
     }
 }
 
-impl fmt::Write for Counted<'_, '_, '_> {
+impl fmt::Write for CountedFilterText<'_, '_, '_> {
     fn write_str(&mut self, more: &str) -> fmt::Result {
         count_bytes(self.state, more.len()).map_err(|_| fmt::Error)?;
         self.text.push_str(more);
@@ -271,7 +271,7 @@ impl PromptText {
 
 impl io::Write for PromptText {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.0.len() + bytes.len() > MOST_BYTES {
+        if self.0.len() + bytes.len() > MAX_PROMPT_BYTES {
             return Err(io::Error::other(too_many_bytes()));
         }
         self.0.extend_from_slice(bytes);

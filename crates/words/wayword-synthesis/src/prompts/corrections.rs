@@ -9,7 +9,7 @@ use wayword_language::{
 };
 
 /// Most frames that one correction names as showing a thing.
-const MOST_NAMED: usize = 3;
+const MAX_NAMED_FRAMES: usize = 3;
 
 /// The reasons why a text failed, each with the words concerned and with a correction.
 pub(super) fn refusal_reasons(brief: &WritingBrief<'_>, complaint: &TextComplaint) -> Vec<String> {
@@ -85,7 +85,7 @@ fn where_seen(brief: &WritingBrief<'_>, words: &str) -> Option<String> {
     let name = words.trim_start_matches("the ").trim();
     let frames = 0..brief.walk.observations.len();
     let seen = frames.flat_map(|frame| brief.walk.seen_from(frame).map(move |seen| (frame, seen)));
-    let seen = seen.filter(|(_, seen)| names_agree(&seen.sighting.name, name)).take(MOST_NAMED);
+    let seen = seen.filter(|(_, seen)| names_agree(&seen.sighting.name, name)).take(MAX_NAMED_FRAMES);
     let seen: Vec<String> = seen
         .map(|(frame, seen)| {
             let colour = seen.sighting.colour.as_ref().map_or(String::new(), |colour| format!("{colour} "));

@@ -5,7 +5,7 @@ use wayword_checks::memory::{RememberedThing, RoomOpening, RoomStay, WalkBend, W
 use wayword_core::Side;
 
 /// Most lines for things; the later things of the walk get none.
-const MOST_THINGS: usize = 16;
+const MAX_THING_LINES: usize = 16;
 /// A thing nearer to the end than this gets a line with its distance from there, metres.
 const NEAR_END_M: f64 = 3.0;
 
@@ -15,7 +15,7 @@ pub(super) fn remembered_lines(memory: &WalkMemory) -> Vec<String> {
     lines.extend(memory.openings.iter().filter(|opening| opening.has_door).map(door_line));
     lines.extend(memory.bends.iter().filter_map(bend_line));
     let things = memory.things.iter().filter_map(|thing| told_thing(memory, thing));
-    lines.extend(things.take(MOST_THINGS));
+    lines.extend(things.take(MAX_THING_LINES));
     lines
 }
 

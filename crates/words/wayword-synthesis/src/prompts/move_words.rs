@@ -3,7 +3,7 @@
 use wayword_core::{ClimbDirection, PathMove, TurnKind};
 
 /// Most sentences of the overview; a longer way has no overview.
-const MOST_STEPS: usize = 40;
+const MAX_OVERVIEW_SENTENCES: usize = 40;
 
 /// The name of a frame in reasons and in the overview.
 pub(super) fn frame_of_move(at: usize) -> String {
@@ -52,7 +52,7 @@ pub(super) fn way_overview(moves: &[PathMove]) -> Vec<String> {
             _ => steps.push((at, at + 1, step.turn(), step.climb(), step.distance_m)),
         }
     }
-    if steps.len() > MOST_STEPS || steps.len() < 2 {
+    if steps.len() > MAX_OVERVIEW_SENTENCES || steps.len() < 2 {
         return Vec::new();
     }
     let sentences = steps.into_iter().map(|(from, to, turn, climb, length_m)| {

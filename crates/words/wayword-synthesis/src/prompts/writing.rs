@@ -12,9 +12,9 @@ use wayword_core::{PathTarget, Side, seeded_rng};
 use wayword_language::{lexicon::names_agree, text::word_count};
 
 /// Most reference texts of a prompt. A style may have thousands, and more examples do not make a text more alike.
-const MOST_REFERENCES: usize = 24;
+const MAX_SHOWN_REFERENCES: usize = 24;
 /// Most landmarks that the prompt lists for a frame; further ones are left out.
-const MOST_LANDMARKS: usize = 8;
+const MAX_FRAME_LANDMARKS: usize = 8;
 
 /// The variables of the template `write.j2`.
 pub(super) fn writing_context(brief: &WritingBrief<'_>) -> Value {
@@ -50,7 +50,7 @@ pub(super) fn writing_context(brief: &WritingBrief<'_>) -> Value {
 /// The references that a prompt shows: all of them, or some that are drawn by the seed.
 fn shown_references<'a>(brief: &WritingBrief<'a>) -> Vec<&'a str> {
     let all = &brief.style.references;
-    let shown = all.len().min(MOST_REFERENCES);
+    let shown = all.len().min(MAX_SHOWN_REFERENCES);
     let mut chosen = match shown == all.len() {
         true => (0..shown).collect(),
         false => index::sample(&mut seeded_rng(brief.seed, &["shown references", &brief.style.name]), all.len(), shown)
@@ -72,7 +72,7 @@ fn frame_landmarks(walk: &ObservedWalk, frame: usize) -> Vec<String> {
     let mut landmarks = Vec::new();
     for seen in walk.seen_from(frame) {
         let name = seen.sighting.name.as_str();
-        if landmarks.len() == MOST_LANDMARKS || names.iter().any(|other| names_agree(other, name)) {
+        if landmarks.len() == MAX_FRAME_LANDMARKS || names.iter().any(|other| names_agree(other, name)) {
             continue;
         }
         names.push(name);

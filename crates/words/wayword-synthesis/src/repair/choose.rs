@@ -7,7 +7,7 @@ use wayword_language::text::word_count;
 
 /// The cost of a word in natural logs of the probability to arrive: of two texts that lead there equally surely the
 /// shorter is chosen, and ten more words have to raise the probability by a twentieth.
-const COST_OF_A_WORD: f64 = 0.005;
+const WORD_COST_LN: f64 = 0.005;
 
 /// Writes all candidates, each with its repairs, and returns the best.
 pub(super) fn write_best(
@@ -76,7 +76,7 @@ fn best_candidate(accepted: Vec<TextCandidate>, order: InstructionOrder<'_>) -> 
 /// to take the right object there, less the cost of its words.
 fn text_worth(share: f64, instruction: &Instruction) -> f64 {
     let objects = instruction.ambiguity.as_ref().map_or(1, |ambiguity| ambiguity.objects.max(1));
-    share.max(f64::MIN_POSITIVE).ln() - (objects as f64).ln() - COST_OF_A_WORD * word_count(&instruction.text) as f64
+    share.max(f64::MIN_POSITIVE).ln() - (objects as f64).ln() - WORD_COST_LN * word_count(&instruction.text) as f64
 }
 
 #[cfg(test)]

@@ -94,7 +94,7 @@ pub fn write_and_repair(
 ) -> Result<WritingOutcome, ModelError> {
     let first = choose::write_best(writers.writer, observers, order)?;
     let (WritingOutcome::Rejected { .. }, Some(finisher)) = (&first, writers.finisher) else { return Ok(first) };
-    let more_repairs = InstructionOrder { repairs: order.repairs.max(FREE_REPAIRS), ..order };
+    let more_repairs = InstructionOrder { repairs: order.repairs.max(MIN_FINISHER_REPAIRS), ..order };
     let finished = choose::write_best(finisher, observers, more_repairs)?;
     Ok(match finished {
         WritingOutcome::Accepted(mut instruction) => {
@@ -107,7 +107,7 @@ pub fn write_and_repair(
 
 /// Least number of repairs that a finisher by rules may make. They cost nothing, so the limit for a model does not
 /// apply.
-const FREE_REPAIRS: u32 = 8;
+const MIN_FINISHER_REPAIRS: u32 = 8;
 
 /// Lets one writer write until a text passes; `candidate` is the number of the candidate.
 fn write_until_good(

@@ -9,7 +9,7 @@ use wayword_language::{
 };
 
 /// Most things that the text of a caption names; further ones are only among its sightings.
-const MOST_IN_TEXT: usize = 12;
+const MAX_NAMED_THINGS: usize = 12;
 
 /// The caption of an answer; its sightings are attributed to `by`.
 pub(super) fn caption_from_view(seen: ViewReading, by: &str) -> Caption {
@@ -29,16 +29,16 @@ pub(super) fn caption_from_view(seen: ViewReading, by: &str) -> Caption {
 /// The sightings of a thing, one for each possible name. If it may have several names, none of them counts as seen.
 fn of_thing<'a>(thing: &'a ViewThing, by: &'a str) -> impl Iterator<Item = ObjectSighting> + 'a {
     let witness = if thing.is_sure { WitnessAnswer::Seen } else { WitnessAnswer::Unsure };
-    thing.told.names.iter().map(move |name| {
-        let mut colours = thing.told.colours.iter().cloned();
+    thing.reading.names.iter().map(move |name| {
+        let mut colours = thing.reading.colours.iter().cloned();
         ObjectSighting {
             place: thing.place,
             colour: colours.next(),
             more_colours: colours.collect(),
-            material: thing.told.material.clone(),
+            material: thing.reading.material.clone(),
             is_far: thing.is_far,
             stands_out: thing.stands_out,
-            several: thing.told.several,
+            several: thing.reading.several,
             ..ObjectSighting::new(name, witness, by)
         }
     })
@@ -55,7 +55,7 @@ pub(crate) fn caption_text(
     let mut named: Vec<ObjectSighting> =
         sightings.iter().filter(|sighting| sighting.witness == WitnessAnswer::Seen).cloned().collect();
     named.sort_by_key(|sighting| (!sighting.stands_out, sighting.is_far));
-    named.truncate(MOST_IN_TEXT);
+    named.truncate(MAX_NAMED_THINGS);
     named.extend(sightings.iter().filter(|sighting| sighting.witness == WitnessAnswer::Denied).cloned());
     let mut sentences = vec![caption_of(room, &named)];
     if room.is_none() && !perhaps_rooms.is_empty() {

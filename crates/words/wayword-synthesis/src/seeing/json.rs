@@ -4,7 +4,7 @@
 use serde_json::{Deserializer, Value};
 
 /// Longest answer that is read, bytes; a longer one is an error. A full answer has about 2,000.
-pub(super) const MOST_BYTES: usize = 32 * 1024;
+pub(super) const MAX_ANSWER_BYTES: usize = 32 * 1024;
 
 /// The JSON of an answer.
 #[derive(Debug, PartialEq)]
@@ -19,8 +19,8 @@ pub(super) struct AnswerJson {
 /// # Errors
 /// When there is none, or the answer is too long; the message is meant for the model.
 pub(super) fn find_json(answer: &str) -> Result<AnswerJson, String> {
-    if answer.len() > MOST_BYTES {
-        return Err(format!("it has {} bytes, more than {MOST_BYTES}", answer.len()));
+    if answer.len() > MAX_ANSWER_BYTES {
+        return Err(format!("it has {} bytes, more than {MAX_ANSWER_BYTES}", answer.len()));
     }
     let start = answer.find('{').ok_or("there is no JSON in it")?;
     let text = &answer[start..];
@@ -43,7 +43,7 @@ struct JsonMender {
     /// For each bracket that is open, the one that closes it; the innermost is last.
     open: Vec<char>,
     /// The length of `out` up to the last complete object or array, and `open` at that place.
-    whole: Option<(usize, Vec<char>)>,
+    last_complete: Option<(usize, Vec<char>)>,
 }
 
 /// Deepest nesting of brackets, levels; the rest of a deeper text is cut off. JSON of the schema has four levels.
@@ -99,7 +99,7 @@ impl JsonMender {
         if self.open.last() == Some(&bracket) {
             self.open.pop();
             self.out.push(bracket);
-            self.whole = Some((self.out.len(), self.open.clone()));
+            self.last_complete = Some((self.out.len(), self.open.clone()));
         }
     }
 
@@ -111,7 +111,7 @@ impl JsonMender {
 
     /// Cuts the output to its last complete part and closes the open brackets.
     fn finish_cut(mut self) -> (String, bool) {
-        let Some((length, open)) = self.whole.take() else { return (String::new(), true) };
+        let Some((length, open)) = self.last_complete.take() else { return (String::new(), true) };
         self.out.truncate(length);
         self.out.extend(open.iter().rev());
         (self.out, true)

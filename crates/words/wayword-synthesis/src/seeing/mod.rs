@@ -36,7 +36,7 @@ const REPEAT_REQUEST_PREFIX: &str =
     "What does it show, in the form that was asked for? The last answer could not be read: ";
 
 /// Longest answer that a transcript keeps, bytes; the end of a longer one is cut off.
-const MOST_KEPT: usize = 8 * 1024;
+const MAX_TRANSCRIPT_ANSWER_BYTES: usize = 8 * 1024;
 
 /// The reason in a repeated request; `None` for any other question.
 pub(crate) fn complaint_in_question(question: &str) -> Option<&str> {
@@ -124,7 +124,7 @@ fn in_words(view: &View, questions: &[String], observers: ObservationRoles<'_>) 
 
 /// An answer as a transcript keeps it, cut to the limit.
 fn cut_answer(answer: &str) -> String {
-    answer[..answer.floor_char_boundary(MOST_KEPT)].to_owned()
+    answer[..answer.floor_char_boundary(MAX_TRANSCRIPT_ANSWER_BYTES)].to_owned()
 }
 
 /// The caption where no answer is in the requested form: the words of the last one are read as a description. A refusal

@@ -9,11 +9,11 @@ use wayword_language::{
 };
 
 /// Longest name, bytes; a longer text is no name.
-const MOST_BYTES: usize = 40;
+const MAX_NAME_BYTES: usize = 40;
 /// Most words of a name; a text with more is no name.
-const MOST_WORDS: usize = 4;
+const MAX_NAME_WORDS: usize = 4;
 /// Most names that one thing may have ("sofa or bench" has two); further ones are ignored.
-const MOST_NAMES: usize = 3;
+const MAX_NAMES: usize = 3;
 
 /// A name taken apart: "two small red chairs" is the name "chair", several of them, red.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -30,14 +30,14 @@ pub(crate) struct NameReading {
 
 /// Reads a name; the result has no names if the text is no name.
 pub(crate) fn read_name(said: &str) -> NameReading {
-    let said = &said[..said.floor_char_boundary(4 * MOST_BYTES)].to_lowercase().replace('’', "'");
+    let said = &said[..said.floor_char_boundary(4 * MAX_NAME_BYTES)].to_lowercase().replace('’', "'");
     let mut named = NameReading { is_guess: said.contains('?'), ..NameReading::default() };
     let plain = said.split('(').next().unwrap_or_default().replace('/', " or ");
     let words: Vec<&str> = plain.split(|c: char| !(c.is_alphanumeric() || "-'".contains(c))).collect();
     let words: Vec<&str> = words.into_iter().filter(|word| !word.is_empty()).collect();
     for alternative in words.split(|word| *word == "or") {
         if let Some(name) = one_name(alternative, &mut named).filter(|name| !named.names.contains(name))
-            && named.names.len() < MOST_NAMES
+            && named.names.len() < MAX_NAMES
         {
             named.names.push(name);
         }
@@ -113,8 +113,8 @@ fn is_name(name: &str) -> bool {
         let lists: [&[&str]; 4] = [&NO_OBJECTS, &ANYTHING, &ABSTRACT, &BUNCHES];
         lists.iter().any(|list| list.contains(&word.as_str())) || is_quality(word) || MATERIALS.contains(&word.as_str())
     };
-    let fits = name.len() <= MOST_BYTES
-        && name.split(' ').count() <= MOST_WORDS
+    let fits = name.len() <= MAX_NAME_BYTES
+        && name.split(' ').count() <= MAX_NAME_WORDS
         && name.chars().filter(|c| c.is_alphabetic()).count() >= 2;
     let in_lexicon = is_thing(&normalise_name(name))
         && find_thing(name).is_some_and(|thing| thing.name != "picture" || head != "image");
@@ -123,7 +123,7 @@ fn is_name(name: &str) -> bool {
 
 /// The rooms that a text may mean, and whether it is a guess.
 pub(crate) fn read_rooms(said: &str) -> (Vec<String>, bool) {
-    let said = &said[..said.floor_char_boundary(4 * MOST_BYTES)].to_lowercase();
+    let said = &said[..said.floor_char_boundary(4 * MAX_NAME_BYTES)].to_lowercase();
     let words: Vec<&str> =
         said.split(|c: char| !(c.is_alphanumeric() || c == '\'')).filter(|word| !word.is_empty()).collect();
     let is_guess = said.contains('?') || words.iter().any(|word| GUESSING.contains(word));
@@ -132,7 +132,7 @@ pub(crate) fn read_rooms(said: &str) -> (Vec<String>, bool) {
         let tells = |word: &&str| !GUESSING.contains(word) && !matches!(*word, "a" | "an" | "the");
         let room_words: Vec<&str> = alternative.iter().copied().filter(tells).collect();
         if let Some(name) = read_room(&room_words).filter(|name| !names.contains(name))
-            && names.len() < MOST_NAMES
+            && names.len() < MAX_NAMES
         {
             names.push(name);
         }
@@ -148,13 +148,13 @@ fn read_room(words: &[&str]) -> Option<String> {
         return None;
     }
     let known = |from: usize, to: usize| is_room(&normalise_name(&words[from..to].join(" ")));
-    for length in (1..=words.len().min(MOST_WORDS)).rev() {
+    for length in (1..=words.len().min(MAX_NAME_WORDS)).rev() {
         if let Some(from) = (0..=words.len() - length).rev().find(|from| known(*from, from + length)) {
             return Some(words[from..from + length].join(" "));
         }
     }
     let name = words.join(" ");
-    let is_short = (1..=3).contains(&words.len()) && name.len() <= MOST_BYTES;
+    let is_short = (1..=3).contains(&words.len()) && name.len() <= MAX_NAME_BYTES;
     let is_word = words.iter().all(|word| word.chars().all(char::is_alphabetic) && word.len() > 2);
     (is_short && is_word && words.last() == Some(&"room")).then_some(name)
 }

@@ -14,11 +14,11 @@ use wayword_language::{
 };
 
 /// Most things that are taken from one answer; further ones are ignored.
-const MOST_THINGS: usize = 24;
+const MAX_THINGS: usize = 24;
 /// Most ways out that are taken; further ones are ignored.
-const MOST_WAYS: usize = 8;
+const MAX_WAYS_OUT: usize = 8;
 /// Most words of a text that are searched for colours; later words are ignored.
-const MOST_COLOUR_WORDS: usize = 12;
+const MAX_COLOUR_WORDS: usize = 12;
 
 /// The content of a structured answer about a view.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -33,7 +33,7 @@ pub(super) struct ViewReading {
 /// A thing in a structured answer.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct ViewThing {
-    pub(super) told: NameReading,
+    pub(super) reading: NameReading,
     pub(super) is_sure: bool,
     pub(super) place: Option<ViewThird>,
     pub(super) is_far: bool,
@@ -66,7 +66,7 @@ pub(super) fn read_view_answer(answer: &str, takes_part: bool) -> Result<ViewRea
         .unwrap_or_default()
         .into_iter()
         .filter_map(|entry| thing_of(entry, &cues))
-        .take(MOST_THINGS)
+        .take(MAX_THINGS)
         .collect();
     if let Some(listed) = listed.filter(|listed| things.is_empty() && !is_empty(listed)) {
         return Err(format!("\"things\" is no list of things with names: {}", shorten_value(listed)));
@@ -78,7 +78,7 @@ pub(super) fn read_view_answer(answer: &str, takes_part: bool) -> Result<ViewRea
     Ok(ViewReading {
         room_is_sure: rooms.len() == 1 && says_sure && !is_guess,
         rooms,
-        ways: ways.into_iter().filter_map(read_way_out).take(MOST_WAYS).collect(),
+        ways: ways.into_iter().filter_map(read_way_out).take(MAX_WAYS_OUT).collect(),
         things: each_once(things),
     })
 }
@@ -108,9 +108,9 @@ fn value_text(value: &Value) -> String {
 /// A value as texts: the items of a list, or the parts of a text between commas.
 fn value_texts(value: &Value) -> Vec<String> {
     match value {
-        Value::Array(values) => values.iter().take(MOST_THINGS).map(value_text).collect(),
+        Value::Array(values) => values.iter().take(MAX_THINGS).map(value_text).collect(),
         Value::Null => Vec::new(),
-        Value::String(text) => text.split([',', ';']).take(MOST_THINGS).map(str::to_owned).collect(),
+        Value::String(text) => text.split([',', ';']).take(MAX_THINGS).map(str::to_owned).collect(),
         other => vec![value_text(other)],
     }
 }
@@ -118,7 +118,7 @@ fn value_texts(value: &Value) -> Vec<String> {
 /// The entries of a list. A single entry, and names with commas between them, are lists too.
 fn list_entries(value: &Value) -> Vec<&Value> {
     match value {
-        Value::Array(values) => values.iter().take(4 * MOST_THINGS).collect(),
+        Value::Array(values) => values.iter().take(4 * MAX_THINGS).collect(),
         Value::Null => Vec::new(),
         other => vec![other],
     }
@@ -178,7 +178,7 @@ fn thing_of(entry: &Value, cues: &[NameReading]) -> Option<ViewThing> {
             .and_then(|side| read_place(&value_text(side))),
         is_far: is_far.contains("far") || is_far.contains("back") || is_far == "true",
         stands_out,
-        told,
+        reading: told,
     })
 }
 
@@ -202,7 +202,7 @@ fn is_everywhere(name: &str) -> bool {
 fn read_colours(said: &str) -> Vec<String> {
     let said = said.to_lowercase();
     let words: Vec<&str> =
-        said.split(|c: char| !c.is_alphabetic()).filter(|word| !word.is_empty()).take(MOST_COLOUR_WORDS).collect();
+        said.split(|c: char| !c.is_alphabetic()).filter(|word| !word.is_empty()).take(MAX_COLOUR_WORDS).collect();
     let mut found = Vec::new();
     let mut at = 0;
     while at < words.len() {
@@ -286,14 +286,14 @@ fn is_opening(name: &str) -> bool {
 fn each_once(things: Vec<ViewThing>) -> Vec<ViewThing> {
     let mut merged: Vec<ViewThing> = Vec::new();
     for thing in things {
-        let same = |other: &&mut ViewThing| other.told.names == thing.told.names && other.place == thing.place;
+        let same = |other: &&mut ViewThing| other.reading.names == thing.reading.names && other.place == thing.place;
         match merged.iter_mut().find(same) {
             Some(other)
-                if other.told.colours == thing.told.colours
-                    || other.told.colours.is_empty()
-                    || thing.told.colours.is_empty() =>
+                if other.reading.colours == thing.reading.colours
+                    || other.reading.colours.is_empty()
+                    || thing.reading.colours.is_empty() =>
             {
-                other.told.several = true;
+                other.reading.several = true;
                 other.is_sure |= thing.is_sure;
                 other.stands_out |= thing.stands_out;
                 other.is_far &= thing.is_far;

@@ -153,7 +153,7 @@ fn an_answer_of_two_megabytes_is_refused_and_cut_in_the_transcript() {
     let (caption, asked) = seen(&[&long, &long], 0);
     assert_eq!(caption.form, Some(FormOutcome::Broken));
     assert!(asked[1].contains("bytes, more than"), "{}", asked[1]);
-    assert!(caption.transcript.iter().all(|exchange| exchange.answer.len() <= MOST_KEPT));
+    assert!(caption.transcript.iter().all(|exchange| exchange.answer.len() <= MAX_TRANSCRIPT_ANSWER_BYTES));
     let many =
         format!("{{\"room\": \"hall\", \"things\": [{}]}}", "{\"name\": \"sofa\", \"side\": \"x\"}, ".repeat(900));
     assert!(seen(&[&many, &many], 0).0.sightings.len() <= 24);

@@ -73,7 +73,7 @@ fn count_text(text: &str, reading: &TextReading, counts: &mut WordingCounts) {
 }
 
 /// The tables with constructions for the properties that a text can mention of an object.
-const OF_OBJECT: [&str; 15] = [
+const OBJECT_TABLES: [&str; 15] = [
     "closest",
     "near",
     "above",
@@ -100,7 +100,7 @@ fn count_object(task: &str, counts: &mut WordingCounts) {
     let whole = parts_of.iter().fold(task.clone(), |text, part| text.replace(&format!(" {part} of "), " "));
     let to_the_left = task.replace(" right ", " left ");
     let mut has_property = false;
-    for table in OF_OBJECT {
+    for table in OBJECT_TABLES {
         let text = match table {
             "side" | "middle" | "highest" | "lowest" => &whole,
             "beside" => &to_the_left,
@@ -257,7 +257,7 @@ mod tests {
         };
         let fill =
             |way: &str| way.replace("{x}", "sofa").replace("{y}", "sink").replace("{th}", "second").replace("{n}", "2");
-        for table in OF_OBJECT {
+        for table in OBJECT_TABLES {
             for way in built_in.table(table).keys().map(|way| fill(way)) {
                 let object = if way.contains("{o}") { way.replace("{o}", "lamp") } else { format!("the lamp {way}") };
                 let text = format!("Go to the kitchen and clean {object}");
@@ -280,10 +280,10 @@ mod tests {
     fn no_share_of_the_built_in_wording_is_missing() {
         let built_in = PlaceWording::built_in();
         for table in
-            OF_OBJECT.iter().chain(&["order", "opener", "level", "room by", "room with", "told", "link", "wall"])
+            OBJECT_TABLES.iter().chain(&["order", "opener", "level", "room by", "room with", "told", "link", "wall"])
         {
             assert!(!built_in.table(table).is_empty(), "{table}");
         }
-        assert!(OF_OBJECT.iter().all(|table| built_in.table("told").contains_key(*table)));
+        assert!(OBJECT_TABLES.iter().all(|table| built_in.table("told").contains_key(*table)));
     }
 }

@@ -22,9 +22,9 @@ const BUILT_IN: [(&str, &str); 2] =
 const PLACE_WORDING_TOML: &str = include_str!("builtin/place.toml");
 
 /// Most reference texts of a style; a style with more is an error.
-const MOST_REFERENCES: usize = 100_000;
+const MAX_REFERENCES: usize = 100_000;
 /// Most bytes of each reference text; a style with a longer one is an error.
-const MOST_BYTES: usize = 4000;
+const MAX_REFERENCE_BYTES: usize = 4000;
 
 /// Why a style cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -48,7 +48,7 @@ pub enum StyleError {
     NoReferences(String),
     /// The style has too many or too long reference texts.
     #[error(
-        "style {0} has more than {MOST_REFERENCES} reference texts, or one of more than {MOST_BYTES} bytes: give fewer or shorter ones"
+        "style {0} has more than {MAX_REFERENCES} reference texts, or one of more than {MAX_REFERENCE_BYTES} bytes: give fewer or shorter ones"
     )]
     TooLarge(String),
 }
@@ -110,7 +110,7 @@ pub fn validate_style(style: InstructionStyle) -> Result<InstructionStyle, Style
     if style.references.iter().all(|text| text.trim().is_empty()) {
         return Err(StyleError::NoReferences(style.name));
     }
-    if style.references.len() > MOST_REFERENCES || style.references.iter().any(|text| text.len() > MOST_BYTES) {
+    if style.references.len() > MAX_REFERENCES || style.references.iter().any(|text| text.len() > MAX_REFERENCE_BYTES) {
         return Err(StyleError::TooLarge(style.name));
     }
     Ok(style)

@@ -11,12 +11,12 @@ use wayword_language::{
 };
 
 /// A verb is used if the references have it at least this often for one kind of thing.
-const LEAST_USES: f64 = 3.0;
+const MIN_VERB_USES: f64 = 3.0;
 /// Words that may stand between a verb and its object.
 const TASK_PARTICLES: [&str; 14] =
     ["me", "on", "off", "up", "down", "out", "in", "away", "over", "at", "into", "inside", "under", "back"];
 /// A verb for a whole class of things also needs this share of the tasks on the class.
-const LEAST_SHARE: f64 = 0.01;
+const MIN_CLASS_SHARE: f64 = 0.01;
 
 /// Counts the verb of a text's task, with `{o}` in place of the object.
 pub(super) fn count_verb(words: &[String], reading: &TextReading, counts: &mut WordingCounts) {
@@ -65,7 +65,8 @@ pub(super) fn retain_common_verbs(counts: &mut WordingCounts) {
     for (table, verbs) in &mut counts.0 {
         let Some(owner) = table.strip_prefix(VERB_TABLE_PREFIX) else { continue };
         let all: f64 = verbs.values().sum();
-        let least = if owner.starts_with("class ") { (all * LEAST_SHARE).max(LEAST_USES) } else { LEAST_USES };
+        let least =
+            if owner.starts_with("class ") { (all * MIN_CLASS_SHARE).max(MIN_VERB_USES) } else { MIN_VERB_USES };
         let object = if owner.starts_with("class ") { "lamp" } else { owner };
         verbs.retain(|verb, count| *count >= least && is_read(verb, object));
     }

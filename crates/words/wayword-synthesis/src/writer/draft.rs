@@ -16,11 +16,11 @@ use wayword_language::text::capitalise_first;
 /// A text in the making. Clauses, phrases and joints belong together one by one; a joint comes before its phrase.
 pub(super) struct TextDraft<'a> {
     /// The clauses of the plan, with their things.
-    told: Vec<WayClause>,
+    clauses: Vec<WayClause>,
     phrases: Vec<ClausePhrase>,
     joints: Vec<ClauseJoint>,
     /// How often each phrase was replaced.
-    times: Vec<usize>,
+    reword_counts: Vec<usize>,
     names: ChosenNames<'a>,
     /// Whether its last phrase is a task, which stays as it is.
     has_task: bool,
@@ -46,7 +46,7 @@ impl<'a> TextDraft<'a> {
         }
         let joints = choose_joints(&told, &phrases, brief, dice);
         let times = vec![0; told.len()];
-        Self { told, phrases, joints, times, names, has_task: task.is_some(), full_stop }
+        Self { clauses: told, phrases, joints, reword_counts: times, names, has_task: task.is_some(), full_stop }
     }
 
     /// The text, and where each of its phrases begins, in bytes.
@@ -74,16 +74,16 @@ impl<'a> TextDraft<'a> {
     pub(super) fn reword_span(&mut self, span: [usize; 2], starts: &[usize], brief: &WritingBrief<'_>, dice: TextDice) {
         let first = starts.iter().rposition(|start| *start <= span[0]).unwrap_or(0);
         let end = starts.iter().position(|start| *start >= span[1]).unwrap_or(starts.len()).max(first + 1);
-        let drawn = |at: usize| self.told[at].clause_rng("reword", dice).random::<u32>();
-        let Some(at) = (first..end).min_by_key(|at| (self.times[*at], drawn(*at))) else { return };
-        self.times[at] += 1;
-        let dice = dice.other_draws(self.times[at]);
-        let rng = &mut self.told[at].clause_rng("reword", dice);
+        let drawn = |at: usize| self.clauses[at].clause_rng("reword", dice).random::<u32>();
+        let Some(at) = (first..end).min_by_key(|at| (self.reword_counts[*at], drawn(*at))) else { return };
+        self.reword_counts[at] += 1;
+        let dice = dice.other_draws(self.reword_counts[at]);
+        let rng = &mut self.clauses[at].clause_rng("reword", dice);
         let is_task = self.has_task && at + 1 == self.phrases.len();
         if at > first && self.joints[at] != ClauseJoint::Run && (is_task || rng.random_bool(0.5)) {
             self.joints[at] = self.other_joint(at, brief, rng);
         } else if !is_task {
-            let phrase = self.names.clause_phrase(&self.told, at, brief, dice);
+            let phrase = self.names.clause_phrase(&self.clauses, at, brief, dice);
             self.joints[at] = match (is_until(&phrase.text), self.joints[at]) {
                 (true, _) => ClauseJoint::Run,
                 (false, ClauseJoint::Run) => ClauseJoint::And,

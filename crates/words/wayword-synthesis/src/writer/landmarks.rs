@@ -30,7 +30,7 @@ pub(super) struct LandmarkSearch {
     /// The least salience, as the lexicon rates things, from 0.
     pub(super) salience: u8,
     /// The use of the landmark.
-    pub(super) to: LandmarkUse,
+    pub(super) purpose: LandmarkUse,
 }
 
 /// A spot of a text that may name a thing.
@@ -70,18 +70,18 @@ pub(super) struct ChosenLandmark {
 /// Greatest distance of a landmark from the frame where it is named, metres.
 const NEAR_M: f64 = 2.5;
 /// Greatest distance of a thing that the walker stops at, metres.
-const STOP_M: f64 = 1.9;
+const MAX_STOP_DISTANCE_M: f64 = 1.9;
 
 /// How far to either side a walker who looks ahead sees, radians.
-const AHEAD_RAD: f64 = 1.05;
+const VISIBLE_AHEAD_RAD: f64 = 1.05;
 /// The same for a walker who looks around, radians.
-const BESIDE_RAD: f64 = 1.9;
+const VISIBLE_BESIDE_RAD: f64 = 1.9;
 /// A thing closer to the walking direction than this is in front, radians.
 const IN_FRONT_RAD: f64 = 1.1;
 /// Things of one name are "the two chairs" if they are at most this far apart, metres.
 const TOGETHER_M: f64 = 1.5;
 /// Bonus, in units of a thing's value, of a thing in front of the walker at a stop.
-const IN_FRONT: f64 = 1.5;
+const IN_FRONT_BONUS: f64 = 1.5;
 /// Greatest distance between two things that are named together, metres.
 const BESIDE_M: f64 = 1.5;
 
@@ -91,17 +91,17 @@ const MENTIONED_WEIGHT: f64 = 0.7;
 /// Weight of a thing's salience.
 const SALIENCE_WEIGHT: f64 = 0.8;
 /// Extra reach for wide things, metres: a bed counts as near from this much farther, seats and tables from half of it.
-const WIDE_M: f64 = 1.2;
+const WIDE_THING_REACH_M: f64 = 1.2;
 /// Upper bound of the random part of a thing's value.
-const CHANCE_WORTH: f64 = 1.5;
+const MAX_CHANCE_WORTH: f64 = 1.5;
 /// Share of things with a much larger random part, so that texts differ.
 const MORE_CHANCE_SHARE: f64 = 0.2;
 /// Deduction for each earlier search of the spot that failed.
-const LATER_SEARCH: f64 = 2.0;
+const LATER_SEARCH_COST: f64 = 2.0;
 /// Deduction at a spot that replaces another one.
 const SPARE_SPOT_COST: f64 = 1.0;
 /// Bonus of a thing at the stop of the walk.
-const AT_THE_END: f64 = 0.5;
+const STOP_BONUS: f64 = 0.5;
 
 /// The use of a landmark in a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -137,14 +137,14 @@ impl LandmarkHome<'_> {
 
     /// The bonus for being at the stop, where the search was for the stop.
     fn stop_bonus(&self) -> f64 {
-        if self.found_by.is_some_and(|search| search.to == LandmarkUse::Stop) { AT_THE_END } else { 0.0 }
+        if self.found_by.is_some_and(|search| search.purpose == LandmarkUse::Stop) { STOP_BONUS } else { 0.0 }
     }
 }
 
 impl LandmarkSearch {
     /// The search for a second thing near the first.
     fn search_beside(self) -> Self {
-        Self { to: if self.to == LandmarkUse::Stop { LandmarkUse::Stop } else { LandmarkUse::Here }, ..self }
+        Self { purpose: if self.purpose == LandmarkUse::Stop { LandmarkUse::Stop } else { LandmarkUse::Here }, ..self }
     }
 }
 
@@ -175,7 +175,7 @@ impl<'a> LandmarkChooser<'a> {
 
     /// The landmark of at least that salience that identifies a frame best, if there is one.
     pub(super) fn choose_for_frame(&self, frame: usize, salience: u8) -> Option<ChosenLandmark> {
-        let search = LandmarkSearch { frame, salience, to: LandmarkUse::Here };
+        let search = LandmarkSearch { frame, salience, purpose: LandmarkUse::Here };
         let found = self.brief.memory.seen_from(frame).filter(|seen| self.search_finds(search, seen));
         let best = found.max_by(|a, b| self.landmark_worth(a, search).total_cmp(&self.landmark_worth(b, search)))?;
         Some(self.describe_landmark(best, frame))
@@ -215,7 +215,7 @@ impl<'a> LandmarkChooser<'a> {
         let home_at = |(spot, LandmarkSpot { searches, pair, is_spare }): (usize, &LandmarkSpot)| {
             let found = searches.iter().enumerate().find(|(_, search)| self.search_finds(**search, seen));
             if let Some((rank, search)) = found {
-                let deduction = LATER_SEARCH * rank as f64 + if *is_spare { SPARE_SPOT_COST } else { 0.0 };
+                let deduction = LATER_SEARCH_COST * rank as f64 + if *is_spare { SPARE_SPOT_COST } else { 0.0 };
                 let worth = self.landmark_worth(seen, *search) - deduction;
                 return Some(LandmarkHome { spot, worth, seen, found_by: Some(*search) });
             }
@@ -238,7 +238,11 @@ impl<'a> LandmarkChooser<'a> {
     }
 
     /// Whether a search finds a thing.
-    fn search_finds(&self, LandmarkSearch { frame, salience, to }: LandmarkSearch, seen: &RememberedThing) -> bool {
+    fn search_finds(
+        &self,
+        LandmarkSearch { frame, salience, purpose: to }: LandmarkSearch,
+        seen: &RememberedThing,
+    ) -> bool {
         seen.glimpse_from(frame).is_some()
             && is_tellable(&seen.name, salience)
             && self.is_free(&seen.name)
@@ -246,15 +250,15 @@ impl<'a> LandmarkChooser<'a> {
     }
 
     /// The value of a thing as the landmark of a search.
-    fn landmark_worth(&self, seen: &RememberedThing, LandmarkSearch { frame, to, .. }: LandmarkSearch) -> f64 {
+    fn landmark_worth(&self, seen: &RememberedThing, LandmarkSearch { frame, purpose: to, .. }: LandmarkSearch) -> f64 {
         let kind = thing_kind(&seen.name);
         // Now and then the random part dominates, so that texts differ.
         let chance = if self.dice.named_rng(&["rare", &kind]).random_bool(MORE_CHANCE_SHARE) {
-            4.0 * CHANCE_WORTH
+            4.0 * MAX_CHANCE_WORTH
         } else {
-            CHANCE_WORTH
+            MAX_CHANCE_WORTH
         };
-        let ahead = if to == LandmarkUse::Stop && is_in_front(seen, frame) { IN_FRONT } else { 0.0 };
+        let ahead = if to == LandmarkUse::Stop && is_in_front(seen, frame) { IN_FRONT_BONUS } else { 0.0 };
         let mut drawn = self.dice.named_rng(&["thing", &kind]);
         self.landmark_score(seen, frame) + ahead + drawn.random_range(0.0..chance)
     }
@@ -271,7 +275,7 @@ impl<'a> LandmarkChooser<'a> {
         let beside = others.map(|other| other.seen).filter(|seen| {
             let is_beside = seen.position.is_some_and(|other| other.distance(place) <= BESIDE_M);
             let is_other = !names_agree(&seen.name, &landmark.name) && seen.colour.is_none();
-            is_beside && is_other && self.fits_use(seen, here.frame, here.to)
+            is_beside && is_other && self.fits_use(seen, here.frame, here.purpose)
         });
         let best =
             beside.max_by(|a, b| self.landmark_score(a, here.frame).total_cmp(&self.landmark_score(b, here.frame)))?;
@@ -286,19 +290,19 @@ impl<'a> LandmarkChooser<'a> {
     fn fits_use(&self, seen: &RememberedThing, frame: usize, to: LandmarkUse) -> bool {
         let memory = self.brief.memory;
         let wide_m = match find_thing(&seen.name).map(|thing| thing.class) {
-            Some(ThingClass::Bed) => WIDE_M,
-            Some(ThingClass::Seat | ThingClass::Surface) => WIDE_M / 2.0,
+            Some(ThingClass::Bed) => WIDE_THING_REACH_M,
+            Some(ThingClass::Seat | ThingClass::Surface) => WIDE_THING_REACH_M / 2.0,
             _ => 0.0,
         };
-        let most_m = if to == LandmarkUse::Stop { STOP_M } else { NEAR_M + wide_m };
+        let most_m = if to == LandmarkUse::Stop { MAX_STOP_DISTANCE_M } else { NEAR_M + wide_m };
         let is_near = memory.distance_m(seen, frame).is_none_or(|distance_m| distance_m <= most_m);
         let side = memory.side_at(seen, frame);
         let is_there = match to {
-            LandmarkUse::Here => side != Some(Side::Behind) && was_seen(seen, frame, AHEAD_RAD),
+            LandmarkUse::Here => side != Some(Side::Behind) && was_seen(seen, frame, VISIBLE_AHEAD_RAD),
             LandmarkUse::Onward => {
-                was_seen(seen, frame, AHEAD_RAD) && (side == Some(Side::Ahead) || is_passed(seen, frame))
+                was_seen(seen, frame, VISIBLE_AHEAD_RAD) && (side == Some(Side::Ahead) || is_passed(seen, frame))
             }
-            LandmarkUse::Beside => was_seen(seen, frame, BESIDE_RAD) && is_passed(seen, frame),
+            LandmarkUse::Beside => was_seen(seen, frame, VISIBLE_BESIDE_RAD) && is_passed(seen, frame),
             LandmarkUse::Stop => side != Some(Side::Behind) && !hangs_overhead(&seen.name),
         };
         // Without positions the directions of things are unknown.

@@ -34,7 +34,7 @@ fn goes_out(clause: &WayClause, brief: &WritingBrief<'_>) -> bool {
 }
 
 /// Distance into a room up to which the walker is "just inside", metres.
-const STEP_M: f64 = 2.5;
+const JUST_INSIDE_M: f64 = 2.5;
 
 /// How far the walker has gone in the room of a frame when arriving there, metres.
 fn walked_in_m(at: usize, brief: &WritingBrief<'_>) -> f64 {
@@ -92,7 +92,7 @@ impl<'a> ChosenNames<'a> {
         let needs = ShapeNeeds {
             motion,
             names_room: has_to_name(clauses, at, brief),
-            is_near_door: clause.kind != ClauseKind::StopIn || walked_in_m(clause.at, brief) <= STEP_M,
+            is_near_door: clause.kind != ClauseKind::StopIn || walked_in_m(clause.at, brief) <= JUST_INSIDE_M,
             leaves: goes_out(clause, brief),
             may_run: follows,
         };
@@ -223,7 +223,7 @@ const PAIR_WORDS: f64 = 1.0;
 const SIDE_WORDS: f64 = 2.0;
 /// The assumed share of places for things that get one. It is fixed, so that the plan does not depend on the things
 /// that are seen.
-const WITH_A_THING: f64 = 0.6;
+const FILLED_OFFER_SHARE: f64 = 0.6;
 
 impl<'a> ClauseLengths<'a> {
     pub(super) fn for_way(way: &'a WayWording) -> Self {
@@ -241,7 +241,7 @@ impl<'a> ClauseLengths<'a> {
 
     /// How many words a plan is expected to have.
     pub(super) fn expected_words(&mut self, plan: &[WayClause]) -> f64 {
-        self.sum_words(plan, WITH_A_THING)
+        self.sum_words(plan, FILLED_OFFER_SHARE)
     }
 
     /// Number of words of a plan if every place gets a thing.

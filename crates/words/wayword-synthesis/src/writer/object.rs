@@ -28,7 +28,7 @@ pub(super) struct TaskObject<'a> {
 }
 
 /// How much more often "on the wall" is used for hanging things than for all things.
-const OF_HANGING: f64 = 10.0;
+const HANGING_WALL_FACTOR: f64 = 10.0;
 
 impl<'a> TaskObject<'a> {
     /// The target of the path, or an object that is chosen from those in view at the end.
@@ -125,7 +125,7 @@ impl<'a> TaskObject<'a> {
             }
         }
         let is_on = by.iter().any(|by| matches!(by, ObjectDistinction::Related { relation: ObjectRelation::On, .. }));
-        if self.hangs && !is_on && rng.random_bool((wording.share_of_texts("wall") * OF_HANGING).min(0.6)) {
+        if self.hangs && !is_on && rng.random_bool((wording.share_of_texts("wall") * HANGING_WALL_FACTOR).min(0.6)) {
             behind.insert(0, wording.draw("wall", rng, |_| true).unwrap_or("on the wall").to_owned());
         }
         let link = wording.draw("link", rng, |link| link != "located" && link != "that's" || behind.len() == 1);

@@ -10,7 +10,7 @@ use wayword_language::lexicon::room_name;
 /// Phrases for a path that goes nowhere.
 const STAY_PHRASES: &[&str] = &["stay where you are", "remain where you are", "stay here", "remain here"];
 /// The same with the room.
-const STAY_IN: &[&str] = &["stay in {r}", "remain in {r}", "stay here in {r}"];
+const STAY_IN_ROOM_PHRASES: &[&str] = &["stay in {r}", "remain in {r}", "stay here in {r}"];
 
 /// Draws one of several options, all with the same probability.
 pub(super) fn pick_any<'a, T: ?Sized>(rng: &mut ChaCha8Rng, options: &[&'a T]) -> &'a T {
@@ -49,7 +49,7 @@ pub(super) fn storey_ordinal(level: u32) -> Option<&'static str> {
 /// A phrase for a path that goes nowhere, with its room where the name is known.
 pub(super) fn stay_phrase(room: Option<&str>, rng: &mut ChaCha8Rng) -> String {
     match room {
-        Some(room) => fill_gaps(pick_any(rng, STAY_IN), &[("{r}", &with_the(room))]),
+        Some(room) => fill_gaps(pick_any(rng, STAY_IN_ROOM_PHRASES), &[("{r}", &with_the(room))]),
         None => pick_any(rng, STAY_PHRASES).to_owned(),
     }
 }

@@ -28,7 +28,7 @@ const MAX_PLANS: usize = 4;
 /// Cost of a fault that no text should have (a copied phrase, too many words), in words of length difference.
 const NEVER_FAULT_WORDS: f64 = 1000.0;
 /// Cost of a run of words that a draft shares with a reference, in words of length difference.
-const RATHER_NOT: f64 = 100.0;
+const AVOIDED_FAULT_WORDS: f64 = 100.0;
 
 /// A text that names the place at the end, and what to do there.
 pub(super) fn the_place(brief: &WritingBrief<'_>, dice: TextDice) -> Result<String, WriteError> {
@@ -58,14 +58,14 @@ pub(super) fn the_place(brief: &WritingBrief<'_>, dice: TextDice) -> Result<Stri
             let text = draft_text(brief, &goal, &object, plan, rng);
             let count = word_count(&text);
             let copied_cost = if copies.find_copy(&text, topic).is_some() { NEVER_FAULT_WORDS } else { 0.0 };
-            let shared_cost = if copies.find_avoidable_copy(&text).is_some() { RATHER_NOT } else { 0.0 };
+            let shared_cost = if copies.find_avoidable_copy(&text).is_some() { AVOIDED_FAULT_WORDS } else { 0.0 };
             let over_limit_cost = if count < limit { 0.0 } else { NEVER_FAULT_WORDS };
             let fault = count.abs_diff(words) as f64 + copied_cost + shared_cost + over_limit_cost;
             if best.as_ref().is_none_or(|(least, _)| fault < *least) {
                 best = Some((fault, text));
             }
         }
-        if best.as_ref().is_some_and(|(fault, _)| *fault < RATHER_NOT) {
+        if best.as_ref().is_some_and(|(fault, _)| *fault < AVOIDED_FAULT_WORDS) {
             break;
         }
     }

@@ -10,7 +10,7 @@ use super::{
     landmarks::LandmarkChooser,
     naming::ClauseLengths,
     route::{
-        self, KEPT_WEIGHT, LONG_M, WayClause, carry_out, fill, number_clauses, stands_still, usable_room,
+        self, KEPT_WEIGHT, LONG_HOP_M, WayClause, carry_out, fill, number_clauses, stands_still, usable_room,
         with_stand_ins,
     },
     task,
@@ -39,13 +39,13 @@ const SHARED_COST: usize = 1;
 /// Cost of too many words.
 const OVER_LIMIT_COST: usize = 10;
 /// Least number of words that a text is planned for.
-const LEAST_WORDS: usize = 8;
+const MIN_PLANNED_WORDS: usize = 8;
 /// Only clauses below this weight are dropped from a text that is too long.
 const OPTIONAL_BELOW_WEIGHT: u8 = 3;
 
 /// A text that describes the way step by step. `task` is what to do at the end, in words, with the name of its object.
 pub(super) fn the_way(brief: &WritingBrief<'_>, task: Option<&(String, String)>, dice: TextDice) -> String {
-    let words = brief.target_words().max(LEAST_WORDS);
+    let words = brief.target_words().max(MIN_PLANNED_WORDS);
     let end = brief.memory.frame_count().saturating_sub(1);
     let rooms: Vec<String> = brief.memory.room_at(end).map(str::to_owned).into_iter().collect();
     let topic = TextTopic { target: task.map(|(_, name)| name.as_str()), rooms: &rooms };
@@ -79,7 +79,7 @@ fn ranked_plans(brief: &WritingBrief<'_>, words: f64, dice: TextDice) -> Vec<(Wa
     let mut plans: Vec<(WayTextPlan, TextDice)> =
         numbered.map(|dice| (WayTextPlan::for_length(brief, words, dice), dice)).collect();
     // The sort is stable: of plans that are near enough, the first is taken.
-    plans.sort_by_key(|(plan, _)| (plan.off - PLAN_LENGTH_TOLERANCE_WORDS).max(0.0).round() as u64);
+    plans.sort_by_key(|(plan, _)| (plan.length_error_words - PLAN_LENGTH_TOLERANCE_WORDS).max(0.0).round() as u64);
     plans
 }
 
@@ -89,7 +89,7 @@ struct WayTextPlan {
     /// Whether a text of one sentence ends in a full stop.
     full_stop: bool,
     /// Difference from the drawn length, words, as far as it is known before things are filled in.
-    off: f64,
+    length_error_words: f64,
 }
 
 impl WayTextPlan {
@@ -119,7 +119,7 @@ impl WayTextPlan {
         let over = lengths.most_words(&clauses) - words * MAX_LENGTH_RATIO;
         let off = (lengths.expected_words(&clauses) - words).abs().max(over);
         Self {
-            off,
+            length_error_words: off,
             clauses,
             full_stop: dice.named_rng(&["full stop"]).random_bool(brief.profile.full_stops.clamp(0.0, 1.0)),
         }
@@ -207,7 +207,7 @@ fn bridge_gaps(clauses: &mut [WayClause], brief: &WritingBrief<'_>) {
         let is_end = at + 1 == clauses.len();
         let needs = match before {
             None => is_end,
-            Some(before) if is_end => brief.walk.walked_m(clauses[before].at, clauses[at].at) >= LONG_M,
+            Some(before) if is_end => brief.walk.walked_m(clauses[before].at, clauses[at].at) >= LONG_HOP_M,
             Some(before) => clauses[before].is_bare() && clauses[at].is_bare(),
         };
         let first = before.map_or(0, |before| before + 1);

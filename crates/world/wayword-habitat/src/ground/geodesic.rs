@@ -45,7 +45,8 @@ impl NavMeshGround {
             return Some(Vec::new());
         }
         let island = self.islands.get(start.island)?;
-        let search_mesh = island.maze.get_or_init(|| super::IslandSearchMesh::new(&self.polygons, &island.polygons));
+        let search_mesh =
+            island.search_mesh.get_or_init(|| super::IslandSearchMesh::new(&self.polygons, &island.polygons));
         search_mesh.as_ref()?.shortest_bends(start, end)
     }
 }

@@ -24,7 +24,7 @@ pub(super) fn find_islands(polygons: &mut [GroundPolygon]) -> Vec<NavMeshIsland>
         }
         members.sort_unstable();
         let area_m2 = members.iter().map(|polygon| polygons[*polygon].area_m2).sum();
-        islands.push(NavMeshIsland { polygons: members, area_m2, maze: OnceLock::new() });
+        islands.push(NavMeshIsland { polygons: members, area_m2, search_mesh: OnceLock::new() });
     }
     islands.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2));
     for (number, island) in islands.iter().enumerate() {

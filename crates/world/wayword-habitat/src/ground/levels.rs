@@ -6,9 +6,9 @@ use wayword_core::DVec3;
 /// Height of the slices into which the ground is sorted, metres.
 const SLICE_M: f64 = 0.25;
 /// Least height between two storeys, metres.
-const STOREY_M: f64 = 2.0;
+const MIN_STOREY_HEIGHT_M: f64 = 2.0;
 /// Least area of a storey, as a share of the largest one's area; a landing has less.
-const LEAST_SHARE: f64 = 0.15;
+const MIN_STOREY_AREA_SHARE: f64 = 0.15;
 /// A place at most this far below a storey's floor belongs to that storey, because it is nearer than the storey below;
 /// metres.
 const BELOW_M: f64 = 1.0;
@@ -31,7 +31,9 @@ pub(super) fn find_storeys(ground: &NavMeshGround) -> Vec<f64> {
     let mut floors: Vec<f64> = Vec::new();
     for (slice, area_m2) in by_area {
         let height_m = (slice as f64 + 0.5) * SLICE_M;
-        if area_m2 >= LEAST_SHARE * largest && floors.iter().all(|floor| (floor - height_m).abs() >= STOREY_M) {
+        if area_m2 >= MIN_STOREY_AREA_SHARE * largest
+            && floors.iter().all(|floor| (floor - height_m).abs() >= MIN_STOREY_HEIGHT_M)
+        {
             floors.push(height_m);
         }
     }

@@ -33,7 +33,7 @@ use std::sync::OnceLock;
 use wayword_core::DVec3;
 
 /// Polygons with less area than this do not count as ground (`PathFinder::removeZeroAreaPolys`), square metres.
-const LEAST_AREA_M2: f64 = 1e-5;
+const MIN_POLYGON_AREA_M2: f64 = 1e-5;
 
 /// The walkable ground of a scene.
 #[derive(Debug)]
@@ -56,7 +56,7 @@ struct NavMeshIsland {
     polygons: Vec<usize>,
     area_m2: f64,
     /// Prepared for shortest ways when the first one is needed.
-    maze: OnceLock<Option<IslandSearchMesh>>,
+    search_mesh: OnceLock<Option<IslandSearchMesh>>,
 }
 
 impl NavMeshGround {
@@ -79,7 +79,7 @@ impl NavMeshGround {
         // Smaller polygons stay in the list, because polygons are referred to by index, but one cannot stand on them or
         // cross them.
         for polygon in &mut polygons {
-            polygon.is_walkable &= polygon.area_m2 >= LEAST_AREA_M2;
+            polygon.is_walkable &= polygon.area_m2 >= MIN_POLYGON_AREA_M2;
         }
         let islands = islands::find_islands(&mut polygons);
         Self { polygons, islands, main: 0, storeys_m: Vec::new(), climb_m }.keeping_to(0)

@@ -7,12 +7,12 @@ use std::collections::BTreeMap;
 use wayword_core::DVec3;
 
 /// Least length that two edges must share for a portal, metres.
-const LEAST_M: f64 = 0.02;
+const MIN_SHARED_LENGTH_M: f64 = 0.02;
 /// How far the sides of two tiles may lie apart, metres.
-const APART_M: f64 = 0.01;
+const MAX_SIDE_GAP_M: f64 = 0.01;
 /// Most portals in one edge; further ones are not entered. Detour allows four. Without a limit, every one of many edges at the
 /// same place would be joined with every other.
-const MAX_DOORS: usize = 32;
+const MAX_PORTALS_PER_EDGE: usize = 32;
 
 /// An edge on a side of a tile, where a portal may be.
 #[derive(Debug)]
@@ -72,7 +72,7 @@ fn join_openings(polygons: &mut [GroundPolygon], one: &TileOpening, other: &Tile
     // Wayword's x is Habitat's x, and Wayword's y is Habitat's -z. The side runs along the axis that does not cross it.
     let across = |place: DVec3| if one.axis == 0 { place.x } else { place.y };
     let along = |place: DVec3| if one.axis == 0 { place.y } else { place.x };
-    if (across(one.ends[0]) - across(other.ends[0])).abs() > APART_M {
+    if (across(one.ends[0]) - across(other.ends[0])).abs() > MAX_SIDE_GAP_M {
         return;
     }
     let span = |opening: &TileOpening| {
@@ -81,7 +81,7 @@ fn join_openings(polygons: &mut [GroundPolygon], one: &TileOpening, other: &Tile
     };
     let (a, b) = (span(one), span(other));
     let (low, high) = (a.0.max(b.0), a.1.min(b.1));
-    if high - low < LEAST_M {
+    if high - low < MIN_SHARED_LENGTH_M {
         return;
     }
     let height = |opening: &TileOpening, at: f64| {
@@ -97,7 +97,7 @@ fn join_openings(polygons: &mut [GroundPolygon], one: &TileOpening, other: &Tile
         return;
     }
     let portal_count = |opening: &TileOpening| polygons[opening.polygon].corners[opening.corner].portals.len();
-    if portal_count(one) >= MAX_DOORS || portal_count(other) >= MAX_DOORS {
+    if portal_count(one) >= MAX_PORTALS_PER_EDGE || portal_count(other) >= MAX_PORTALS_PER_EDGE {
         return;
     }
     for (opening, beyond) in [(one, other), (other, one)] {

@@ -22,11 +22,11 @@ const TRIES_PER_M2: f64 = 12.0;
 const MAX_TRIES: usize = 40_000;
 /// Most viewpoints, without those at bends: all pairs of them are examined for edges. On 3,000 square metres or less,
 /// where [`MAX_TRIES`] does not thin out the tries, fewer are found.
-const MAX_PLACED: usize = 2000;
+const MAX_VIEWPOINTS: usize = 2000;
 /// Most failed searches for a way between two parts; after them, parts stay unconnected.
-const MAX_IN_VAIN: usize = 4000;
+const MAX_FAILED_SEARCHES: usize = 4000;
 /// Distances to the border that exceed this count as equal to it, metres.
-const OPEN_ENOUGH_M: f64 = 1.0;
+const MAX_CLEARANCE_M: f64 = 1.0;
 
 /// Makes a road map of an island (0 is the largest). The same ground gives the same graph. Every viewpoint can be
 /// reached from every other; the ids are `v0000`, `v0001` and so on.
@@ -65,7 +65,7 @@ impl ViewpointRoadMap<'_> {
         }
         places.sort_by(|a, b| b.0.total_cmp(&a.0));
         for (_, place) in places {
-            if self.nodes.len() >= MAX_PLACED {
+            if self.nodes.len() >= MAX_VIEWPOINTS {
                 break;
             }
             if self.nodes.iter().all(|node| are_far_apart(*node, place)) {
@@ -149,7 +149,7 @@ impl ViewpointRoadMap<'_> {
             }
             let Some(way) = self.way_between(a, b) else {
                 in_vain += 1;
-                if in_vain > MAX_IN_VAIN {
+                if in_vain > MAX_FAILED_SEARCHES {
                     break;
                 }
                 continue;
@@ -200,9 +200,9 @@ fn are_far_apart(a: DVec3, b: DVec3) -> bool {
     difference.truncate().length() >= APART_M || difference.z.abs() > 1.2
 }
 
-/// Distance of a place from the border on its storey, at most [`OPEN_ENOUGH_M`].
+/// Distance of a place from the border on its storey, at most [`MAX_CLEARANCE_M`].
 fn border_clearance(border: &[(DVec3, DVec3)], place: DVec3) -> f64 {
     let on_floor = |(a, b): &&(DVec3, DVec3)| a.z.min(b.z) < place.z + 1.0 && a.z.max(b.z) > place.z - 1.0;
     let off = |(a, b): &(DVec3, DVec3)| (nearest_on_edge(*a, *b, place) - place).truncate().length();
-    border.iter().filter(on_floor).map(off).fold(OPEN_ENOUGH_M, f64::min)
+    border.iter().filter(on_floor).map(off).fold(MAX_CLEARANCE_M, f64::min)
 }

@@ -17,7 +17,7 @@ const WELD_M: f64 = 1e-3;
 const SAME_STOREY_M: f64 = 0.5;
 /// The search returns a bend at most this far from the vertex at which the way bends, metres: mostly within millimetres, but
 /// rounding errors add up.
-const BEND_M: f32 = 0.1;
+const MAX_BEND_OFFSET_M: f32 = 0.1;
 /// Two bends at most this far apart may be the same one, metres (`lands_on` in the search's `instance.rs`).
 const NOISE_M: f32 = 3e-3;
 
@@ -92,7 +92,7 @@ impl IslandSearchMesh {
         let mut bends = Vec::new();
         let mut reached = 0;
         for bend in path.path.split_last().map_or(&[][..], |(_, before)| before) {
-            let later = bend_of(layer, &rings, reached, *bend, BEND_M);
+            let later = bend_of(layer, &rings, reached, *bend, MAX_BEND_OFFSET_M);
             let (at, vertex) = later.or_else(|| bend_of(layer, &rings, 0, *bend, f32::MAX))?;
             // The way leaves a bend through the last polygon around it, so the next bend does not belong to any earlier polygon.
             let around = rings.iter().skip(at + 1).take_while(|ring| ring.contains(&vertex)).count();

@@ -8,9 +8,9 @@ use wayword_world::connectivity::{self, ConnectivityGraph};
 
 const GRAPH_HINT: &str = "get the graph again from where it was published, or take it out of --connectivity";
 /// Greatest distance from an edge at which a view may be taken, metres.
-const BESIDE_M: f64 = 0.5;
+const MAX_BESIDE_EDGE_M: f64 = 0.5;
 /// Greatest height above or below an edge at which a view may be taken, metres: a robot's camera is lower than a person's eye.
-const ABOVE_M: f64 = 2.0;
+const MAX_ABOVE_EDGE_M: f64 = 2.0;
 
 /// Reads a graph's file.
 pub(super) fn read_connectivity(file: &Path) -> Result<ConnectivityGraph, PlatformError> {
@@ -38,7 +38,7 @@ pub(super) fn passes_by(graph: &ViewpointGraph, eye: DVec3) -> bool {
     let place = |viewpoint| graph.position_of(viewpoint);
     let near = |on_way: DVec3| {
         let off = eye - on_way;
-        off.truncate().length() <= BESIDE_M && off.z.abs() <= ABOVE_M
+        off.truncate().length() <= MAX_BESIDE_EDGE_M && off.z.abs() <= MAX_ABOVE_EDGE_M
     };
     let along = |from: DVec3, to: DVec3| {
         let way = (to - from).truncate();

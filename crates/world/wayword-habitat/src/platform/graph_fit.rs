@@ -8,15 +8,15 @@ use wayword_world::connectivity::{ConnectivityGraph, PanoramaViewpoint};
 /// Distance from an eye down to its floor, metres: from a robot's camera to one on a tall stand.
 const FLOOR_M: std::ops::RangeInclusive<f64> = 0.3..=2.5;
 /// Least share of viewpoints over a floor: scans have holes.
-const LEAST_OVER_FLOOR: f64 = 0.9;
+const MIN_OVER_FLOOR_SHARE: f64 = 0.9;
 /// Greatest share of edges that cross a wall: a door may have been closed when the building was scanned.
-const MOST_THROUGH_WALLS: f64 = 0.02;
+const MAX_THROUGH_WALLS_SHARE: f64 = 0.02;
 /// An edge is tested at the height of the eyes and this far below; only a wall blocks both, a lamp or a table does not. Metres.
 const LOWER_M: f64 = 0.4;
 /// Greatest distance from the floor of viewpoints that should lie on it, metres: a navmesh is a little above or below.
 const ON_FLOOR_M: f64 = 0.3;
 /// Most edges that are examined, spread over the graph; the others count neither as open nor as blocked.
-const MOST_EDGES: usize = 20_000;
+const MAX_EXAMINED_EDGES: usize = 20_000;
 /// Most tests of a triangle for one graph: about a second.
 const TRIANGLE_BUDGET: u64 = 200_000_000;
 
@@ -26,7 +26,7 @@ const OWN_GRAPH_HINT: &str =
 /// A mistake with which viewpoints may be written: axes, a unit or a height.
 struct MistakenAxes {
     /// The mistake, as the end of a sentence about the viewpoints.
-    told: &'static str,
+    mistake: &'static str,
     hint: &'static str,
     /// The true place of a viewpoint, or of its floor if it lies on the floor.
     place: fn(DVec3) -> DVec3,
@@ -34,72 +34,72 @@ struct MistakenAxes {
 }
 
 /// The right axes: those of the scan.
-const SCAN_AXES: MistakenAxes = MistakenAxes { told: "fit", hint: "", place: |at| at, lies_on_floor: false };
+const SCAN_AXES: MistakenAxes = MistakenAxes { mistake: "fit", hint: "", place: |at| at, lies_on_floor: false };
 
 /// The known mistakes, the most usual first.
 const MISTAKEN_AXES: [MistakenAxes; 11] = [
     MistakenAxes {
-        told: "have y up, as in Habitat",
+        mistake: "have y up, as in Habitat",
         hint: "write each pose again, z up: pose[7] becomes -pose[11], and pose[11] becomes the old pose[7]",
         place: |at| DVec3::new(at.x, -at.z, at.y),
         lies_on_floor: false,
     },
     MistakenAxes {
-        told: "have y up, as in Habitat, and lie on the floor",
+        mistake: "have y up, as in Habitat, and lie on the floor",
         hint: "write each pose again, z up: pose[7] becomes -pose[11], and pose[11] becomes the old pose[7] + height",
         place: |at| DVec3::new(at.x, -at.z, at.y),
         lies_on_floor: true,
     },
     MistakenAxes {
-        told: "lie on the floor, not at the eye's height",
+        mistake: "lie on the floor, not at the eye's height",
         hint: "write each pose again: pose[11] becomes pose[11] + height",
         place: |at| at,
         lies_on_floor: true,
     },
     MistakenAxes {
-        told: "have y and z swapped",
+        mistake: "have y and z swapped",
         hint: "write each pose again: swap pose[7] and pose[11]",
         place: |at| DVec3::new(at.x, at.z, at.y),
         lies_on_floor: false,
     },
     MistakenAxes {
-        told: "have x and y swapped",
+        mistake: "have x and y swapped",
         hint: "write each pose again: swap pose[3] and pose[7]",
         place: |at| DVec3::new(at.y, at.x, at.z),
         lies_on_floor: false,
     },
     MistakenAxes {
-        told: "are mirrored along x",
+        mistake: "are mirrored along x",
         hint: "write each pose again: pose[3] becomes -pose[3]",
         place: |at| DVec3::new(-at.x, at.y, at.z),
         lies_on_floor: false,
     },
     MistakenAxes {
-        told: "are mirrored along y",
+        mistake: "are mirrored along y",
         hint: "write each pose again: pose[7] becomes -pose[7]",
         place: |at| DVec3::new(at.x, -at.y, at.z),
         lies_on_floor: false,
     },
     MistakenAxes {
-        told: "are turned by half a turn",
+        mistake: "are turned by half a turn",
         hint: "write each pose again: pose[3] becomes -pose[3], and pose[7] becomes -pose[7]",
         place: |at| DVec3::new(-at.x, -at.y, at.z),
         lies_on_floor: false,
     },
     MistakenAxes {
-        told: "are turned by a quarter to the right",
+        mistake: "are turned by a quarter to the right",
         hint: "write each pose again: pose[3] becomes -pose[7], and pose[7] becomes the old pose[3]",
         place: |at| DVec3::new(-at.y, at.x, at.z),
         lies_on_floor: false,
     },
     MistakenAxes {
-        told: "are turned by a quarter to the left",
+        mistake: "are turned by a quarter to the left",
         hint: "write each pose again: pose[3] becomes pose[7], and pose[7] becomes the old -pose[3]",
         place: |at| DVec3::new(at.y, -at.x, at.z),
         lies_on_floor: false,
     },
     MistakenAxes {
-        told: "are in centimetres",
+        mistake: "are in centimetres",
         hint: "write each pose again, in metres: divide pose[3], pose[7] and pose[11] by 100",
         place: |at| at / 100.0,
         lies_on_floor: false,
@@ -133,12 +133,12 @@ pub(super) fn judge_fit(columns: &TriangleColumns, graph: &ConnectivityGraph) ->
     let fitting = others.filter(|(fit, _)| is_plausible(fit));
     // Of several that fit equally well, the most usual one.
     match fitting.min_by_key(|(fit, _)| (fit.through_walls, fit.viewpoints - fit.over_floor)) {
-        Some((_, frame)) => Err(refused(frame.told, frame.hint)),
+        Some((_, frame)) => Err(refused(frame.mistake, frame.hint)),
         None => {
             let expected = format!(
                 "do not lie in this scene (expected: at least {:.0} % over a floor, and at most {:.0} % of the edges through walls)",
-                100.0 * LEAST_OVER_FLOOR,
-                100.0 * MOST_THROUGH_WALLS
+                100.0 * MIN_OVER_FLOOR_SHARE,
+                100.0 * MAX_THROUGH_WALLS_SHARE
             );
             Err(refused(&expected, OWN_GRAPH_HINT))
         }
@@ -148,8 +148,8 @@ pub(super) fn judge_fit(columns: &TriangleColumns, graph: &ConnectivityGraph) ->
 fn is_plausible(fit: &GraphFit) -> bool {
     let (viewpoints, edges) = (fit.viewpoints as f64, fit.edges as f64);
     fit.viewpoints > 0
-        && fit.over_floor as f64 >= LEAST_OVER_FLOOR * viewpoints
-        && fit.through_walls as f64 <= MOST_THROUGH_WALLS * edges
+        && fit.over_floor as f64 >= MIN_OVER_FLOOR_SHARE * viewpoints
+        && fit.through_walls as f64 <= MAX_THROUGH_WALLS_SHARE * edges
 }
 
 /// The figures of a graph if its viewpoints are read in these axes.
@@ -182,11 +182,11 @@ fn fit_in_axes(columns: &TriangleColumns, graph: &ConnectivityGraph, frame: &Mis
     fit
 }
 
-/// At most [`MOST_EDGES`] of the pairs, in an order that jumps through all of them.
+/// At most [`MAX_EXAMINED_EDGES`] of the pairs, in an order that jumps through all of them.
 fn spread_pairs(pairs: &[(usize, usize)]) -> impl Iterator<Item = (usize, usize)> {
     /// Number of rounds; each of them goes through the whole list.
     const SPREAD_ROUNDS: usize = 16;
-    let step = pairs.len().div_ceil(MOST_EDGES).max(1);
+    let step = pairs.len().div_ceil(MAX_EXAMINED_EDGES).max(1);
     (0..SPREAD_ROUNDS).flat_map(move |round| pairs.iter().copied().skip(round * step).step_by(SPREAD_ROUNDS * step))
 }
 
@@ -323,7 +323,7 @@ mod tests {
             let mut spread: Vec<(usize, usize)> = spread_pairs(&pairs).collect();
             spread.sort_unstable();
             spread.dedup();
-            assert_eq!(spread.len(), if count > MOST_EDGES { count.div_ceil(2) } else { count });
+            assert_eq!(spread.len(), if count > MAX_EXAMINED_EDGES { count.div_ceil(2) } else { count });
         }
     }
 }

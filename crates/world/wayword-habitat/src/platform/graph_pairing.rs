@@ -22,7 +22,7 @@ pub(super) struct GraphPairing {
     /// Names of graphs without a scene. A folder of graphs usually has many more of them than there are scenes.
     idle: Vec<String>,
     /// Other names of scenes, which episodes may use.
-    pub(super) others: BTreeMap<SceneId, SceneId>,
+    pub(super) aliases: BTreeMap<SceneId, SceneId>,
 }
 
 impl GraphPairing {
@@ -66,7 +66,7 @@ pub(super) fn pair_graphs(scenes: BTreeMap<SceneId, StageFiles>, folder: &Path) 
             chosen_id.filter(|chosen_id| !pairs.scenes.contains_key(chosen_id)).unwrap_or_else(|| id.clone());
         for other in [Some(id), SceneId::new(name).ok(), SceneId::new(stem).ok()].into_iter().flatten() {
             if other != chosen_id {
-                pairs.others.entry(other).or_insert_with(|| chosen_id.clone());
+                pairs.aliases.entry(other).or_insert_with(|| chosen_id.clone());
             }
         }
         used_graphs.insert(graph.clone(), chosen_id.clone());
@@ -174,8 +174,8 @@ mod tests {
         let ids = ["00009-vLpv2VX547B", "00010-DBjEcHFg4oq", "00800-TEEsavR23oF", "17DRP5sb8fy"];
         assert_eq!(texts(&pairs.scenes), ids);
         assert!(pairs.unpaired.is_empty(), "{pairs:?}");
-        assert_eq!(pairs.others[&SceneId::new("TEEsavR23oF").unwrap()].as_str(), "00800-TEEsavR23oF");
-        assert_eq!(texts(&pairs.others), ["DBjEcHFg4oq", "TEEsavR23oF", "vLpv2VX547B"]);
+        assert_eq!(pairs.aliases[&SceneId::new("TEEsavR23oF").unwrap()].as_str(), "00800-TEEsavR23oF");
+        assert_eq!(texts(&pairs.aliases), ["DBjEcHFg4oq", "TEEsavR23oF", "vLpv2VX547B"]);
     }
 
     #[test]

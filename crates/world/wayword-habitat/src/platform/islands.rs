@@ -15,7 +15,7 @@ const PLACES_PER_ISLAND: usize = 400;
 /// Most islands that are examined, the largest first; paths never stay on another one, unless the user chooses it.
 const MAX_ISLANDS: usize = 64;
 /// Least area of an island that is examined, square metres.
-const LEAST_M2: f64 = 1.0;
+const MIN_ISLAND_AREA_M2: f64 = 1.0;
 /// Least share of an island that is under a ceiling, or under the sky on firm ground, for paths to stay on it.
 const LEAST_USABLE_SHARE: f64 = 1.0 / 3.0;
 /// Least share of an indoor island that is under a ceiling.
@@ -55,7 +55,8 @@ pub(super) struct IslandChoice {
 
 /// Examines the islands, the largest first.
 pub(super) fn survey_islands(ground: &NavMeshGround, columns: &TriangleColumns) -> Vec<IslandSurvey> {
-    let worth = ground.islands_m2().enumerate().take(MAX_ISLANDS).take_while(|(_, area_m2)| *area_m2 >= LEAST_M2);
+    let worth =
+        ground.islands_m2().enumerate().take(MAX_ISLANDS).take_while(|(_, area_m2)| *area_m2 >= MIN_ISLAND_AREA_M2);
     worth.map(|(number, area_m2)| survey_island(ground, columns, number, area_m2)).collect()
 }
 
@@ -136,7 +137,7 @@ impl IslandSurvey {
 /// The islands in words, the largest first.
 pub(super) fn list_islands(surveys: &[IslandSurvey]) -> String {
     if surveys.is_empty() {
-        return format!("it has no island of at least {LEAST_M2} m2");
+        return format!("it has no island of at least {MIN_ISLAND_AREA_M2} m2");
     }
     let named: Vec<String> =
         surveys.iter().take(MAX_LISTED_ISLANDS).map(|survey| survey.ground_island(None).to_string()).collect();

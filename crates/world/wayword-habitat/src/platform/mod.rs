@@ -49,7 +49,7 @@ pub struct HabitatPlatform {
     /// The condition of each scene that was examined, so that none is examined twice.
     examined: Mutex<BTreeMap<SceneId, SceneCondition>>,
     /// Scenes for which a warning was already given.
-    told: Mutex<BTreeSet<SceneId>>,
+    warned: Mutex<BTreeSet<SceneId>>,
 }
 
 /// Options of the platform.
@@ -104,7 +104,7 @@ impl HabitatPlatform {
         if let Some(idle) = pairs.describe_idle_graphs() {
             hear(&idle);
         }
-        Ok(Self { options, hear, pairs, ready, examined, told: warned })
+        Ok(Self { options, hear, pairs, ready, examined, warned: warned })
     }
 
     /// The navmesh of a scene, from its file or baked. [`NavMesh::to_bytes`] returns a file that Habitat can read.
@@ -127,7 +127,7 @@ impl HabitatPlatform {
             let fits = self.known_condition(scene).is_some_and(|condition| condition.unusable.is_none());
             let prepared = HabitatScene::from_files(scene, files, &self.options, fits)?;
             if let Some(doubt) = prepared.walkable.as_ref().and_then(|walkable| walkable.island_doubt())
-                && self.told.lock().unwrap_or_else(PoisonError::into_inner).insert(scene.clone())
+                && self.warned.lock().unwrap_or_else(PoisonError::into_inner).insert(scene.clone())
             {
                 (self.hear)(&format!("scene {scene}: {doubt}"));
             }
@@ -137,7 +137,7 @@ impl HabitatPlatform {
 
     /// A scene's id and files, by its id or by another name that it has.
     fn files_of(&self, name: &SceneId) -> Result<(&SceneId, &StageFiles), PlatformError> {
-        let id = self.pairs.others.get(name).unwrap_or(name);
+        let id = self.pairs.aliases.get(name).unwrap_or(name);
         self.pairs.scenes.get_key_value(id).ok_or_else(|| self.unknown_scene(name))
     }
 

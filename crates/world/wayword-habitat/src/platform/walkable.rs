@@ -17,7 +17,7 @@ use crate::{
 use wayword_core::{DVec3, GroundIsland, GroundRoute, PlatformError, ViewpointGraph, graph::GraphError};
 
 /// Largest navmesh file that is read, bytes; a larger one is an error.
-const MAX_NAVMESH: u64 = 1 << 30;
+const MAX_NAVMESH_BYTES: u64 = 1 << 30;
 const NAVMESH_HINT: &str = "remove the file, and a navmesh is baked from the scene instead";
 const ISLAND_HINT: &str = "choose an existing island with --island, or give the scene a .navmesh of its rooms";
 
@@ -42,7 +42,7 @@ pub(super) fn read_or_bake_navmesh(
 ) -> Result<NavMesh, FileError> {
     match options.navmesh.clone().or_else(|| files.navmesh_file(stage)) {
         Some(file) => {
-            let bytes = file_error::read_bytes(&file, MAX_NAVMESH, NAVMESH_HINT)?;
+            let bytes = file_error::read_bytes(&file, MAX_NAVMESH_BYTES, NAVMESH_HINT)?;
             NavMesh::from_bytes(&bytes).map_err(|error| FileError::new(&file, error.to_string(), NAVMESH_HINT))
         }
         None => bake_navmesh(model, &NavMeshSettings::default())

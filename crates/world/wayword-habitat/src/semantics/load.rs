@@ -15,8 +15,8 @@ use wayword_core::RoomNames;
 use wayword_render::{Mesh, MeshMaterial, RenderScene, Texture, TextureFilter};
 
 /// Largest list of objects and largest mesh that are read, bytes; larger ones are errors.
-const MAX_TEXT: u64 = 64 << 20;
-const MAX_MESH: u64 = 4 << 30;
+const MAX_TEXT_BYTES: u64 = 64 << 20;
+const MAX_MESH_BYTES: u64 = 4 << 30;
 const HM3D_HINT: &str = "download it again from HM3D's semantic annotations";
 const MATTERPORT_HINT: &str = "download it again from Matterport3D for Habitat";
 
@@ -61,7 +61,8 @@ pub(crate) fn check_semantics(files: &SemanticFiles, habitat_from_asset: DMat3) 
 }
 
 fn read_text(file: &Path, hint: &'static str) -> Result<String, FileError> {
-    file_error::text_if_there(file, MAX_TEXT, hint)?.ok_or_else(|| FileError::new(file, "there is no such file", hint))
+    file_error::text_if_there(file, MAX_TEXT_BYTES, hint)?
+        .ok_or_else(|| FileError::new(file, "there is no such file", hint))
 }
 
 /// Reads HM3D's files. The colour of a triangle's texture, or of its vertices, gives its thing.
@@ -121,7 +122,7 @@ fn load_numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result
         house::parse_house(&read_text(house, MATTERPORT_HINT)?)
             .map_err(|reason| FileError::new(house, reason, MATTERPORT_HINT))?;
     let wrong = |reason: String| FileError::new(mesh, reason, MATTERPORT_HINT);
-    let faces = ply::parse_faces(&file_error::read_bytes(mesh, MAX_MESH, MATTERPORT_HINT)?).map_err(wrong)?;
+    let faces = ply::parse_faces(&file_error::read_bytes(mesh, MAX_MESH_BYTES, MATTERPORT_HINT)?).map_err(wrong)?;
     let place = |position: &Vec3| wayword_from_habitat(habitat_from_asset * position.as_dvec3()).as_vec3();
     let positions: Vec<Vec3> = faces.positions.iter().map(place).collect();
     let thing = |object: u32| by_number.get(&object).copied();
@@ -163,7 +164,7 @@ fn shell_triangles(
         .collect()
 }
 
-/// The id of a thing in drawn pictures: its index plus 1, or 0 for no thing. A list of [`MAX_TEXT`] bytes cannot have more
+/// The id of a thing in drawn pictures: its index plus 1, or 0 for no thing. A list of [`MAX_TEXT_BYTES`] bytes cannot have more
 /// things than there are ids.
 pub(super) fn picture_id(thing: Option<usize>) -> u32 {
     thing.and_then(|thing| u32::try_from(thing).ok()?.checked_add(1)).unwrap_or(0)

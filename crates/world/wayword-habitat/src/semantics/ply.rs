@@ -13,7 +13,7 @@ use std::io::ErrorKind;
 use wayword_core::contain_panics::run_decoder;
 
 /// Longest header, bytes; a longer one is an error.
-const MAX_HEADER: usize = 1 << 14;
+const MAX_HEADER_BYTES: usize = 1 << 14;
 
 /// Triangles with the number of their object.
 #[derive(Debug, Default, PartialEq)]
@@ -79,7 +79,7 @@ fn read_faces(bytes: &[u8]) -> Result<SemanticFaces, String> {
 
 /// The header, and the bytes after it.
 fn read_header(bytes: &[u8]) -> Result<(Header, &[u8]), String> {
-    let within = bytes.get(..MAX_HEADER).unwrap_or(bytes);
+    let within = bytes.get(..MAX_HEADER_BYTES).unwrap_or(bytes);
     let mut reader = Reader::new(within);
     let header = Parser::<PlyEntry>::new().read_header(&mut reader);
     let header = header.map_err(|error| format!("has no header of a PLY file: {}", brief_message(&error)))?;

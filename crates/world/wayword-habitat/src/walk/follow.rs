@@ -22,9 +22,9 @@ const REACH_STEPS: f64 = 3.0;
 /// Places of the ground with a smaller difference in height are on one level, metres.
 const LEVEL_M: f64 = 0.1;
 /// Greatest distance of a walk's place from the ground nearest to it, seen from above, metres.
-const BESIDE_M: f64 = 0.5;
+const MAX_BESIDE_GROUND_M: f64 = 0.5;
 /// Most actions of one walk; more are an error.
-const MOST_ACTIONS: usize = 20_000;
+const MAX_ACTIONS: usize = 20_000;
 
 /// A walk by single actions.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,7 +71,7 @@ pub enum WalkFollowError {
         tolerance_m: f64,
     },
     /// The walk takes too many actions.
-    #[error("the walk takes more than {MOST_ACTIONS} actions")]
+    #[error("the walk takes more than {MAX_ACTIONS} actions")]
     TooLong,
 }
 
@@ -127,7 +127,7 @@ fn join_places(ground: &NavMeshGround, places: &[DVec3]) -> Result<(GroundLine, 
             .ok_or(WalkFollowError::NoWay { place, reason: GeodesicError::OffGround(at) })?
             .place;
         let off_m = (on - at).truncate().length();
-        if off_m > BESIDE_M { Err(WalkFollowError::Beside { place, off_m }) } else { Ok(on) }
+        if off_m > MAX_BESIDE_GROUND_M { Err(WalkFollowError::Beside { place, off_m }) } else { Ok(on) }
     };
     marks.push(line.push(on_ground(0)?));
     for (number, pair) in places.windows(2).enumerate() {
@@ -159,7 +159,7 @@ impl LineFollower<'_> {
             while marks.get(reached.len()).is_some_and(|mark| *mark <= along + forward_m / 2.0) {
                 reached.push(actions.len());
             }
-            if actions.len() > MOST_ACTIONS {
+            if actions.len() > MAX_ACTIONS {
                 return Err(WalkFollowError::TooLong);
             }
             let Some((turns, next)) = self.best_step(now, along) else {

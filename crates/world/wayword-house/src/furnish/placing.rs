@@ -48,12 +48,12 @@ pub(super) enum WallPreference {
 }
 
 /// Least distance between a hanging piece and its neighbours on the wall, centimetres.
-const BESIDE_CM: i32 = 8;
+const MIN_HANGING_GAP_CM: i32 = 8;
 
 /// Least distance between a hanging piece and the opening of a door or a window, centimetres.
-const FRAME_CM: i32 = 10;
+const MIN_GAP_TO_OPENING_CM: i32 = 10;
 /// Least distance between a hanging piece and an open door's leaf, centimetres.
-const BEHIND_LEAF_CM: i32 = 12;
+const MIN_GAP_TO_LEAF_CM: i32 = 12;
 
 /// A piece in the room: its index in the list.
 pub(super) type PieceIndex = usize;
@@ -411,19 +411,21 @@ impl<'a> RoomFurnisher<'a> {
     /// Whether a stretch of wall between two heights is free: no opening, no window and no piece is there. A `slim` thing may
     /// also hang where people walk past it, next to a door.
     pub(super) fn wall_is_bare(&self, wall: WallSide, area: &RectCm, base: i32, top: i32, slim: bool) -> bool {
-        let hole = self.holes.iter().any(|span| self.is_on(wall, span) && span.thickened_by(FRAME_CM).overlaps(area));
-        let window = self
-            .windows
+        let hole = self
+            .holes
             .iter()
-            .any(|(span, sill)| self.is_on(wall, span) && span.thickened_by(FRAME_CM).overlaps(area) && *sill < top);
+            .any(|span| self.is_on(wall, span) && span.thickened_by(MIN_GAP_TO_OPENING_CM).overlaps(area));
+        let window = self.windows.iter().any(|(span, sill)| {
+            self.is_on(wall, span) && span.thickened_by(MIN_GAP_TO_OPENING_CM).overlaps(area) && *sill < top
+        });
         let floor = self.room.base_cm();
         let piece = self.pieces.iter().any(|piece| {
             let (low, high) = (piece.base_cm - floor, piece.base_cm - floor + piece.height_cm);
-            low < top && base < high && piece.footprint.inset(-BESIDE_CM).overlaps(area)
+            low < top && base < high && piece.footprint.inset(-MIN_HANGING_GAP_CM).overlaps(area)
         });
         // A person who comes in would run into a deep piece, but not into a picture.
         let blocked = if slim {
-            self.leaves.iter().any(|leaf| leaf.inset(-BEHIND_LEAF_CM).overlaps(area))
+            self.leaves.iter().any(|leaf| leaf.inset(-MIN_GAP_TO_LEAF_CM).overlaps(area))
         } else {
             self.doorsteps.iter().any(|step| step.overlaps(area))
         };

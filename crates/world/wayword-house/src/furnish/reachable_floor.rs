@@ -5,14 +5,14 @@ use super::super::rect::RectCm;
 /// Side of a cell, centimetres.
 const CELL_CM: i32 = 10;
 /// Half the width of a walker, with a margin, centimetres.
-const RADIUS_CM: i32 = 27;
+const WALKER_RADIUS_CM: i32 = 27;
 
 /// Whether, with these obstacles, every doorstep can be reached from every other, and no large part of the floor is cut
 /// off.
 pub(super) fn ways_stay_open(inner: &RectCm, obstacles: &[RectCm], doorsteps: &[RectCm]) -> bool {
     let (columns, rows) = (inner.width() / CELL_CM, inner.depth() / CELL_CM);
-    let swollen: Vec<_> = obstacles.iter().map(|area| area.inset(-RADIUS_CM)).collect();
-    let floor = inner.inset(RADIUS_CM);
+    let swollen: Vec<_> = obstacles.iter().map(|area| area.inset(-WALKER_RADIUS_CM)).collect();
+    let floor = inner.inset(WALKER_RADIUS_CM);
     // Walls swell too, except at doorsteps, which lead through them.
     let is_free = |column: i32, row: i32| {
         let (x, y) = (inner.x0 + column * CELL_CM + CELL_CM / 2, inner.y0 + row * CELL_CM + CELL_CM / 2);

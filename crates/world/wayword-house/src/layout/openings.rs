@@ -11,13 +11,13 @@ use super::{FloorPlan, ObjectIdCounter, PlannedStairwell, RoomLink, RoomPassage}
 /// Usual width of a door, centimetres.
 const DOOR_CM: i32 = 90;
 /// Least width of a door or doorway, centimetres; a shorter stretch of wall gets none.
-const NARROWEST_CM: i32 = 75;
+const MIN_OPENING_CM: i32 = 75;
 /// Clear height of an opening with a leaf, centimetres.
 const DOOR_HEIGHT_CM: i32 = 205;
 /// Clear height of an opening without a leaf, centimetres.
 const DOORWAY_HEIGHT_CM: i32 = 220;
 /// Least length of wall between an opening and the corner, centimetres: half the crossing wall, and the frame.
-const CORNER_CM: i32 = 16;
+const MIN_CORNER_WALL_CM: i32 = 16;
 
 /// The openings for all links of a plan. Doors get their places after all other openings.
 pub(super) fn cut_openings(
@@ -107,12 +107,12 @@ fn centred_span(edge: &SpanCm, width: i32) -> SpanCm {
 }
 
 fn place_doorway(dice: &mut HouseDice, edge: &SpanCm, width: i32) -> Option<SpanCm> {
-    let room = edge.length() - 2 * CORNER_CM;
-    if room < NARROWEST_CM {
+    let room = edge.length() - 2 * MIN_CORNER_WALL_CM;
+    if room < MIN_OPENING_CM {
         return None;
     }
     let width = width.min(room);
-    let from = edge.from + CORNER_CM + dice.draw_stepped(0, room - width, 5);
+    let from = edge.from + MIN_CORNER_WALL_CM + dice.draw_stepped(0, room - width, 5);
     // A doorway that is nearly as wide as its wall is centred.
     Some(if room - width < 40 { centred_span(edge, width) } else { SpanCm { from, to: from + width, ..*edge } })
 }
@@ -125,11 +125,11 @@ fn place_door(
     edge: &SpanCm,
     before: &[WallOpening],
 ) -> Option<(SpanCm, DoorLeaf)> {
-    let width = DOOR_CM.min(edge.length() - 2 * CORNER_CM);
-    if width < NARROWEST_CM {
+    let width = DOOR_CM.min(edge.length() - 2 * MIN_CORNER_WALL_CM);
+    if width < MIN_OPENING_CM {
         return None;
     }
-    let (low, high) = (edge.from + CORNER_CM, edge.to - CORNER_CM - width);
+    let (low, high) = (edge.from + MIN_CORNER_WALL_CM, edge.to - MIN_CORNER_WALL_CM - width);
     let into = opens_into(rooms, link)?;
     let mut places = vec![(low, true), (high, false)];
     if dice.chance(50) {

@@ -21,7 +21,7 @@ pub(super) struct ShadowBlock {
 
 /// Thickness of the boxes of table tops and seats, centimetres: more than the real thickness, because only a long stretch
 /// within a box blocks all light of a lamp.
-const TOP_CM: i32 = 10;
+const SHADOW_TOP_CM: i32 = 10;
 
 /// The boxes of a piece. There are none for a piece that is flat, hangs on a wall, is made of glass, or is a lamp at the
 /// ceiling.
@@ -51,14 +51,14 @@ pub(super) fn shadow_blocks(piece: &FurniturePiece) -> Vec<ShadowBlock> {
         | K::IroningBoard
         | K::BarStool
         | K::Bench => {
-            let mut all = vec![boxed(area, height - TOP_CM, height)];
-            all.extend(legs(height - TOP_CM));
+            let mut all = vec![boxed(area, height - SHADOW_TOP_CM, height)];
+            all.extend(legs(height - SHADOW_TOP_CM));
             all
         }
         K::Chair | K::OfficeChair => {
             let seat = height / 2;
-            let mut all = vec![boxed(area, seat - TOP_CM, seat), boxed(back(15), seat, height)];
-            all.extend(legs(seat - TOP_CM));
+            let mut all = vec![boxed(area, seat - SHADOW_TOP_CM, seat), boxed(back(15), seat, height)];
+            all.extend(legs(seat - SHADOW_TOP_CM));
             all
         }
         K::Sofa | K::Armchair | K::Toilet => vec![boxed(area, 0, height * 55 / 100), boxed(back(28), 0, height)],

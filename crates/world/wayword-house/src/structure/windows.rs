@@ -11,11 +11,11 @@ use super::{on_wall, to_metres, wall_box};
 use glam::{Vec2, Vec3};
 
 /// Width of the wall that one picture of the view fills, metres.
-const WIDE_M: f32 = 2.4;
+const OUTLOOK_WIDTH_M: f32 = 2.4;
 /// Height of the picture's upper edge above the floor, metres.
-const TOP_M: f32 = 2.4;
+const OUTLOOK_TOP_M: f32 = 2.4;
 /// Height of the picture, metres.
-const TALL_M: f32 = 2.1;
+const OUTLOOK_HEIGHT_M: f32 = 2.1;
 
 /// A window as seen from its room. `outlooks` are the views of the four sides, in the order of [`WallSide::ALL`].
 pub(in super::super) fn build_window(house: &House, window: &HouseWindow, outlooks: &[WindowOutlook; 4]) -> HouseShape {
@@ -55,7 +55,9 @@ fn add_view(shape: &mut HouseShape, house: &House, window: &HouseWindow, wall: W
     let (left, right, across) = if is_low_end_left { (from, to, from) } else { (to, from, -to) };
     let corner = on_wall(&window.span, wall, left, 0, sill);
     let u = on_wall(&window.span, wall, right, 0, sill) - corner;
-    let uv = |along: i32, z: i32| Vec2::new(to_metres(along) / WIDE_M, (TOP_M - to_metres(z - floor_cm)) / TALL_M);
+    let uv = |along: i32, z: i32| {
+        Vec2::new(to_metres(along) / OUTLOOK_WIDTH_M, (OUTLOOK_TOP_M - to_metres(z - floor_cm)) / OUTLOOK_HEIGHT_M)
+    };
     let (uv0, uv1) = (uv(across, head), uv(across + to - from, sill));
     shape.add_quad(HouseSurface::for_picture(pattern).glowing(), corner, u, Vec3::Z * to_metres(head - sill), uv0, uv1);
 }

@@ -13,9 +13,9 @@ use wayword_world::grid_search::{at_least, find_shortest_way, free_steps_around,
 /// Most cells of a floor: 500 m by 500 m at 25 cm.
 pub(crate) const MAX_CELLS: usize = 4_000_000;
 /// No viewpoint lies nearer to another than this, metres.
-const APART_M: f64 = 1.5;
+const MIN_VIEWPOINT_DISTANCE_M: f64 = 1.5;
 /// Longest edge of the viewpoint graph, metres.
-const REACH_M: f64 = 3.0;
+const MAX_EDGE_M: f64 = 3.0;
 /// Offsets in columns and rows from a cell to the four beside it.
 const STRAIGHT_STEPS: [(i32, i32); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
@@ -150,7 +150,7 @@ impl FloorRaster {
         cells.sort_by_key(|cell| (std::cmp::Reverse(clearances[*cell]), *cell));
         let mut chosen: Vec<[f64; 2]> = Vec::new();
         for place in cells.into_iter().map(|cell| self.cell_middle(cell)) {
-            if chosen.iter().all(|other| floor_distance(*other, place) >= APART_M) {
+            if chosen.iter().all(|other| floor_distance(*other, place) >= MIN_VIEWPOINT_DISTANCE_M) {
                 chosen.push(place);
             }
         }
@@ -215,7 +215,7 @@ impl FloorRaster {
         let Ok(id) = ViewpointId::new(format!("v{}", nodes.len())) else { return Ok(()) };
         graph.add_viewpoint(id.clone(), eye, None)?;
         for (other, place) in nodes.iter() {
-            if place.distance(eye) <= REACH_M && self.is_straight(floor_point(eye), floor_point(*place)) {
+            if place.distance(eye) <= MAX_EDGE_M && self.is_straight(floor_point(eye), floor_point(*place)) {
                 graph.join_viewpoints(&id, other)?;
             }
         }

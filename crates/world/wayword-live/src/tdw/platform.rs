@@ -37,8 +37,8 @@ pub struct TdwSimulator {
     size: (u32, u32),
     loaded: Option<SceneId>,
     /// The data that the camera was last set to send, if known.
-    sends: Option<SimulatorShotKind>,
-    ear: ProgressListener,
+    camera_data: Option<SimulatorShotKind>,
+    progress_listener: ProgressListener,
 }
 
 impl TdwPlatform {
@@ -56,8 +56,8 @@ impl TdwPlatform {
                 package,
                 size,
                 loaded: None,
-                sends: None,
-                ear: ProgressListener::without_listener(),
+                camera_data: None,
+                progress_listener: ProgressListener::without_listener(),
             },
             pictures,
         ))
@@ -74,13 +74,14 @@ impl TdwSimulator {
     /// Waits for a build and reports that to the user, also which version has connected.
     fn connect_build(&mut self) -> Result<(), TdwError> {
         let (address, seconds) = (self.controller.address(), self.controller.connect_timeout().as_secs());
-        self.ear.report_line(&format!(
+        self.progress_listener.report_line(&format!(
             "waiting up to {seconds} s for a ThreeDWorld build to connect to {address}; \
              if it does not run yet, start it with TDW.x86_64 -port {}",
             address.port()
         ));
         let build = self.controller.connect()?.tdw.clone();
-        self.ear.report_line(&format!("ThreeDWorld build {} has connected", output_lines::to_safe_text(&build, 40)));
+        self.progress_listener
+            .report_line(&format!("ThreeDWorld build {} has connected", output_lines::to_safe_text(&build, 40)));
         Ok(())
     }
 }
@@ -106,7 +107,7 @@ impl Simulator for TdwSimulator {
     }
 
     fn set_listener(&mut self, ear: ProgressListener) {
-        self.ear = ear;
+        self.progress_listener = ear;
     }
 
     fn scene_names(&self) -> Vec<String> {
@@ -126,11 +127,11 @@ impl Simulator for TdwSimulator {
         if self.loaded.as_ref() == Some(scene) {
             return Ok(());
         }
-        (self.loaded, self.sends) = (None, None);
+        (self.loaded, self.camera_data) = (None, None);
         let plan =
             TdwScenePlan::for_scene(scene).ok_or_else(|| TdwError::Scene(format!("there is no scene {scene}")))?;
         let commands = plan.load_commands(self.package.as_deref())?;
-        self.ear.report_line(&format!(
+        self.progress_listener.report_line(&format!(
             "the build loads {scene}; it downloads what it does not have yet, which takes minutes"
         ));
         session::load_scene(&mut self.controller, commands, self.size)?;
@@ -141,16 +142,16 @@ impl Simulator for TdwSimulator {
     fn survey_scene(&mut self) -> Result<SimulatorSurvey, TdwError> {
         let survey = session::survey_scene(&mut self.controller)?;
         if survey.palette.is_empty() {
-            self.ear.report_line(&unfurnished_hint(self.loaded.as_ref()));
+            self.progress_listener.report_line(&unfurnished_hint(self.loaded.as_ref()));
         }
         Ok(survey)
     }
 
     fn take_picture(&mut self, camera: &PinholeCamera, wanted: SimulatorShotKind) -> Result<SimulatorShot, TdwError> {
-        let is_camera_set = self.sends == Some(wanted);
-        self.sends = None;
+        let is_camera_set = self.camera_data == Some(wanted);
+        self.camera_data = None;
         let shot = session::take_picture(&mut self.controller, camera, (wanted, is_camera_set))?;
-        self.sends = Some(wanted);
+        self.camera_data = Some(wanted);
         Ok(shot)
     }
 

@@ -21,7 +21,7 @@ use ureq::Agent;
 use wayword_core::DVec3;
 
 /// Largest answer that is read, bytes: a picture of 8192 x 4096 pixels in base64.
-const LARGEST_ANSWER: u64 = 128 << 20;
+const MAX_ANSWER_BYTES: u64 = 128 << 20;
 /// Length of the part of the simulator's message that an error quotes, characters.
 const QUOTED_CHARS: usize = 200;
 
@@ -113,7 +113,7 @@ impl VirtualHomeClient {
         let request = Value::Object(request).to_string();
         let sent = self.agent.post(&self.url).header("content-type", "application/json").send(request);
         let (head, mut body) = sent.map_err(unreachable)?.into_parts();
-        let body = body.with_config().limit(LARGEST_ANSWER).read_to_vec().map_err(unreachable)?;
+        let body = body.with_config().limit(MAX_ANSWER_BYTES).read_to_vec().map_err(unreachable)?;
         if head.status != 200 {
             let message = quote_message(&String::from_utf8_lossy(&body));
             return Err(HomeError::Status { action, status: head.status.as_u16(), message });

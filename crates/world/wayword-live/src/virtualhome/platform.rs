@@ -51,7 +51,7 @@ pub struct VirtualHome {
     size: (u32, u32),
     /// The home that is loaded, and the number of our camera in it.
     loaded: Option<(SceneId, i64)>,
-    ear: ProgressListener,
+    progress_listener: ProgressListener,
 }
 
 impl VirtualHomePlatform {
@@ -65,7 +65,7 @@ impl VirtualHomePlatform {
                 client: VirtualHomeClient::new(url, timeout),
                 size,
                 loaded: None,
-                ear: ProgressListener::without_listener(),
+                progress_listener: ProgressListener::without_listener(),
             },
             pictures,
         )
@@ -127,7 +127,7 @@ impl Simulator for VirtualHome {
     }
 
     fn set_listener(&mut self, ear: ProgressListener) {
-        self.ear = ear;
+        self.progress_listener = ear;
     }
 
     fn scene_names(&self) -> Vec<String> {
@@ -146,7 +146,7 @@ impl Simulator for VirtualHome {
         let home = home_of(scene).ok_or_else(|| HomeError::Floor(format!("of {scene} is not known")))?;
         let url = self.client.url();
         let port = url.rsplit(':').next().filter(|port| port.parse::<u16>().is_ok()).unwrap_or("8080");
-        self.ear.report_line(&format!(
+        self.progress_listener.report_line(&format!(
             "asking VirtualHome at {url} for {scene}, which takes some seconds; \
              if it does not run, start it with -batchmode -http-port={port}"
         ));

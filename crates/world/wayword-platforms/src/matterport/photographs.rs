@@ -3,7 +3,7 @@
 use super::{
     file_reading::{self, PICTURE_HINT},
     layout::{MatterportLayout, SkyboxFiles},
-    thirty_six::ThirtySix,
+    thirty_six::ThirtySixViews,
 };
 use glam::DMat3;
 use wayword_core::{Image, PlatformError, SceneId, ViewGaze};
@@ -22,7 +22,7 @@ pub(crate) enum ViewpointPhotographs {
     /// Six pictures around the viewpoint, and the rotation from their axes to the world frame.
     Skybox { cube: Box<CubeMap>, world_from_skybox: DMat3 },
     /// The simulator's 36 views.
-    Views(ThirtySix),
+    Views(ThirtySixViews),
 }
 
 impl ViewpointPhotographs {
@@ -41,7 +41,7 @@ impl ViewpointPhotographs {
                 world_from_skybox: at.world_from_skybox,
             }));
         }
-        let views = layout.views_folder(scene, &at.id).map(|folder| ThirtySix::read_views(&folder)).transpose()?;
+        let views = layout.views_folder(scene, &at.id).map(|folder| ThirtySixViews::read_views(&folder)).transpose()?;
         Ok(views.map(Self::Views))
     }
 

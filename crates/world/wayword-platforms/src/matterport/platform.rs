@@ -21,10 +21,10 @@ use wayword_core::{
 use wayword_world::{connectivity::PanoramaViewpoint, graph_walk};
 
 /// Number of viewpoints with their boxes in memory.
-const BOXES_KEPT: usize = 256;
+const MAX_VIEWPOINTS_WITH_BOXES: usize = 256;
 /// Number of viewpoints with their photographs in memory: 5 MB each for small skyboxes, 19 for full ones, 33 for 36
 /// views.
-const PHOTOGRAPHS_KEPT: usize = 8;
+const MAX_VIEWPOINTS_WITH_PHOTOGRAPHS: usize = 8;
 
 /// Matterport3D's buildings, from the files that the user has.
 ///
@@ -58,8 +58,8 @@ impl MatterportPlatform {
             layout,
             centres,
             scenes: Mutex::default(),
-            boxes: RecentCache::new(BOXES_KEPT),
-            photographs: RecentCache::new(PHOTOGRAPHS_KEPT),
+            boxes: RecentCache::new(MAX_VIEWPOINTS_WITH_BOXES),
+            photographs: RecentCache::new(MAX_VIEWPOINTS_WITH_PHOTOGRAPHS),
         })
     }
 

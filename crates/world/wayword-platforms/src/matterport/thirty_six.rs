@@ -20,7 +20,7 @@ const VIEW_COLUMNS: usize = 12;
 const MAX_PIXELS: u64 = 1280 * 960;
 
 /// The pictures of a panorama, by view index: rows at -30, 0 and 30 degrees of elevation, columns every 30 degrees.
-pub(crate) struct ThirtySix {
+pub(crate) struct ThirtySixViews {
     views: Vec<Image>,
 }
 
@@ -31,7 +31,7 @@ struct ViewHit {
     y_px: f64,
 }
 
-impl ThirtySix {
+impl ThirtySixViews {
     /// Reads the views of a folder.
     ///
     /// # Errors
@@ -166,9 +166,9 @@ mod tests {
         Image::new(WIDTH, HEIGHT, rgb).unwrap()
     }
 
-    fn panorama() -> ThirtySix {
+    fn panorama() -> ThirtySixViews {
         let view = |index: usize| drawn((index % 12) as f64 * FRAC_PI_6, ((index / 12) as f64 - 1.0) * FRAC_PI_6);
-        ThirtySix { views: (0..SIMULATOR_VIEW_COUNT).map(view).collect() }
+        ThirtySixViews { views: (0..SIMULATOR_VIEW_COUNT).map(view).collect() }
     }
 
     #[test]

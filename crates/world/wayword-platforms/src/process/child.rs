@@ -23,7 +23,7 @@ use wayword_world::output_lines::{OutputLine, OutputListener, read_line, to_safe
 const AFTERMATH_WAIT: Duration = Duration::from_millis(500);
 /// How often to check whether a child that has not answered yet still runs. The end of its output is no sure sign,
 /// because processes that it started may keep the output open.
-const LOOK_EVERY: Duration = Duration::from_millis(100);
+const ALIVE_CHECK_INTERVAL: Duration = Duration::from_millis(100);
 
 /// A child process. When it is dropped, its input is closed, which asks it to end; it is killed if it does not end. The
 /// processes that it started are killed in either case.
@@ -38,7 +38,7 @@ pub(crate) struct RunningChild {
     /// The last lines of its error output.
     last_words: LastWords,
     /// The thread that reads its error output; `None` for a world within this process.
-    listener: Option<JoinHandle<()>>,
+    stderr_thread: Option<JoinHandle<()>>,
 }
 
 impl RunningChild {
@@ -65,7 +65,7 @@ impl RunningChild {
                 words.listen(pipe, &hear);
             }
         });
-        Ok(Self { group: Some(group), requests: Some(requests), lines, last_words, listener: Some(listener) })
+        Ok(Self { group: Some(group), requests: Some(requests), lines, last_words, stderr_thread: Some(listener) })
     }
 
     /// Asks a world within this process, in a thread: if it hangs, its caller does not.
@@ -79,7 +79,7 @@ impl RunningChild {
                 }
             }
         });
-        Self { group: None, requests: Some(requests), lines, last_words: LastWords::default(), listener: None }
+        Self { group: None, requests: Some(requests), lines, last_words: LastWords::default(), stderr_thread: None }
     }
 
     /// Whether it has ended.
@@ -120,8 +120,10 @@ impl RunningChild {
         let asked = Instant::now();
         loop {
             let left = within.saturating_sub(asked.elapsed());
-            match self.lines.recv_timeout(left.min(LOOK_EVERY)) {
-                Err(RecvTimeoutError::Timeout) if left <= LOOK_EVERY => return Err(RecvTimeoutError::Timeout),
+            match self.lines.recv_timeout(left.min(ALIVE_CHECK_INTERVAL)) {
+                Err(RecvTimeoutError::Timeout) if left <= ALIVE_CHECK_INTERVAL => {
+                    return Err(RecvTimeoutError::Timeout);
+                }
                 // A world within this process cannot be killed, but its caller need not wait for it.
                 Err(RecvTimeoutError::Timeout) if self.group.is_none() && is_ended() => return Ok(OutputLine::End),
                 Err(RecvTimeoutError::Timeout) if self.has_ended() => {
@@ -164,7 +166,7 @@ impl RunningChild {
         // Its last lines may not have arrived yet. The wait is bounded, because a process that left the group may keep
         // the pipe open for ever.
         let mut waited = Duration::ZERO;
-        let hears = |running: &Self| running.listener.as_ref().is_some_and(|listener| !listener.is_finished());
+        let hears = |running: &Self| running.stderr_thread.as_ref().is_some_and(|listener| !listener.is_finished());
         while hears(&self) && waited < AFTERMATH_WAIT {
             thread::sleep(Duration::from_millis(5));
             waited += Duration::from_millis(5);

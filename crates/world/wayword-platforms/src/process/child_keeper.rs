@@ -20,7 +20,7 @@ use wayword_core::PlatformError;
 use wayword_world::output_lines::{OutputListener, to_safe_text};
 
 /// After this many answers the child may be restarted once more.
-const ANSWERS_FOR_A_RESTART: u32 = 200;
+const ANSWERS_PER_RESTART: u32 = 200;
 
 /// Keeps one child running. Only one thread uses the child at a time.
 pub(crate) struct ChildKeeper {
@@ -192,7 +192,7 @@ impl ChildState {
         let result = running.send_request(self.asked, method, params, within);
         if result.as_ref().err().is_none_or(ChildFault::leaves_it_usable) {
             self.answered += 1;
-            if self.answered.is_multiple_of(ANSWERS_FOR_A_RESTART) && self.restarts_left < options.restarts {
+            if self.answered.is_multiple_of(ANSWERS_PER_RESTART) && self.restarts_left < options.restarts {
                 self.restarts_left += 1;
             }
         }

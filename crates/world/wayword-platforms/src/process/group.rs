@@ -14,9 +14,9 @@ use std::{
 use wayword_world::output_lines::OutputListener;
 
 /// How often to check whether a child has ended, while waiting for its end.
-const LOOK_EVERY: Duration = Duration::from_millis(5);
+const END_CHECK_INTERVAL: Duration = Duration::from_millis(5);
 /// How long to wait for the end of a killed child. A child that hangs in a driver takes longer, and is not waited for.
-const REAPED_WITHIN: Duration = Duration::from_secs(1);
+const REAP_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Every running group, for [`end_all`].
 static LIVING_GROUPS: Mutex<LivingGroups> = Mutex::new(LivingGroups { is_closed: false, groups: Vec::new() });
@@ -42,7 +42,7 @@ pub fn end_all() {
     for group in &groups {
         lock_ignoring_poison(group).kill_group();
     }
-    let deadline = Instant::now() + REAPED_WITHIN;
+    let deadline = Instant::now() + REAP_TIMEOUT;
     for group in &groups {
         lock_ignoring_poison(group).reap_child(deadline);
     }
@@ -121,7 +121,7 @@ impl ProcessGroup {
             if asked.elapsed() >= within {
                 return false;
             }
-            thread::sleep(LOOK_EVERY);
+            thread::sleep(END_CHECK_INTERVAL);
         }
     }
 
@@ -129,7 +129,7 @@ impl ProcessGroup {
     pub(crate) fn end_group(&self) -> Option<ExitStatus> {
         let mut members = lock_ignoring_poison(&self.0);
         members.kill_group();
-        members.reap_child(Instant::now() + REAPED_WITHIN);
+        members.reap_child(Instant::now() + REAP_TIMEOUT);
         members.child.try_wait().ok().flatten()
     }
 }
@@ -166,7 +166,7 @@ impl GroupMembers {
     /// Reaps the child. Call this only after [`Self::kill_group`].
     fn reap_child(&mut self, deadline: Instant) {
         while !self.is_over && matches!(self.child.try_wait(), Ok(None)) && Instant::now() < deadline {
-            thread::sleep(LOOK_EVERY);
+            thread::sleep(END_CHECK_INTERVAL);
         }
         self.is_over = true;
         self.guard = None;

@@ -160,12 +160,7 @@ impl ProcessPlatform {
     }
 
     /// The ground truth in an answer; `None` if the child offers neither labels nor rooms.
-    fn labels_and_room(
-        &self,
-        seen: ObserveAnswer,
-        pose: &Pose,
-        gaze: ViewGaze,
-    ) -> Result<Option<GroundTruth>, String> {
+    fn labels_and_room(&self, seen: ObserveAnswer, pose: &Pose, gaze: ViewGaze) -> Result<Option<GroundTruth>, String> {
         let lists_objects = self.has_offer(WorldOffer::Labels);
         if !lists_objects && !self.has_offer(WorldOffer::Rooms) {
             return Ok(None);

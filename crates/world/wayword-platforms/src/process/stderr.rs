@@ -8,7 +8,7 @@ use std::{
 use wayword_world::output_lines::{OutputListener, to_safe_text};
 
 /// Number of last lines that are stored for error messages.
-const KEPT_LINES: usize = 12;
+const MAX_STORED_LINES: usize = 12;
 /// Most characters of a line that are passed on and stored.
 const MAX_LINE_CHARS: usize = 400;
 /// Most lines of one child that are passed on. Later lines are not passed on, but the last ones are still stored.
@@ -47,7 +47,7 @@ impl LastWords {
         }
         let mut lines = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         lines.push_back(line);
-        if lines.len() > KEPT_LINES {
+        if lines.len() > MAX_STORED_LINES {
             lines.pop_front();
         }
     }

@@ -1,20 +1,20 @@
 //! Sets marks along a recording, at equal distances or times: each of them should become a frame.
 
-use super::{INTERVAL_M, INTERVAL_S, MOST_LEFT_OUT};
+use super::{INTERVAL_M, INTERVAL_S, MAX_LEFT_OUT_MARKS};
 use crate::{platform::MAX_WHOLE_FRAMES, reel::Recording};
 use wayword_core::DVec3;
 
 /// Most candidates for one mark; if there are more, some in between are left out.
-const MOST_CANDIDATES: usize = 5;
+const MAX_CANDIDATES: usize = 5;
 /// Greatest distance of a candidate from its mark, as a share of the interval.
 const NEAR_INTERVAL_SHARE: f64 = 0.2;
 /// An interval that is shorter than any time between pictures, seconds: with it every picture gets a mark.
-const LEAST_S: f64 = 1e-6;
+const EVERY_PICTURE_INTERVAL_S: f64 = 1e-6;
 /// Least mean time between the pictures of a slide show, seconds; the pictures of a video follow each other faster.
-const LEAST_APART_S: f64 = 0.5;
+const MIN_SLIDE_SHOW_STEP_S: f64 = 0.5;
 /// A rest at the end gets its own mark if it has at least this share of the interval; else the last mark moves to the
 /// end.
-const LEFT_OVER: f64 = 0.5;
+const MIN_END_MARK_SHARE: f64 = 0.5;
 
 /// A place or time at which there should be a frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,7 +31,7 @@ pub(super) struct FrameMark {
 pub(super) fn marks_for_recording(recording: &Recording) -> (Vec<FrameMark>, usize) {
     let times_s = recording.reel.times_s();
     let Some(track) = &recording.track else {
-        let usual_s = if is_slide_show(times_s) { LEAST_S } else { INTERVAL_S };
+        let usual_s = if is_slide_show(times_s) { EVERY_PICTURE_INTERVAL_S } else { INTERVAL_S };
         let interval_s = recording.described.interval_s.unwrap_or(usual_s);
         let all: Vec<usize> = (0..times_s.len()).collect();
         let distance = |a: usize, b: usize| (times_s[a] - times_s[b]).abs();
@@ -45,7 +45,7 @@ pub(super) fn marks_for_recording(recording: &Recording) -> (Vec<FrameMark>, usi
     let distance = |a: usize, b: usize| place_of(a).distance(place_of(b));
     let mut marks = spread_marks(&with_pose, interval_m, &distance);
     // The tracker lost its place here and found it again far away.
-    let leap_m = (MOST_LEFT_OUT + 1) as f64 * interval_m;
+    let leap_m = (MAX_LEFT_OUT_MARKS + 1) as f64 * interval_m;
     let leaps = with_pose.windows(2).filter(|pair| pair[1] - pair[0] > 1 && distance(pair[0], pair[1]) > leap_m);
     let found_again: Vec<usize> = leaps.map(|pair| pair[1]).collect();
     let mut passed_leaps = 0;
@@ -60,7 +60,7 @@ pub(super) fn marks_for_recording(recording: &Recording) -> (Vec<FrameMark>, usi
 /// Whether these are a few single pictures, each of which its photographer meant to be a frame, and no clip of a video.
 fn is_slide_show(times_s: &[f64]) -> bool {
     let span_s = times_s.last().zip(times_s.first()).map_or(0.0, |(last, first)| last - first);
-    times_s.len() <= MAX_WHOLE_FRAMES && span_s >= LEAST_APART_S * times_s.len().saturating_sub(1) as f64
+    times_s.len() <= MAX_WHOLE_FRAMES && span_s >= MIN_SLIDE_SHOW_STEP_S * times_s.len().saturating_sub(1) as f64
 }
 
 /// Marks about one interval apart. `distance` gives the metres or seconds between two pictures. The distance from the last mark
@@ -88,7 +88,7 @@ fn spread_marks(pictures: &[usize], interval: f64, distance: &dyn Fn(usize, usiz
     }
     let end = pictures.len() - 1;
     if marks.last() != Some(&end) {
-        let moves_to_end = distance(from, *last) < LEFT_OVER * interval && marks.len() > 1;
+        let moves_to_end = distance(from, *last) < MIN_END_MARK_SHARE * interval && marks.len() > 1;
         if moves_to_end {
             marks.pop();
         }
@@ -106,10 +106,10 @@ fn spread_marks(pictures: &[usize], interval: f64, distance: &dyn Fn(usize, usiz
     marks.iter().map(mark).collect()
 }
 
-/// At most [`MOST_CANDIDATES`] of a range, evenly spread; `kept` is one of them.
+/// At most [`MAX_CANDIDATES`] of a range, evenly spread; `kept` is one of them.
 fn thin_out(range: std::ops::RangeInclusive<usize>, kept: usize) -> impl Iterator<Item = usize> {
     let length = range.end() - range.start() + 1;
-    let step = length.div_ceil(MOST_CANDIDATES).max(1);
+    let step = length.div_ceil(MAX_CANDIDATES).max(1);
     let phase = kept % step;
     range.filter(move |at| at % step == phase)
 }

@@ -25,7 +25,7 @@ const BLURRED_SHARPNESS_SHARE: f64 = 0.3;
 const ALIKE_DIFFERENCE_LEVELS: f64 = 2.0;
 /// Most marks in a row that may be left out. If more are, the straight line between the two frames around them may not be
 /// the way that the camera took, so the path breaks there.
-const MOST_LEFT_OUT: usize = 2;
+const MAX_LEFT_OUT_MARKS: usize = 2;
 
 /// The frames of a recording, and what was left out.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -142,7 +142,7 @@ fn usual_sharpness(measures: &[(usize, PictureMeasure)]) -> f64 {
 /// Whether the way to the next stop is unknown. `marks` are all marks after the last stop; the last of `marks` would be the
 /// next stop.
 fn is_lost(marks: &[FrameMark]) -> bool {
-    marks.len() > MOST_LEFT_OUT + 1 || marks.iter().any(|mark| mark.after_gap)
+    marks.len() > MAX_LEFT_OUT_MARKS + 1 || marks.iter().any(|mark| mark.after_gap)
 }
 
 /// Whether a picture shows the view of an agent that comes from the stop `before` and looks ahead; true if this is

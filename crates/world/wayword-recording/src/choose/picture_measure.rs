@@ -7,7 +7,7 @@ const SMALL_WIDTH_PX: usize = 32;
 const SMALL_HEIGHT_PX: usize = 24;
 /// Least width at which sharpness is measured, pixels. Pictures of twice this width or more are shrunk first: motion blur is
 /// wide, and noise of single pixels is not sharpness.
-const MEASURED_PX: usize = 320;
+const MIN_MEASURED_WIDTH_PX: usize = 320;
 /// Variance that a picture of one colour gets from its noise, levels squared.
 const NOISE_VARIANCE: f64 = 25.0;
 
@@ -24,7 +24,7 @@ impl PictureMeasure {
     /// Measures a picture.
     pub(super) fn from_image(image: &Image) -> Self {
         let (width, height) = (image.width_px() as usize, image.height_px() as usize);
-        let step = (width / MEASURED_PX).max(1);
+        let step = (width / MIN_MEASURED_WIDTH_PX).max(1);
         let grey = shrink_to_grey(image, (width / step).max(1), (height / step).max(1));
         let sharpness = variance(&laplacian(&grey, (width / step).max(1))) / (variance(&grey) + NOISE_VARIANCE);
         Self { sharpness, small: shrink_to_grey(image, SMALL_WIDTH_PX, SMALL_HEIGHT_PX) }

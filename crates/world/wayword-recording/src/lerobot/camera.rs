@@ -14,7 +14,7 @@ pub(super) struct DatasetCamera {
     /// The name of its feature.
     pub(super) key: String,
     /// Where its pictures are.
-    pub(super) kept: PictureStorage,
+    pub(super) storage: PictureStorage,
 }
 
 /// The place where a camera's pictures are stored.
@@ -52,5 +52,5 @@ pub(super) fn choose_camera(
     };
     let is_video = info.features.get(key).is_some_and(|feature| feature.dtype == "video");
     let storage = if is_video { PictureStorage::Video } else { PictureStorage::Rows };
-    Ok(DatasetCamera { key: key.clone(), kept: storage })
+    Ok(DatasetCamera { key: key.clone(), storage: storage })
 }

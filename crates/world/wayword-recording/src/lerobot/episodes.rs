@@ -80,7 +80,7 @@ fn one_by_one(root: &Path, info: &DatasetInfo, camera: &DatasetCamera) -> Result
             ("video_key", TemplateValue::Text(&camera.key)),
         ];
         let data = path_in_dataset(root, &info.data_path, &values)?;
-        let clip = match camera.kept {
+        let clip = match camera.storage {
             PictureStorage::Rows => None,
             PictureStorage::Video => {
                 Some(VideoClip { file: path_in_dataset(root, video_path(root, info)?, &values)?, from_s: 0.0 })
@@ -119,7 +119,7 @@ fn in_file(
     let (numbers, lengths) = (whole("episode_index")?, whole("length")?);
     let (chunks, file_numbers) = (whole("data/chunk_index")?, whole("data/file_index")?);
     let video_column = |name: &str| format!("videos/{}/{name}", camera.key);
-    let clips = match camera.kept {
+    let clips = match camera.storage {
         PictureStorage::Rows => None,
         PictureStorage::Video => {
             let mut from_s = Vec::new();

@@ -13,12 +13,12 @@ use wayword_world::files;
 
 const POSE_NAMES_HINT: &str = "docs/RECORDINGS.md lists the names in meta/info.json that elements of a pose need";
 /// Words in the name of an element that exclude it as a position in the world.
-const NO_PLACE: [&str; 18] = [
+const NOT_A_POSITION_WORDS: [&str; 18] = [
     "vel", "velocity", "speed", "acc", "accel", "linear", "angular", "force", "torque", "effort", "current", "delta",
     "goal", "target", "cmd", "command", "action", "error",
 ];
 /// Words in the name of a feature that does not count as the robot's pose unless the user names it.
-const NO_ROBOT: [&str; 12] =
+const NOT_THE_ROBOT_WORDS: [&str; 12] =
     ["action", "actions", "eef", "ee", "effector", "tcp", "tool", "hand", "gripper", "wrist", "arm", "object"];
 
 /// The feature with the robot's pose, and the indices of the elements that form it.
@@ -97,8 +97,8 @@ impl PoseFeature {
     fn unnamed_pose(key: &str, feature: &DatasetFeature) -> Option<Self> {
         let pose = Self::pose_in_feature(key, feature).ok()?;
         let elements = 3 + usize::from(pose.z.is_some());
-        let is_robot =
-            !name_words(key).any(|word| NO_ROBOT.contains(&word.as_str()) || NO_PLACE.contains(&word.as_str()));
+        let is_robot = !name_words(key)
+            .any(|word| NOT_THE_ROBOT_WORDS.contains(&word.as_str()) || NOT_A_POSITION_WORDS.contains(&word.as_str()));
         (is_robot && matches!(pose.facing, FeatureFacing::Yaw(..)) && pose.width == elements).then_some(pose)
     }
 
@@ -165,7 +165,7 @@ impl PoseFeature {
             (FeatureFacing::Quaternion(_), [x, y, z, w]) => rotation_columns([*x, *y, *z, *w]),
             _ => None,
         };
-        Some(PoseSample { position, held: columns })
+        Some(PoseSample { position, recorded_from_body: columns })
     }
 
     /// The recorded position, and the numbers that give the direction.
@@ -183,7 +183,7 @@ fn name_words(name: &str) -> impl Iterator<Item = String> {
 /// The meaning of an element by its name (`x`, `base.x`, `pose_x_m`); `None` for others, such as `x.vel`.
 fn element_role(name: &str) -> Option<ElementRole> {
     let words: Vec<String> = name_words(name).collect();
-    if words.iter().any(|word| NO_PLACE.contains(&word.as_str())) {
+    if words.iter().any(|word| NOT_A_POSITION_WORDS.contains(&word.as_str())) {
         return None;
     }
     let has = |wanted: &[&str]| words.iter().any(|word| wanted.contains(&word.as_str()));

@@ -127,7 +127,7 @@ impl McapContents {
             Err(why) => Some(why),
         };
         let stretches = vec![MessageStretch { from, to: records.reached_offset(), chunk: None }];
-        Ok(Self { topics: listing.topics_with(|id| listing.spoken.contains(id)), stretches, broken })
+        Ok(Self { topics: listing.topics_with(|id| listing.channels_with_messages.contains(id)), stretches, broken })
     }
 
     /// The channels of some topics.
@@ -188,7 +188,7 @@ struct McapListing {
     schemas: BTreeMap<u16, String>,
     channels: BTreeMap<u16, Channel>,
     /// Channels that have messages.
-    spoken: BTreeSet<u16>,
+    channels_with_messages: BTreeSet<u16>,
     chunks: Vec<ChunkIndex>,
     counts: Option<Statistics>,
 }
@@ -203,7 +203,7 @@ impl McapListing {
                     let channel = Channel { metadata: BTreeMap::new(), ..channel };
                     self.channels.insert(channel.id, channel);
                 }
-                Record::Message { header, .. } => drop(self.spoken.insert(header.channel_id)),
+                Record::Message { header, .. } => drop(self.channels_with_messages.insert(header.channel_id)),
                 Record::ChunkIndex(chunk) => self.chunks.push(chunk),
                 Record::Statistics(counts) => self.counts = Some(counts),
                 _ => {}

@@ -189,7 +189,7 @@ pub(crate) struct StampedTransform {
     /// The time, and the outer frame.
     pub(crate) head: MessageHead,
     /// The frame that is placed; `None` for a pose, which does not name it.
-    pub(crate) what: Option<String>,
+    pub(crate) child_frame: Option<String>,
     pub(crate) placing: RigidTransform,
 }
 
@@ -206,7 +206,7 @@ pub(crate) fn read_transforms(kind: MessageKind, message: &[u8]) -> Result<Vec<S
         let (position, rotation) = (cdr.read_f64s()?, cdr.read_f64s()?);
         all.extend(RigidTransform::new(position, rotation).map(|placing| StampedTransform {
             head,
-            what: child_frame,
+            child_frame: child_frame,
             placing,
         }));
     }

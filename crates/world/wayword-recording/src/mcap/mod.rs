@@ -146,7 +146,7 @@ impl McapFile {
             let (first_ns, last_ns) = (times.clone().min()?, times.max()?);
             let placings = chain.chain_placings(clock);
             let overlaps = placings.first()?.0 <= last_ns && placings.last()?.0 >= first_ns;
-            let axes = self.described.axes_or_usual(PoseAxes::for_body(if chain.of_camera {
+            let axes = self.described.axes_or_usual(PoseAxes::for_body(if chain.starts_at_camera {
                 body_for_frame(&placings, frame)
             } else {
                 PoseBody::Robot
@@ -177,7 +177,7 @@ fn fixes_from_placings(placings: &[(i64, RigidTransform)], first_ns: i64, axes: 
 fn samples_from_placings(placings: &[(i64, RigidTransform)]) -> Vec<PoseSample> {
     let sample = |(_, placing): &(i64, RigidTransform)| PoseSample {
         position: DVec3::from(placing.position.to_array()),
-        held: rotation_columns(placing.rotation.to_array()),
+        recorded_from_body: rotation_columns(placing.rotation.to_array()),
     };
     placings.iter().map(sample).collect()
 }

@@ -10,7 +10,8 @@ use std::collections::BTreeMap;
 
 /// Words in the names of topics with poses that are goals, and not the robot's own.
 const GOAL_WORDS: [&str; 4] = ["goal", "initialpose", "target", "plan"];
-const NAME_IT: &str = "write `poses = \"TOPIC\"` into a file NAME.toml beside NAME.mcap, or into recording.toml";
+const NAME_POSES_HINT: &str =
+    "write `poses = \"TOPIC\"` into a file NAME.toml beside NAME.mcap, or into recording.toml";
 
 /// All poses of a file.
 #[derive(Debug)]
@@ -27,7 +28,7 @@ pub(crate) struct RecordedPoses {
 struct TopicPoses {
     kind: MessageKind,
     /// The frame that is placed, if the messages name it.
-    what: Option<String>,
+    child_frame: Option<String>,
     /// Its poses over time, as one edge of the tree.
     edge: TransformEdge,
 }
@@ -37,7 +38,7 @@ struct TopicPoses {
 pub(crate) struct TransformChain<'a> {
     edges: Vec<&'a TransformEdge>,
     /// Whether the chain begins at the camera's own frame.
-    pub(crate) of_camera: bool,
+    pub(crate) starts_at_camera: bool,
 }
 
 impl RecordedPoses {
@@ -52,10 +53,10 @@ impl RecordedPoses {
                 self.tree.add_placed(logged_ns, placed, topic.ends_with("tf_static"));
                 continue;
             }
-            let StampedTransform { head: MessageHead { stamp_ns, frame }, what: child_frame, placing } = placed;
+            let StampedTransform { head: MessageHead { stamp_ns, frame }, child_frame: child_frame, placing } = placed;
             if !self.topics.contains_key(topic) {
                 let edge = TransformEdge { parent: frame, ..TransformEdge::default() };
-                self.topics.insert(topic.to_owned(), TopicPoses { kind, what: child_frame, edge });
+                self.topics.insert(topic.to_owned(), TopicPoses { kind, child_frame: child_frame, edge });
             }
             if let Some(poses) = self.topics.get_mut(topic) {
                 poses.edge.samples.push((MessageTimes { stamp_ns, logged_ns }, placing));
@@ -70,7 +71,7 @@ impl RecordedPoses {
     ) -> Result<Option<TransformChain<'_>>, UnclearReason> {
         match named {
             Some((topic, MessageKind::Transforms)) => {
-                let chain = self.tree.way_up(true).map(|edges| Some(TransformChain { edges, of_camera: true }));
+                let chain = self.tree.way_up(true).map(|edges| Some(TransformChain { edges, starts_at_camera: true }));
                 chain.ok_or_else(|| (self.describe_incomplete(topic), "name another topic as `poses`, or leave it out"))
             }
             Some((topic, _)) => Ok(self.topics.get(topic).map(|poses| self.chain_for_topic(poses))),
@@ -88,7 +89,7 @@ impl RecordedPoses {
     /// with poses.
     fn obvious_chain(&self) -> Result<Option<TransformChain<'_>>, UnclearReason> {
         if let Some(edges) = self.tree.way_up(false) {
-            return Ok(Some(TransformChain { edges, of_camera: true }));
+            return Ok(Some(TransformChain { edges, starts_at_camera: true }));
         }
         for kind in [MessageKind::Odometry, MessageKind::Pose] {
             let is_goal = |name: &str| {
@@ -101,7 +102,7 @@ impl RecordedPoses {
                 [(_, poses)] => return Ok(Some(self.chain_for_topic(poses))),
                 _ => {
                     let names = list_names(own_poses.iter().map(|(name, _)| name.as_str()));
-                    return Err((format!("has several pose topics: {names}"), NAME_IT));
+                    return Err((format!("has several pose topics: {names}"), NAME_POSES_HINT));
                 }
             }
         }
@@ -110,11 +111,11 @@ impl RecordedPoses {
 
     /// The chain that a topic gives. It begins at the camera's frame if the mounting of the camera on the robot is known.
     fn chain_for_topic<'a>(&'a self, poses: &'a TopicPoses) -> TransformChain<'a> {
-        let mounted = poses.what.as_ref().and_then(|what| self.tree.up_to(what));
+        let mounted = poses.child_frame.as_ref().and_then(|what| self.tree.up_to(what));
         let is_mounting_known = mounted.is_some();
         let mut edges = mounted.unwrap_or_default();
         edges.push(&poses.edge);
-        TransformChain { edges, of_camera: is_mounting_known }
+        TransformChain { edges, starts_at_camera: is_mounting_known }
     }
 }
 
@@ -134,7 +135,7 @@ mod tests {
         let placing = RigidTransform { position, rotation: DQuat::IDENTITY };
         StampedTransform {
             head: MessageHead { stamp_ns, frame: frame.to_owned() },
-            what: what.map(str::to_owned),
+            child_frame: what.map(str::to_owned),
             placing,
         }
     }
@@ -157,7 +158,7 @@ mod tests {
     fn odometry_and_where_the_camera_is_on_the_robot_make_the_cameras_way() {
         let mut poses = RecordedPoses::new("cam");
         add_two_poses(&mut poses, "/odom", MessageKind::Odometry, "odom", Some("base"), 1.0);
-        assert!(!poses.choose_chain(None).unwrap().unwrap().of_camera);
+        assert!(!poses.choose_chain(None).unwrap().unwrap().starts_at_camera);
         poses.add_message(
             "/tf_static",
             MessageKind::Transforms,
@@ -165,7 +166,7 @@ mod tests {
             vec![placed("base", Some("cam"), 0, DVec3::new(0.0, 0.0, 0.5))],
         );
         let way = poses.choose_chain(None).unwrap().unwrap();
-        assert!(way.of_camera);
+        assert!(way.starts_at_camera);
         assert_eq!(way.chain_placings(MessageClock::Log)[1].1.position, DVec3::new(2.0, 0.0, 0.5));
     }
 

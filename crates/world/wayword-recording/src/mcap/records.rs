@@ -32,7 +32,7 @@ const MAX_UNPACKED: (u64, u64) = (256 << 20, 1000);
 const UNPACKED_RECORD: (u64, u64) = (64 << 10, 258 << 20);
 
 /// Most bytes of a message that the caller needs, by channel.
-pub(crate) type MostBytes<'a> = dyn Fn(u16) -> u64 + 'a;
+pub(crate) type NeededBytes<'a> = dyn Fn(u16) -> u64 + 'a;
 
 /// Receives records, and can stop the reading.
 pub(crate) type HearRecord<'a> = dyn FnMut(McapRecord<'_>) -> Result<ControlFlow<()>, String> + 'a;
@@ -92,7 +92,7 @@ impl<'a> RecordReader<'a> {
     /// When the file is broken, or `hear` fails.
     pub(crate) fn each_record(
         &mut self,
-        most: &MostBytes<'_>,
+        most: &NeededBytes<'_>,
         hear: &mut HearRecord<'_>,
     ) -> Result<ControlFlow<()>, String> {
         loop {
@@ -165,7 +165,7 @@ impl<'a> RecordReader<'a> {
     }
 
     /// Reads the needed first bytes of a body and skips the rest. Returns whether the record concerns messages.
-    fn read_body(&mut self, opcode: u8, length: u64, most: &MostBytes<'_>) -> Result<bool, String> {
+    fn read_body(&mut self, opcode: u8, length: u64, most: &NeededBytes<'_>) -> Result<bool, String> {
         self.body.clear();
         // The first two bytes of a message are its channel, which determines how many bytes are needed.
         let begun = length.min(2);
@@ -218,7 +218,7 @@ impl PackedChunk {
     fn each_record(
         &mut self,
         file: &mut BufReader<&File>,
-        most: &MostBytes<'_>,
+        most: &NeededBytes<'_>,
         hear: &mut HearRecord<'_>,
     ) -> Result<ControlFlow<()>, String> {
         loop {
@@ -248,7 +248,7 @@ impl PackedChunk {
 }
 
 /// Most bytes of a record that are needed; `None` if it does not concern messages.
-fn wanted_bytes(opcode: u8, body: &[u8], most: &MostBytes<'_>) -> Option<u64> {
+fn wanted_bytes(opcode: u8, body: &[u8], most: &NeededBytes<'_>) -> Option<u64> {
     let id = body.first_chunk().copied().map_or(0, u16::from_le_bytes);
     match opcode {
         op::MESSAGE => Some(MESSAGE_HEAD_BYTES + most(id)),

@@ -11,7 +11,8 @@ use std::collections::BTreeMap;
 /// Most names that an error lists; it gives the number of the others.
 const MAX_NAMES: usize = 20;
 /// Words in the names of topics with pictures of another kind than a person would see.
-const NO_VIEW: [&str; 9] = ["depth", "disparity", "infra", "thermal", "mask", "segment", "semantic", "label", "debug"];
+const NO_VIEW_WORDS: [&str; 9] =
+    ["depth", "disparity", "infra", "thermal", "mask", "segment", "semantic", "label", "debug"];
 /// Words in the names of topics with pictures in colour.
 const COLOUR_WORDS: [&str; 3] = ["color", "colour", "rgb"];
 
@@ -21,10 +22,11 @@ pub(crate) type PictureHeads = BTreeMap<String, PictureHead>;
 /// The reason why a topic cannot be chosen, and a way out.
 pub(crate) type UnclearReason = (String, &'static str);
 
-const NAME_IT: &str = "write `camera = \"TOPIC\"` into a file NAME.toml beside NAME.mcap, or into recording.toml";
+const NAME_CAMERA_HINT: &str =
+    "write `camera = \"TOPIC\"` into a file NAME.toml beside NAME.mcap, or into recording.toml";
 const FOREIGN_HINT: &str =
     "record sensor_msgs/msg/Image or CompressedImage with ROS 2; or write the pictures to a folder, or to an MP4 file";
-const ROS_1: &str = "convert the ROS 1 bag with `rosbags-convert --src NAME.bag --dst NAME --dst-storage mcap \
+const ROS1_HINT: &str = "convert the ROS 1 bag with `rosbags-convert --src NAME.bag --dst NAME --dst-storage mcap \
                      --dst-typestore ros2_humble` (pip install rosbags)";
 
 /// The camera's topic: the named one, or the obvious one.
@@ -56,7 +58,7 @@ pub(crate) fn choose_camera<'a>(
     match obvious_camera(&readable) {
         Some(camera) => Ok(camera),
         None if readable.is_empty() => Err(no_camera(contents, &cameras)),
-        None => Err((format!("holds several cameras: {}", list_names(readable.into_iter())), NAME_IT)),
+        None => Err((format!("holds several cameras: {}", list_names(readable.into_iter())), NAME_CAMERA_HINT)),
     }
 }
 
@@ -80,7 +82,7 @@ fn no_camera(contents: &McapContents, cameras: &[(&str, Option<String>)]) -> Unc
     let topics =
         contents.topics.iter().take(MAX_NAMES).map(|(name, topic)| format!("{name} ({})", describe_topic(topic)));
     let topics: Vec<String> = topics.collect();
-    let hint = if contents.topics.values().any(|topic| topic.encoding == "ros1") { ROS_1 } else { FOREIGN_HINT };
+    let hint = if contents.topics.values().any(|topic| topic.encoding == "ros1") { ROS1_HINT } else { FOREIGN_HINT };
     match topics.is_empty() {
         true => ("has no messages".to_owned(), "record it again, with a camera's topic"),
         false => (format!("has no pictures that can be read; its topics: {}", topics.join(", ")), hint),
@@ -110,7 +112,7 @@ pub(crate) fn list_names<'a>(names: impl Iterator<Item = &'a str>) -> String {
 fn obvious_camera<'a>(readable: &[&'a str]) -> Option<&'a str> {
     let only = |names: &[&'a str]| if let [name] = names { Some(*name) } else { None };
     let has = |name: &str, words: &[&str]| words.iter().any(|word| name.to_ascii_lowercase().contains(word));
-    let candidates: Vec<&str> = readable.iter().copied().filter(|name| !has(name, &NO_VIEW)).collect();
+    let candidates: Vec<&str> = readable.iter().copied().filter(|name| !has(name, &NO_VIEW_WORDS)).collect();
     // The same pictures compressed are a fraction of the bytes.
     let has_compressed_twin =
         |name: &str| candidates.iter().any(|other| *other != name && other.strip_suffix("/compressed") == Some(name));

@@ -4,7 +4,7 @@ use super::messages::{RigidTransform, StampedTransform};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Names of fixed frames, the best first (REP 105).
-const STANDING_FRAMES: [&str; 3] = ["map", "odom", "world"];
+const FIXED_FRAMES: [&str; 3] = ["map", "odom", "world"];
 /// Most frames of a file; further ones are ignored. No robot has so many.
 const MAX_FRAMES: usize = 100_000;
 
@@ -132,7 +132,7 @@ impl TransformTree {
 
     /// Adds a placing of a frame.
     pub(crate) fn add_placed(&mut self, logged_ns: i64, placed: StampedTransform, fixed: bool) {
-        let Some(frame) = placed.what else { return };
+        let Some(frame) = placed.child_frame else { return };
         let unknown = !self.edges.contains_key(&frame);
         if self.kept.as_ref().is_some_and(|kept| !kept.contains(&frame)) || (unknown && self.edges.len() == MAX_FRAMES)
         {
@@ -196,10 +196,10 @@ impl TransformTree {
     }
 }
 
-/// Index in [`STANDING_FRAMES`] of a frame with one of those names: `map`, `robot1/map`.
+/// Index in [`FIXED_FRAMES`] of a frame with one of those names: `map`, `robot1/map`.
 fn standing_rank(frame: &str) -> Option<usize> {
     let name = frame.rsplit('/').next().unwrap_or(frame);
-    STANDING_FRAMES.iter().position(|standing| *standing == name)
+    FIXED_FRAMES.iter().position(|standing| *standing == name)
 }
 
 #[cfg(test)]
@@ -212,7 +212,7 @@ mod tests {
         let placing = RigidTransform { position: DVec3::new(x, 0.0, 0.0), rotation: DQuat::IDENTITY };
         StampedTransform {
             head: MessageHead { stamp_ns, frame: frame.to_owned() },
-            what: Some(what.to_owned()),
+            child_frame: Some(what.to_owned()),
             placing,
         }
     }

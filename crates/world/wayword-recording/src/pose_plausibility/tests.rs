@@ -16,7 +16,7 @@ fn walk(places: &[[f64; 3]], tilt_rad: f64) -> Vec<PoseSample> {
         let held = Some([right, right.cross(looking), -looking]);
         let steps = (pair[0].distance(pair[1]) / 0.25).ceil();
         let at = |step: usize| pair[0].lerp(pair[1], step as f64 / steps);
-        samples.extend((0..steps as usize).map(|step| PoseSample { position: at(step), held }));
+        samples.extend((0..steps as usize).map(|step| PoseSample { position: at(step), recorded_from_body: held }));
     }
     samples
 }
@@ -31,13 +31,13 @@ fn with_y_up(samples: Vec<PoseSample>) -> Vec<PoseSample> {
     let turn = |place: DVec3| DVec3::new(place.x, place.z, -place.y);
     let turned = |sample: PoseSample| PoseSample {
         position: turn(sample.position),
-        held: sample.held.map(|held| held.map(turn)),
+        recorded_from_body: sample.recorded_from_body.map(|held| held.map(turn)),
     };
     samples.into_iter().map(turned).collect()
 }
 
 fn without_orientation(samples: Vec<PoseSample>) -> Vec<PoseSample> {
-    samples.into_iter().map(|sample| PoseSample { held: None, ..sample }).collect()
+    samples.into_iter().map(|sample| PoseSample { recorded_from_body: None, ..sample }).collect()
 }
 
 fn found(samples: &[PoseSample], axes: PoseAxes) -> Option<PoseDoubt> {
@@ -120,8 +120,8 @@ fn drones_and_lifts_are_not_refused() {
 #[test]
 fn a_camera_on_its_head_is_odd_and_a_short_walk_is_not_judged() {
     let upside_down = level().into_iter().map(|sample| {
-        let held = sample.held.map(|[x, y, z]| [-x, -y, z]);
-        PoseSample { held, ..sample }
+        let held = sample.recorded_from_body.map(|[x, y, z]| [-x, -y, z]);
+        PoseSample { recorded_from_body: held, ..sample }
     });
     // Read as an optical frame it would be upright and look back, so the warning names that frame.
     let told = found(&upside_down.collect::<Vec<_>>(), OPEN_GL);

@@ -6,7 +6,7 @@ use wayword_core::DVec3;
 
 /// The number of each column that is read, from 0.
 struct CsvColumns {
-    of: CsvKeyColumn,
+    key: CsvKeyColumn,
     /// The columns of x, y and z. A file without heights has the column of x in the place of z.
     position: [usize; 3],
     facing: CsvFacing,
@@ -51,14 +51,14 @@ pub(super) fn read_csv(text: &str) -> Result<PoseRows, String> {
     // The sensor of EuRoC has z ahead and x up (`body_T_cam` in its sensor.yaml).
     let is_euroc = header.to_ascii_lowercase().contains(EUROC_POSITION);
     let body = if is_euroc { PoseBody::Optical } else { PoseBody::Robot };
-    Ok(PoseRows { usual: PoseAxes::for_body(body), knows_above: !is_euroc, rows: rows.collect::<Result<_, _>>()? })
+    Ok(PoseRows { usual: PoseAxes::for_body(body), knows_body_up: !is_euroc, rows: rows.collect::<Result<_, _>>()? })
 }
 
 /// The cells of a line, up to a quoted cell that contains the separator: all cells after that one would be shifted.
 struct CsvCells<'a> {
     plain: Vec<&'a str>,
     /// The separator that the first unread cell contains, if there is such a cell.
-    held: Option<char>,
+    quoted_separator: Option<char>,
 }
 
 impl<'a> CsvCells<'a> {
@@ -68,12 +68,12 @@ impl<'a> CsvCells<'a> {
         let cells = || line.split(separator).map(str::trim);
         let plain: Vec<&str> = cells().take_while(is_plain).map(|cell| cell.trim_matches('"')).collect();
         let separator_in_cell = (plain.len() < cells().count()).then_some(separator);
-        Self { plain, held: separator_in_cell }
+        Self { plain, quoted_separator: separator_in_cell }
     }
 
     /// The text of a cell.
     fn get(&self, column: usize) -> Result<&'a str, String> {
-        self.plain.get(column).copied().ok_or_else(|| match self.held {
+        self.plain.get(column).copied().ok_or_else(|| match self.quoted_separator {
             Some(separator) => format!("a quoted cell contains {separator:?}, which cannot be read"),
             None => format!("has too few cells ({})", self.plain.len()),
         })
@@ -111,7 +111,7 @@ impl CsvColumns {
         let key = any(&["image", "file", "filename", "picture", "name"]).map(CsvKeyColumn::Picture).or_else(time)?;
         let axis = |axis: &str| any(&[axis, &format!("t{axis}"), &format!("p{axis}"), &format!("{axis}_m")]);
         Some(Self {
-            of: key,
+            key: key,
             position: [axis("x")?, axis("y")?, axis("z").or_else(|| axis("x"))?],
             facing: CsvFacing::from_columns(&find),
         })
@@ -120,7 +120,7 @@ impl CsvColumns {
     fn read_row(&self, cells: &CsvCells<'_>) -> Result<PoseRow, String> {
         let cell = |column: usize| cells.get(column);
         let value = |column: usize| parse_number(cell(column)?);
-        let key = match self.of {
+        let key = match self.key {
             CsvKeyColumn::Time { column, unit } => PoseKey::Time(seconds_in_unit(value(column)?, unit)),
             CsvKeyColumn::Picture(column) => PoseKey::Picture(cell(column)?.to_owned()),
         };
@@ -134,7 +134,7 @@ impl CsvColumns {
             CsvFacing::Yaw { column, per_unit_rad } => PoseFacing::Yaw(value(column)? * per_unit_rad),
             CsvFacing::Heading { column, per_unit_rad } => PoseFacing::Heading(value(column)? * per_unit_rad),
         };
-        Ok(PoseRow { of: key, position, facing })
+        Ok(PoseRow { key: key, position, facing })
     }
 }
 

@@ -65,7 +65,7 @@ fn rows_of(
     rows: impl Iterator<Item = Result<PoseRow, (usize, &'static str)>>,
 ) -> Result<PoseRows, String> {
     let rows = rows.collect::<Result<_, _>>().map_err(|(at, what)| format!("{what} {at}: {EXPECTED_JSON}"))?;
-    Ok(PoseRows { usual, knows_above: true, rows })
+    Ok(PoseRows { usual, knows_body_up: true, rows })
 }
 
 impl NerfFrame {
@@ -74,7 +74,7 @@ impl NerfFrame {
             return None;
         };
         Some(PoseRow {
-            of: PoseKey::Picture(self.file_path),
+            key: PoseKey::Picture(self.file_path),
             position: DVec3::new(x, y, z),
             facing: PoseFacing::Columns([DVec3::new(ax, bx, cx), DVec3::new(ay, by, cy), DVec3::new(az, bz, cz)]),
         })
@@ -94,6 +94,6 @@ impl JsonPose {
             (.., Some(rad)) => PoseFacing::Yaw(rad),
             _ => PoseFacing::Unknown,
         };
-        Some(PoseRow { of: key, position: DVec3::from_array(self.position), facing })
+        Some(PoseRow { key: key, position: DVec3::from_array(self.position), facing })
     }
 }

@@ -34,19 +34,19 @@ pub(super) fn read_matrix(text: &str) -> Result<PoseRows, String> {
     }
     let kitti = PoseAxes { world: WorldUpAxis::YDown, ..PoseAxes::for_body(PoseBody::Optical) };
     let usual = if columns == Some(12) { kitti } else { PoseAxes::for_body(PoseBody::Optical) };
-    Ok(PoseRows { usual, knows_above: true, rows })
+    Ok(PoseRows { usual, knows_body_up: true, rows })
 }
 
 /// The pose on a line. `at` is the number of the line's picture, which counts for a matrix without a time.
 fn row_from_numbers(numbers: &[f64], at: usize) -> Option<PoseRow> {
     match *numbers {
         [time, x, y, z, qx, qy, qz, qw] => Some(PoseRow {
-            of: PoseKey::Time(seconds_in_unit(time, None)),
+            key: PoseKey::Time(seconds_in_unit(time, None)),
             position: DVec3::new(x, y, z),
             facing: PoseFacing::Quaternion([qx, qy, qz, qw]),
         }),
         [a, b, c, x, d, e, f, y, g, h, i, z] => Some(PoseRow {
-            of: PoseKey::Number(at),
+            key: PoseKey::Number(at),
             position: DVec3::new(x, y, z),
             facing: PoseFacing::Columns([DVec3::new(a, d, g), DVec3::new(b, e, h), DVec3::new(c, f, i)]),
         }),

@@ -20,7 +20,7 @@ use wayword_world::files;
 const MAX_FILE_BYTES: u64 = 256 << 20;
 const POSE_FILE_HINT: &str = "docs/RECORDINGS.md shows the pose files that can be read";
 /// Names of a folder's pose file, in the order in which they are tried.
-const IN_FOLDER: [&str; 6] =
+const FOLDER_POSE_FILES: [&str; 6] =
     ["poses.json", "poses.csv", "poses.tum", "poses.txt", "groundtruth.txt", "transforms.json"];
 
 /// Finds the pose file: the one that the description names, else that of a folder, or of a file by its name (`walk.csv`
@@ -41,7 +41,7 @@ pub(crate) fn find_pose_file(path: &Path, described: &RecordingDescription) -> R
         };
     }
     let candidates: Vec<PathBuf> = if path.is_dir() {
-        IN_FOLDER.iter().map(|name| folder.join(name)).collect()
+        FOLDER_POSE_FILES.iter().map(|name| folder.join(name)).collect()
     } else {
         ["tum", "csv", "json", "txt"].iter().map(|ending| path.with_extension(ending)).collect()
     };
@@ -104,14 +104,14 @@ fn on_clock(
     times_s: &[f64],
     name: &dyn Fn(usize) -> String,
 ) -> Option<CameraTrack> {
-    let by_name = rows.iter().any(|row| matches!(row.of, PoseKey::Picture(_)));
+    let by_name = rows.iter().any(|row| matches!(row.key, PoseKey::Picture(_)));
     let mut named: Vec<(String, f64)> = Vec::new();
     if by_name {
         named = times_s.iter().enumerate().map(|(at, time_s)| (rows::picture_stem(&name(at)), *time_s)).collect();
         named.sort_by(|a, b| a.0.cmp(&b.0));
     }
     let fixes = rows.into_iter().filter_map(|row| {
-        let time_s = match &row.of {
+        let time_s = match &row.key {
             PoseKey::Time(time_s) => Some(*time_s),
             PoseKey::Number(number) => times_s.get(*number).copied(),
             PoseKey::Picture(picture) => {

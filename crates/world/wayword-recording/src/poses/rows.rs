@@ -13,14 +13,14 @@ use wayword_core::{DVec3, Heading};
 pub(super) struct PoseRows {
     pub(super) usual: PoseAxes,
     /// Whether the body's up direction is known. For EuRoC's sensor only the direction ahead is.
-    pub(super) knows_above: bool,
+    pub(super) knows_body_up: bool,
     pub(super) rows: Vec<PoseRow>,
 }
 
 /// A pose as it was recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PoseRow {
-    pub(super) of: PoseKey,
+    pub(super) key: PoseKey,
     pub(super) position: DVec3,
     pub(super) facing: PoseFacing,
 }
@@ -74,7 +74,7 @@ impl PoseRows {
         };
         let sample = |row: &PoseRow| PoseSample {
             position: row.position,
-            held: orientation(row.facing).filter(|_| self.knows_above),
+            recorded_from_body: orientation(row.facing).filter(|_| self.knows_body_up),
         };
         self.rows.iter().map(sample).collect()
     }

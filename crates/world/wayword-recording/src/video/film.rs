@@ -19,7 +19,7 @@ use wayword_world::files;
 
 /// Most decoded pictures that wait for an earlier one; more mean a broken file. A decoder holds back at most so many
 /// (ITU-T H.264, annex A.3.1).
-const MAX_HELD: usize = 17;
+const MAX_WAITING_PICTURES: usize = 17;
 
 /// One camera's pictures in an MP4 file.
 #[derive(Debug)]
@@ -150,7 +150,7 @@ impl<'a> PictureBuffer<'a> {
     /// Takes a picture from a decoder.
     fn put_picture(&mut self, sample: usize, planes: &colour::PicturePlanes<'_>) -> Result<(), String> {
         let Some(number) = self.numbers.get(&sample) else { return Ok(()) };
-        if self.done.len() > MAX_HELD {
+        if self.done.len() > MAX_WAITING_PICTURES {
             return Err("shows its pictures in another order than it says".to_owned());
         }
         if let Entry::Vacant(place) = self.done.entry(*number) {

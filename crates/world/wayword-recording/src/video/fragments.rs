@@ -14,7 +14,7 @@ const DEFAULT_FLAGS: u32 = 0x20;
 const DEFAULT_BASE_IS_MOOF: u32 = 0x2_0000;
 /// Flags of the box `trun`: which fields it has, for the run and for each sample.
 const DATA_OFFSET: u32 = 0x1;
-const FIRST_FLAGS: u32 = 0x4;
+const FIRST_SAMPLE_FLAGS: u32 = 0x4;
 const HAS_DURATIONS: u32 = 0x100;
 const HAS_SIZES: u32 = 0x200;
 const HAS_FLAGS: u32 = 0x400;
@@ -128,7 +128,7 @@ impl FragmentReader {
         if flags & DATA_OFFSET != 0 {
             self.end = base.saturating_add_signed(i64::from(fields.read_i32()?));
         }
-        let first = if flags & FIRST_FLAGS != 0 { Some(fields.read_u32()?) } else { None };
+        let first = if flags & FIRST_SAMPLE_FLAGS != 0 { Some(fields.read_u32()?) } else { None };
         for at in 0..count {
             let mut field = |flag: u32| if flags & flag != 0 { fields.read_u32().map(Some) } else { Ok(None) };
             let duration = field(HAS_DURATIONS)?.unwrap_or(usual.duration);

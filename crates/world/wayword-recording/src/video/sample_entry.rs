@@ -6,7 +6,7 @@ use super::{
 };
 
 /// Bytes of a `VisualSampleEntry` before its boxes.
-const BEFORE_BOXES: usize = 78;
+const BYTES_BEFORE_BOXES: usize = 78;
 /// Common codecs that cannot be read, with their names.
 const KNOWN_CODECS: [(&[u8; 4], &str); 14] = [
     (b"hvc1", "HEVC (H.265)"),
@@ -58,7 +58,7 @@ pub(super) fn read_entry(stsd: &[u8]) -> Result<SampleEntry, String> {
     // Reserved fields, up to the size.
     fields.read_bytes(24)?;
     let (width_px, height_px) = (fields.read_u16()?, fields.read_u16()?);
-    let within_entry = body.get(BEFORE_BOXES..).unwrap_or_default();
+    let within_entry = body.get(BYTES_BEFORE_BOXES..).unwrap_or_default();
     let codec = match &kind {
         b"avc1" | b"avc3" => NamedCodec::H264(need_box(within_entry, b"avcC")?.to_vec()),
         b"av01" => NamedCodec::Av1,

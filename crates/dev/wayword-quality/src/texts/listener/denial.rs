@@ -15,12 +15,12 @@ impl TargetListener<'_> {
         if !self.fits_level(object) {
             return Some("level");
         }
-        let room = self.said.room.as_ref().map(|room| room.name.as_str()).filter(|name| !name.is_empty());
+        let room = self.described_target.room.as_ref().map(|room| room.name.as_str()).filter(|name| !name.is_empty());
         if room.is_some_and(|name| !self.scene.may_lie_in(object, name)) {
             return Some("room");
         }
-        let alike: BTreeSet<usize> = self.scene.objects_called(&self.said.name).chain([object]).collect();
-        let first = self.said.relations.first().filter(|relation| !self.is_unknown(relation));
+        let alike: BTreeSet<usize> = self.scene.objects_called(&self.described_target.name).chain([object]).collect();
+        let first = self.described_target.relations.first().filter(|relation| !self.is_unknown(relation));
         if first.is_some_and(|relation| self.denies_relation(object, relation, &alike)) {
             return Some("relation");
         }
@@ -34,11 +34,11 @@ impl TargetListener<'_> {
         if !self.is_in_view(object) {
             return None;
         }
-        if self.said.ranks.iter().any(|rank| !self.has_rank(object, *rank, &seen, true)) {
+        if self.described_target.ranks.iter().any(|rank| !self.has_rank(object, *rank, &seen, true)) {
             return Some("rank");
         }
         let turn = |side: ArrivalSide| self.turn_to_object(object) * if side.is_left { -1.0 } else { 1.0 };
-        self.said
+        self.described_target
             .side
             .filter(|side| side.is_yours && turn(*side) < -AHEAD_RAD && turn(*side) > AHEAD_RAD - PI)
             .map(|_| "side")

@@ -47,7 +47,7 @@ pub(super) struct TargetListener<'a> {
     /// The building.
     pub(super) scene: &'a ListenerScene,
     /// The description that is compared.
-    pub(super) said: &'a TargetDescription,
+    pub(super) described_target: &'a TargetDescription,
     pub(super) arrival: ListenerArrival,
 }
 
@@ -71,23 +71,24 @@ impl TargetListener<'_> {
     /// The objects that fit the whole description, as far as labels can confirm it.
     pub(super) fn fitting_objects(&self) -> RemainingObjects {
         let mut remaining = self.related_objects();
-        if !self.said.ranks.is_empty() {
+        if !self.described_target.ranks.is_empty() {
             let has_all = |object: usize, among: &BTreeSet<usize>| {
                 let seen = among.iter().copied().filter(|object| self.is_in_view(*object)).collect();
-                let mut ranks = self.said.ranks.iter();
+                let mut ranks = self.described_target.ranks.iter();
                 self.is_in_view(object) && ranks.all(|rank| self.has_rank(object, *rank, &seen, false))
             };
             remaining = remaining.narrow_by(has_all);
         }
-        let Some(side) = self.said.side else { return remaining };
+        let Some(side) = self.described_target.side else { return remaining };
         remaining.narrow_by(|object, among| self.on_side(among, side).contains(&object))
     }
 
     /// The objects that fit the name, the level and the room.
     pub(super) fn objects_in_room(&self) -> RemainingObjects {
-        let remaining = RemainingObjects { objects: self.scene.objects_called(&self.said.name).collect(), left_out: 0 };
+        let remaining =
+            RemainingObjects { objects: self.scene.objects_called(&self.described_target.name).collect(), left_out: 0 };
         let remaining = remaining.narrow_by(|object, _| self.fits_level(object));
-        let Some(described) = &self.said.room else { return remaining };
+        let Some(described) = &self.described_target.room else { return remaining };
         let rooms = |object: usize| &self.scene.objects[object].rooms;
         let mut remaining = remaining;
         if !described.name.is_empty() {
@@ -114,8 +115,8 @@ impl TargetListener<'_> {
     /// the window" the table is by the window.
     pub(super) fn related_objects(&self) -> RemainingObjects {
         let mut remaining = self.objects_in_room();
-        for at in 0..self.said.relations.len() {
-            remaining = if self.is_unknown(&self.said.relations[at]) {
+        for at in 0..self.described_target.relations.len() {
+            remaining = if self.is_unknown(&self.described_target.relations[at]) {
                 RemainingObjects { left_out: remaining.left_out + 1, ..remaining }
             } else {
                 remaining.narrow_by(|object, among| self.fits_relation(object, at, among))
@@ -126,9 +127,10 @@ impl TargetListener<'_> {
 
     /// Whether an object has the relation number `at`, or a thing near it does that an earlier relation names.
     pub(super) fn fits_relation(&self, object: usize, at: usize, namesakes: &BTreeSet<usize>) -> bool {
-        let relation = &self.said.relations[at];
+        let relation = &self.described_target.relations[at];
         let place = self.scene.objects[object].position;
-        let before = self.said.relations[..at].iter().flat_map(|relation| &relation.to).filter(|to| !to.is_room);
+        let before =
+            self.described_target.relations[..at].iter().flat_map(|relation| &relation.to).filter(|to| !to.is_room);
         let near = |other: &usize| self.scene.objects[*other].position.distance(place) <= NEAR_M;
         let mut holders = before.flat_map(|to| self.scene.objects_called(&to.name)).filter(near);
         self.relation_holds(object, relation, namesakes)
@@ -143,7 +145,9 @@ impl TargetListener<'_> {
 
     /// Whether an object is on the storey of the description; true where one of the two is not known.
     pub(super) fn fits_level(&self, object: usize) -> bool {
-        let (Some(mention), Some(level)) = (self.said.level, self.scene.objects[object].level) else { return true };
+        let (Some(mention), Some(level)) = (self.described_target.level, self.scene.objects[object].level) else {
+            return true;
+        };
         let than_start = |fits: &dyn Fn(u32) -> bool| self.arrival.start_level.is_none_or(fits);
         match mention {
             LevelMention::Number(number) => level == number,

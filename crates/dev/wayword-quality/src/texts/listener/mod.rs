@@ -113,7 +113,7 @@ pub(super) fn hear_episodes(
 fn hear_text(scene: &ListenerScene, arrival: ListenerArrival, target: usize, text: &str) -> ListenerResult {
     let mut heard = ListenerResult { text: text.to_owned(), ..ListenerResult::default() };
     let description = target_description::describe_target(text, &scene.names).unwrap_or_default();
-    let listener = TargetListener { scene, said: &description, arrival };
+    let listener = TargetListener { scene, described_target: &description, arrival };
     let namesakes = listener.namesakes_in_view(target);
     heard.has_namesake = !namesakes.is_empty();
     heard.is_named = scene.objects_called(&description.name).any(|object| object == target);

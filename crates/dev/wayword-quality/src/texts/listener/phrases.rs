@@ -5,7 +5,8 @@ use super::{
     clauses::ListenerText,
     target_description::{ArrivalSide, InRoom, LevelMention, RelationLandmark, TargetDescription, TargetRelation},
     vocabulary::{
-        LOOK_WORDS, NUMBER_WORDS, NamesakeRank, OF_ROOMS, ORDINAL_WORDS, RANK_WORDS, RELATION_PHRASES, RelationKind,
+        LOOK_WORDS, NUMBER_WORDS, NamesakeRank, ORDINAL_WORDS, RANK_WORDS, RELATION_PHRASES, ROOM_DETAIL_PHRASES,
+        RelationKind,
     },
 };
 use wayword_language::lexicon::is_plural;
@@ -179,7 +180,7 @@ impl ListenerText {
                 self.words[from.max(name.start.saturating_sub(4))..name.start].iter().map(String::as_str).collect();
             let after_target = target.is_none_or(|target| name.start > self.names[target].end || target > at);
             let is_inside = |word: &&str| matches!(*word, "in" | "of" | "inside" | "from" | "on" | "at");
-            let is_landmark = OF_ROOMS
+            let is_landmark = ROOM_DETAIL_PHRASES
                 .iter()
                 .chain(&["closest to", "facing", "past", "through", "out of", "beyond", "after"])
                 .any(|phrase| {
@@ -204,7 +205,7 @@ impl ListenerText {
         for (at, name) in self.names.iter().enumerate().skip(room + 1) {
             let between = &self.words[end..name.start.max(end)];
             let run = format!(" {} ", between.join(" "));
-            let is_introduced = OF_ROOMS.iter().any(|phrase| run.contains(&format!(" {phrase} ")));
+            let is_introduced = ROOM_DETAIL_PHRASES.iter().any(|phrase| run.contains(&format!(" {phrase} ")));
             if name.end > to
                 || Some(at) == target
                 || between.len() > MAX_GAP_WORDS

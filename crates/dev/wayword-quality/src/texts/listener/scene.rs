@@ -23,7 +23,7 @@ pub(super) struct ListenerScene {
     /// The positions of its viewpoints.
     pub(super) viewpoints: Vec<DVec3>,
     /// The room of each viewpoint.
-    room_of: Vec<usize>,
+    viewpoint_rooms: Vec<usize>,
     /// The names of the objects, in normal spelling.
     pub(super) names: BTreeSet<String>,
     /// The index of each viewpoint by its id.
@@ -89,7 +89,14 @@ impl ListenerScene {
         let names = rays.values().map(|(name, ..)| normalise_name(name)).collect();
         let places =
             survey.viewpoints().iter().enumerate().map(|(at, viewpoint)| (viewpoint.id.to_string(), at)).collect();
-        Self { objects: rays.into_iter().map(object).collect(), rooms, viewpoints, room_of, names, places }
+        Self {
+            objects: rays.into_iter().map(object).collect(),
+            rooms,
+            viewpoints,
+            viewpoint_rooms: room_of,
+            names,
+            places,
+        }
     }
 
     /// The index of a viewpoint.
@@ -115,7 +122,7 @@ impl ListenerScene {
     /// Whether an object may lie in a room of that name, as people use the word.
     pub(super) fn may_lie_in(&self, object: usize, name: &str) -> bool {
         let object = &self.objects[object];
-        let rooms = object.seen_from.iter().map(|at| self.room_of[*at]).chain(object.rooms.iter().copied());
+        let rooms = object.seen_from.iter().map(|at| self.viewpoint_rooms[*at]).chain(object.rooms.iter().copied());
         rooms.map(|at| &self.rooms[at].name).any(|room| same_room(room, name) || room.is_empty())
     }
 }

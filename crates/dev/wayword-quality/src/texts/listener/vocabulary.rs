@@ -89,7 +89,7 @@ pub(super) const RELATION_PHRASES: &[(&str, RelationKind)] = &[
     ("off", RelationKind::On),
 ];
 /// Phrases after a room that introduce the things in it or the rooms next to it.
-pub(super) const OF_ROOMS: &[&str] = &[
+pub(super) const ROOM_DETAIL_PHRASES: &[&str] = &[
     "with",
     "has",
     "having",

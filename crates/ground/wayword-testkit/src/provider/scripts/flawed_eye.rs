@@ -72,7 +72,7 @@ const HALLUCINATED_NAMES: [&str; 16] = [
     "chandelier",
 ];
 /// How many true objects a description names at most. Further ones are left out.
-const MOST_NAMED: usize = 9;
+const MAX_NAMED_OBJECTS: usize = 9;
 
 impl ModelScript for FlawedEye {
     fn reply(&self, request: &ScriptRequest) -> String {
@@ -135,7 +135,7 @@ impl PictureLook<'_> {
         let mut noticed: Vec<(&str, u8)> = Vec::new();
         for GalleryThing { name, third, .. } in &self.scenery.things {
             if !noticed.iter().any(|(before, _)| before == name)
-                && noticed.len() < MOST_NAMED
+                && noticed.len() < MAX_NAMED_OBJECTS
                 && !self.draw_chance(self.eye.miss_share, &format!("miss {name}"))
             {
                 noticed.push((name, *third));

@@ -16,7 +16,7 @@ use std::sync::LazyLock;
 static TOKEN_SHAPES: LazyLock<TokenShapes> = LazyLock::new(|| TokenShapes::new(SHAPE_ROWS.iter().map(|row| row.shape)));
 
 /// The reference writes a blank within a token as this no-break space.
-const NO_BREAK: char = '\u{a0}';
+const NO_BREAK_SPACE: char = '\u{a0}';
 
 /// Splits a text into tokens. White space is collapsed first ([`super::collapse_white_space`]), because the reference reads texts
 /// line by line.
@@ -32,7 +32,7 @@ pub fn ptb_tokens(text: &str) -> Vec<String> {
         }
         let (taken, length) = first_token(rest);
         let (token, after) = rest.split_at(length);
-        tokens.extend(write_token(taken, token).filter(|token| !LEFT_OUT.contains(&token.as_str())));
+        tokens.extend(write_token(taken, token).filter(|token| !DROPPED_TOKENS.contains(&token.as_str())));
         rest = after;
     }
     tokens
@@ -72,7 +72,7 @@ fn length_of(row: usize, text: &[char], length: usize) -> usize {
 
 /// Punctuation marks that are dropped. `pycocoevalcap` lists brackets too, but in capitals (`-LRB-`), so they never match its
 /// lower-case tokens and stay.
-const LEFT_OUT: [&str; 14] = ["", "''", "'", "``", "`", ".", "?", "!", ",", ":", "-", "--", "...", ";"];
+const DROPPED_TOKENS: [&str; 14] = ["", "''", "'", "``", "`", ".", "?", "!", ",", ":", "-", "--", "...", ";"];
 
 /// A token as the reference writes it; `None` if the reference drops it.
 fn write_token(taken: TokenExtent, token: &[char]) -> Option<String> {
@@ -110,7 +110,7 @@ fn of_characters(taken: TokenExtent, token: &str) -> String {
             SOFT_HYPHEN if taken != TokenExtent::File => {}
             '(' => text.push_str("-lrb-"),
             ')' => text.push_str("-rrb-"),
-            ' ' => text.push(NO_BREAK),
+            ' ' => text.push(NO_BREAK_SPACE),
             '’' | '\u{92}' if is_ending => text.push('\''),
             c => text.extend(c.to_lowercase()),
         }

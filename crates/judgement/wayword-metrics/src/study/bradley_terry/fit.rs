@@ -29,7 +29,7 @@ pub(super) struct SystemPair {
 /// Newton's method ends when no parameter moves by more than this.
 const STEP_PRECISION: f64 = 1e-12;
 /// Newton steps at most. Fits that have a maximum need far fewer; after this many there is taken to be none.
-const MOST_STEPS: usize = 100;
+const MAX_NEWTON_STEPS: usize = 100;
 /// A likelihood that falls by less than this share has only lost digits by rounding; the step is accepted.
 const LIKELIHOOD_ROUNDING_SHARE: f64 = 1e-12;
 /// Largest parameter. Choices of people cannot show odds of e^20, so a fit that gets there has no maximum.
@@ -53,7 +53,7 @@ impl StrengthFit {
         pairs.iter().for_each(|pair| *counts.entry(*pair).or_default() += 1.0);
         let model = ChoiceModel { systems, has_ties, counts };
         let mut parameters = vec![0.0; model.parameter_count()];
-        for step in 0..MOST_STEPS {
+        for step in 0..MAX_NEWTON_STEPS {
             let LikelihoodPoint { likelihood, gradient, scores, information } = model.likelihood_at(&parameters);
             let singular = if step == 0 { NoStrength::Sides } else { NoStrength::Endless };
             let information = CholeskyFactor::from_matrix(information).ok_or(singular)?;

@@ -8,13 +8,13 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use wayword_core::{DVec3, Heading, ViewpointId};
 
 /// Most places of the map in a prompt. Other places are only counted.
-const MOST_PLACES: usize = 16;
+const MAX_MAP_PLACES: usize = 16;
 /// Most characters of all places of the map in a prompt; two places are listed even if they are longer.
-const MOST_MAP_CHARS: usize = 2_500;
+const MAX_MAP_CHARS: usize = 2_500;
 /// Most ways that are listed for a place on the map. Other ways are only counted.
-const MOST_WAYS: usize = 8;
+const MAX_WAYS_OF_PLACE: usize = 8;
 /// Longest reason of a step in a later prompt, characters; a longer one is cut.
-const MOST_REASON_CHARS: usize = 120;
+const MAX_REASON_CHARS: usize = 120;
 
 /// The agent's memory of one walk.
 pub(super) struct ToolWalkMemory {
@@ -90,7 +90,7 @@ impl ToolWalkMemory {
     /// Stores a step, and drops the oldest if there are too many.
     pub(super) fn remember_hop(&mut self, from: usize, to: usize, why: &str) {
         self.hops += 1;
-        self.last.push_back(RememberedHop { number: self.hops, from, to, why: shorten_line(why, MOST_REASON_CHARS) });
+        self.last.push_back(RememberedHop { number: self.hops, from, to, why: shorten_line(why, MAX_REASON_CHARS) });
         while self.last.len() > self.keep {
             self.last.pop_front();
         }
@@ -117,7 +117,7 @@ impl ToolWalkMemory {
             let Some(place) = self.places.get(number - 1).filter(|_| seen.insert(number)) else { continue };
             let line = self.describe_place(number, place);
             chars += line.chars().count();
-            if lines.len() == MOST_PLACES || (chars > MOST_MAP_CHARS && lines.len() >= 2) {
+            if lines.len() == MAX_MAP_PLACES || (chars > MAX_MAP_CHARS && lines.len() >= 2) {
                 break;
             }
             lines.insert(number, line);
@@ -136,9 +136,9 @@ impl ToolWalkMemory {
         // Ways to visited places come first.
         let mut ways: Vec<_> = place.ways.iter().collect();
         ways.sort_by_key(|(to, _)| self.place_number(to).unwrap_or(usize::MAX));
-        let more = ways.len().saturating_sub(MOST_WAYS);
+        let more = ways.len().saturating_sub(MAX_WAYS_OF_PLACE);
         let more = (more > 0).then(|| format!("{more} more"));
-        let ways: Vec<String> = ways.into_iter().take(MOST_WAYS).map(way).chain(more).collect();
+        let ways: Vec<String> = ways.into_iter().take(MAX_WAYS_OF_PLACE).map(way).chain(more).collect();
         let ways = if ways.is_empty() { "nowhere".to_owned() } else { ways.join(", ") };
         let seen = place.seen.as_deref().unwrap_or("you did not look around");
         format!("place {number}: right {right_m:.1}, ahead {ahead_m:.1}, up {up_m:.1}; {seen}; ways to {ways}")
@@ -176,9 +176,9 @@ mod tests {
         }
         let (places, left_out) = memory.map_lines();
         assert_eq!(places.len() + left_out, 200);
-        assert!(places.len() <= MOST_PLACES && places.len() > 10, "{}", places.len());
+        assert!(places.len() <= MAX_MAP_PLACES && places.len() > 10, "{}", places.len());
         assert!(places[0].starts_with("place 1: ") && places[1].starts_with("place 101: "), "{places:?}");
-        assert!(places.iter().map(String::len).sum::<usize>() <= MOST_MAP_CHARS);
+        assert!(places.iter().map(String::len).sum::<usize>() <= MAX_MAP_CHARS);
     }
 
     #[test]

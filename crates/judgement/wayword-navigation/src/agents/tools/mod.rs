@@ -15,7 +15,7 @@ mod walker;
 
 pub use limits::ToolWalkLimits;
 pub use observed_scene::{ToolAgentSight, ViewDescriber};
-pub use prompt::{MOST_TEXT_CHARS, prompt_wording};
+pub use prompt::{MAX_INSTRUCTION_CHARS, prompt_wording};
 pub use rehearsal::rehearse_route;
 
 use super::{AgentStart, AgentWalk, choice_for_hop};

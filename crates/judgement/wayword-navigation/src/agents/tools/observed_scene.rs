@@ -44,17 +44,17 @@ pub(super) struct ObservedScene {
 }
 
 /// Most things of a place in a prompt; the farthest are left out.
-const MOST_THINGS: usize = 40;
+const MAX_LISTED_THINGS: usize = 40;
 /// Most characters of all things of a place in a prompt; the farthest things are left out.
-const MOST_CHARS: usize = 2_000;
+const MAX_THING_LIST_CHARS: usize = 2_000;
 /// Longest name of a thing or a room, characters; a longer one is cut.
-const MOST_NAME_CHARS: usize = 40;
+const MAX_NAME_CHARS: usize = 40;
 /// Longest caption of a view, characters; a longer one is cut.
-const MOST_CAPTION_CHARS: usize = 450;
+const MAX_CAPTION_CHARS: usize = 450;
 /// Most names of things in the summary of a place for the map.
-const KEPT_NAMES: usize = 6;
+const MAX_SUMMARY_NAMES: usize = 6;
 /// Longest caption in the summary of a place for the map, characters; a longer one is cut.
-const KEPT_CAPTION_CHARS: usize = 40;
+const MAX_SUMMARY_CAPTION_CHARS: usize = 40;
 /// Sectors of 45 degrees, clockwise from ahead.
 const SECTOR_NAMES: [&str; 8] =
     ["ahead", "ahead-right", "right", "behind-right", "behind", "behind-left", "left", "ahead-left"];
@@ -94,19 +94,19 @@ fn scene_from_labels(
     let mut chars = 0;
     let fits = |label: &ObjectLabel| {
         // 22 characters are room for the number and the distance around a name, as in "[12] sofa (1.2 m)".
-        chars += label.name.chars().count().min(MOST_NAME_CHARS) + 22;
-        chars <= MOST_CHARS
+        chars += label.name.chars().count().min(MAX_NAME_CHARS) + 22;
+        chars <= MAX_THING_LIST_CHARS
     };
-    let listed = labels.iter().map(fits).take(MOST_THINGS).take_while(|fits| *fits).count();
+    let listed = labels.iter().map(fits).take(MAX_LISTED_THINGS).take_while(|fits| *fits).count();
     labels.truncate(listed);
     let named: Vec<(ObjectLabel, String)> = labels
         .into_iter()
         .map(|label| {
-            let name = shorten_line(&label.name, MOST_NAME_CHARS);
+            let name = shorten_line(&label.name, MAX_NAME_CHARS);
             (label, name)
         })
         .collect();
-    let room = room.map(|room| shorten_line(&room, MOST_NAME_CHARS));
+    let room = room.map(|room| shorten_line(&room, MAX_NAME_CHARS));
     let lines =
         (0..SECTOR_NAMES.len()).filter_map(|sector| sector_line(sector, &named, heading, numbers_objects)).collect();
     let brief = summarise_names(room.as_deref(), named.iter().map(|(_, name)| name.as_str()));
@@ -118,7 +118,7 @@ fn scene_from_labels(
 fn summarise_names<'a>(room: Option<&'a str>, names: impl Iterator<Item = &'a str>) -> String {
     let mut kept: Vec<&str> = Vec::new();
     for name in names {
-        if kept.len() < KEPT_NAMES && !kept.contains(&name) {
+        if kept.len() < MAX_SUMMARY_NAMES && !kept.contains(&name) {
             kept.push(name);
         }
     }
@@ -186,7 +186,7 @@ fn scene_from_captions(
     let mut summaries = Vec::new();
     for (turn_rad, view) in from_ahead(views, heading) {
         let caption = match by.describe_view(view) {
-            Ok(caption) => shorten_line(&caption, MOST_CAPTION_CHARS),
+            Ok(caption) => shorten_line(&caption, MAX_CAPTION_CHARS),
             // If a view cannot be described, for example because a filter refuses its picture, the walk goes on.
             Err(ModelError::Failed { .. }) => {
                 scene.undescribed += 1;
@@ -194,7 +194,7 @@ fn scene_from_captions(
             }
             Err(error) => return Err(error.into()),
         };
-        summaries.push(shorten_line(&caption, KEPT_CAPTION_CHARS));
+        summaries.push(shorten_line(&caption, MAX_SUMMARY_CAPTION_CHARS));
         scene.lines.push(format!("{}: {caption}", describe_turn(turn_rad)));
     }
     scene.brief = summaries.join(" / ");
@@ -276,6 +276,6 @@ mod tests {
         let scene = scene_from_labels(labels, None, Heading::NORTH, true);
         assert_eq!(scene.things, 500);
         let chars: usize = scene.lines.iter().map(|line| line.chars().count()).sum();
-        assert!(chars <= MOST_CHARS && chars > MOST_CHARS / 2, "{chars}");
+        assert!(chars <= MAX_THING_LIST_CHARS && chars > MAX_THING_LIST_CHARS / 2, "{chars}");
     }
 }

@@ -13,16 +13,16 @@ use serde::Serialize;
 use wayword_core::{ChatMessage, Heading, MessageRole, ModelError, ModelRequest, ModelTool, SamplingOptions};
 use wayword_follower::online::WalkerHop;
 
-const SYSTEM: &str = include_str!("system.j2");
-const STATE: &str = include_str!("state.j2");
+const SYSTEM_TEMPLATE: &str = include_str!("system.j2");
+const STATE_TEMPLATE: &str = include_str!("state.j2");
 /// Longest instruction in a prompt, characters; a longer one is cut. People's texts have up to about 2,000.
-pub const MOST_TEXT_CHARS: usize = 2_000;
+pub const MAX_INSTRUCTION_CHARS: usize = 2_000;
 /// Most ways out in a prompt. Other ways are only counted.
-const MOST_WAYS: usize = 24;
+const MAX_PROMPT_WAYS: usize = 24;
 /// Most tokens of a reply, thinking included.
-const REPLY_TOKENS: u32 = 600;
+const MAX_REPLY_TOKENS: u32 = 600;
 /// Smallest climb or descent of a way that is mentioned, metres.
-const CLIMB_M: f64 = 0.2;
+const MIN_CLIMB_M: f64 = 0.2;
 
 const OBSERVE_TOOL: ModelTool = ModelTool {
     name: "observe",
@@ -39,7 +39,7 @@ const STOP_TOOL: ModelTool = ModelTool {
     does: "End the walk where you stand, because the instruction ends here.",
     arguments: r#"{"type": "object", "properties": {"why": {"type": "string", "description": "the reason, in one sentence"}}, "required": ["why"]}"#,
 };
-const STOP_AT: ModelTool = ModelTool {
+const STOP_AT_OBJECT_TOOL: ModelTool = ModelTool {
     name: "stop",
     does: "End the walk where you stand, and name the object that the instruction means.",
     arguments: r#"{"type": "object", "properties": {"object": {"type": "string", "description": "the number of the object in the list, or its name"}, "why": {"type": "string", "description": "the reason, in one sentence"}}, "required": ["object", "why"]}"#,
@@ -47,12 +47,12 @@ const STOP_AT: ModelTool = ModelTool {
 /// The tools of a walk that ends without naming an object.
 static TOOLS: [ModelTool; 3] = [OBSERVE_TOOL, STEP_TOOL, STOP_TOOL];
 /// The tools of a walk in which the model also names the object that the instruction means.
-static TOOLS_FOR_OBJECTS: [ModelTool; 3] = [OBSERVE_TOOL, STEP_TOOL, STOP_AT];
+static TOOLS_FOR_OBJECTS: [ModelTool; 3] = [OBSERVE_TOOL, STEP_TOOL, STOP_AT_OBJECT_TOOL];
 
 /// All texts of the prompts. A comparison stores them, so that it does not continue walks that were made with other prompts.
 #[must_use]
 pub fn prompt_wording() -> String {
-    format!("{SYSTEM}{STATE}{TOOLS:?}{TOOLS_FOR_OBJECTS:?}")
+    format!("{SYSTEM_TEMPLATE}{STATE_TEMPLATE}{TOOLS:?}{TOOLS_FOR_OBJECTS:?}")
 }
 
 /// How the agent perceives a place, as the template of the prompt names it.
@@ -97,8 +97,8 @@ impl PromptWay {
     pub(super) fn new(hop: &WalkerHop, leads_to: Option<usize>, spot: &str) -> Self {
         let rise_m = hop.length_m * libm::sin(hop.elevation_rad);
         let climb = match rise_m {
-            rise_m if rise_m >= CLIMB_M => format!(", up {rise_m:.1} m"),
-            rise_m if rise_m <= -CLIMB_M => format!(", down {:.1} m", -rise_m),
+            rise_m if rise_m >= MIN_CLIMB_M => format!(", up {rise_m:.1} m"),
+            rise_m if rise_m <= -MIN_CLIMB_M => format!(", down {:.1} m", -rise_m),
             _ => String::new(),
         };
         let to = leads_to.map_or_else(|| format!("new {spot}"), |number| format!("to place {number}"));
@@ -109,7 +109,7 @@ impl PromptWay {
 /// The request of one call.
 pub(super) fn build_request(state: &PromptState<'_>) -> Result<ModelRequest, WalkError> {
     let PromptState { sees, names_object, memory, here, ways, scene, limits, calls, hops, trouble, .. } = *state;
-    let system = render_template(SYSTEM, context! { sees, names_object })?;
+    let system = render_template(SYSTEM_TEMPLATE, context! { sees, names_object })?;
     let (places, more) = memory.map_lines();
     let (here, heading) = here;
     let facing = match memory.turn_from_start(heading).to_degrees().round() {
@@ -118,9 +118,9 @@ pub(super) fn build_request(state: &PromptState<'_>) -> Result<ModelRequest, Wal
         deg => format!("{} degrees to the left of how you looked at the start", -deg),
     };
     let values = context! {
-        text => shorten_line(state.text, MOST_TEXT_CHARS),
-        ways => &ways[..ways.len().min(MOST_WAYS)],
-        ways_left_out => ways.len().saturating_sub(MOST_WAYS),
+        text => shorten_line(state.text, MAX_INSTRUCTION_CHARS),
+        ways => &ways[..ways.len().min(MAX_PROMPT_WAYS)],
+        ways_left_out => ways.len().saturating_sub(MAX_PROMPT_WAYS),
         places, more, here, facing, trouble,
         last => memory.last_steps().collect::<Vec<_>>(),
         note => memory.note,
@@ -134,9 +134,9 @@ pub(super) fn build_request(state: &PromptState<'_>) -> Result<ModelRequest, Wal
     Ok(ModelRequest {
         messages: vec![
             ChatMessage { role: MessageRole::System, text: system, images: Vec::new() },
-            ChatMessage::about_images(render_template(STATE, values)?, images),
+            ChatMessage::about_images(render_template(STATE_TEMPLATE, values)?, images),
         ],
-        sampling: SamplingOptions { temperature: 0.0, max_tokens: REPLY_TOKENS, seed: state.seed },
+        sampling: SamplingOptions { temperature: 0.0, max_tokens: MAX_REPLY_TOKENS, seed: state.seed },
         replicate: 0,
         schema: None,
         tools: if names_object { &TOOLS_FOR_OBJECTS } else { &TOOLS },

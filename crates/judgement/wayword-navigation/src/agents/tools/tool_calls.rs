@@ -38,16 +38,16 @@ pub(super) enum ObjectChoice {
 }
 
 /// Most bytes of a reply that are read.
-const MOST_BYTES: usize = 8_000;
+const MAX_READ_BYTES: usize = 8_000;
 /// Most calls of a reply; later ones are ignored.
-const MOST_CALLS: usize = 4;
+const MAX_CALLS: usize = 4;
 /// Longest reason, note and words for an object, characters; longer ones are cut.
-const MOST_CHARS: usize = 300;
+const MAX_ARGUMENT_CHARS: usize = 300;
 const TOOL_NAMES: [&str; 3] = ["observe", "step", "stop"];
 
 /// The calls of a reply, in their order; empty where there is none.
 pub(super) fn read_calls(reply: &str) -> Vec<AgentToolCall> {
-    let text = &reply[..reply.floor_char_boundary(MOST_BYTES)];
+    let text = &reply[..reply.floor_char_boundary(MAX_READ_BYTES)];
     let calls = with_json(text);
     if calls.is_empty() { read_bare_call(text.trim()).into_iter().collect() } else { calls }
 }
@@ -56,7 +56,7 @@ pub(super) fn read_calls(reply: &str) -> Vec<AgentToolCall> {
 fn with_json(text: &str) -> Vec<AgentToolCall> {
     let mut calls = Vec::new();
     let mut at = 0;
-    while at < text.len() && calls.len() < MOST_CALLS {
+    while at < text.len() && calls.len() < MAX_CALLS {
         let end = text[at..].find('\n').map_or(text.len(), |end| at + end + 1);
         let line = text[at..end].trim_start_matches(|c: char| c.is_whitespace() || "-*>`•[,".contains(c));
         let (call, after) = match tool_name(line) {
@@ -120,7 +120,7 @@ fn call_from_arguments(name: &str, arguments: &Value) -> Option<AgentToolCall> {
         "stop" => AgentToolAction::Stop(arguments.get("object").and_then(read_object_choice)),
         _ => return None,
     };
-    let words = |field: &str| Some(shorten_line(arguments.get(field)?.as_str()?, MOST_CHARS));
+    let words = |field: &str| Some(shorten_line(arguments.get(field)?.as_str()?, MAX_ARGUMENT_CHARS));
     let note = words("note").filter(|note| !note.is_empty());
     Some(AgentToolCall { act, why: words("why").unwrap_or_default(), note })
 }
@@ -138,7 +138,8 @@ fn read_number(value: &Value) -> Option<usize> {
 
 /// Reads the argument `object` of `stop`: a number in the prompt's list, or words.
 fn read_object_choice(value: &Value) -> Option<ObjectChoice> {
-    let words = || value.as_str().map(|words| shorten_line(words, MOST_CHARS)).filter(|words| !words.is_empty());
+    let words =
+        || value.as_str().map(|words| shorten_line(words, MAX_ARGUMENT_CHARS)).filter(|words| !words.is_empty());
     read_number(value).map(ObjectChoice::Number).or_else(|| words().map(ObjectChoice::Words))
 }
 
@@ -202,7 +203,7 @@ mod tests {
         }
         assert_eq!(acts("step {\"way\": -1}"), [AgentToolAction::Step(None)]);
         assert_eq!(acts("step {\"way\": 1.5}"), [AgentToolAction::Step(None)]);
-        assert_eq!(acts(&"observe {}\n".repeat(1000)).len(), MOST_CALLS);
+        assert_eq!(acts(&"observe {}\n".repeat(1000)).len(), MAX_CALLS);
     }
 
     proptest! {
@@ -210,7 +211,7 @@ mod tests {
         fn any_reply_is_read(reply in "\\PC{0,200}", json in "[{}\\[\\]\":,a-z0-9 \n]{0,80}") {
             read_calls(&reply);
             for called in read_calls(&format!("step {json}\n{reply}")) {
-                prop_assert!(called.why.chars().count() <= MOST_CHARS);
+                prop_assert!(called.why.chars().count() <= MAX_ARGUMENT_CHARS);
             }
         }
     }

@@ -19,11 +19,11 @@ use wayword_follower::online::WalkerHop;
 use wayword_language::lexicon::{names_agree, normalise_name};
 
 /// A walk ends after this number of useless replies in a row.
-const MOST_USELESS: usize = 3;
+const MAX_USELESS_REPLIES: usize = 3;
 /// Most times that a walk takes one hop in one direction; the next time ends it as [`WalkEnd::Circles`].
-const MOST_TIMES_A_HOP: usize = 3;
+const MAX_HOP_REPEATS: usize = 3;
 /// Most characters of a useless reply that are recorded; a longer one is cut.
-const KEPT_CHARS: usize = 200;
+const MAX_RECORDED_REPLY_CHARS: usize = 200;
 
 /// A walk of the agent with a language model, in progress.
 pub(super) struct ToolWalker<'a> {
@@ -107,7 +107,7 @@ impl<'a> ToolWalker<'a> {
         // If prices are not known, the limit may already be exceeded.
         let is_spent = limits.max_usd.is_some_and(|most| self.effort.usd.is_none_or(|usd| usd >= most));
         match () {
-            () if self.useless >= MOST_USELESS => Some(WalkEnd::NoUse),
+            () if self.useless >= MAX_USELESS_REPLIES => Some(WalkEnd::NoUse),
             () if self.effort.calls >= limits.max_calls => Some(WalkEnd::Calls),
             () if is_spent => Some(WalkEnd::Money),
             () => None,
@@ -192,7 +192,7 @@ impl<'a> ToolWalker<'a> {
 
     /// Records a useless reply and its problem. `reply` is its text, or the error if the service gave none.
     fn note_useless_reply(&mut self, trouble: String, reply: &str) {
-        self.effort.last_useless = Some(format!("{trouble}: {}", shorten_line(reply, KEPT_CHARS)));
+        self.effort.last_useless = Some(format!("{trouble}: {}", shorten_line(reply, MAX_RECORDED_REPLY_CHARS)));
         self.trouble = Some(trouble);
         self.useless += 1;
     }
@@ -261,7 +261,7 @@ impl<'a> ToolWalker<'a> {
             return Ok(Some(WalkEnd::Cap));
         }
         let times = self.hopped.entry((self.here.clone(), to.clone())).or_default();
-        if *times >= MOST_TIMES_A_HOP {
+        if *times >= MAX_HOP_REPEATS {
             return Ok(Some(WalkEnd::Circles));
         }
         *times += 1;

@@ -3,7 +3,7 @@
 use wayword_core::{Image, image::WrongPixelCount};
 
 /// The colour temperature for which cameras are balanced, kelvin.
-const SET_TO_K: f64 = 6500.0;
+const BALANCED_FOR_K: f64 = 6500.0;
 
 /// Linear light of an sRGB value, 0 to 1 (IEC 61966-2-1).
 pub(super) fn linear_from_srgb(level: u8) -> f64 {
@@ -31,7 +31,7 @@ pub(super) fn scale_light(image: &Image, gains: [f64; 3]) -> Result<Image, Wrong
 /// The factors for linear red, green and blue under light of a colour temperature, for a camera that is balanced for 6500 K. They follow
 /// von Kries' rule in the camera's own colours, and are scaled so that a grey keeps its luminance.
 pub(super) fn temperature_gains(kelvin: f64) -> [f64; 3] {
-    let (light, set) = (blackbody_rgb(kelvin), blackbody_rgb(SET_TO_K));
+    let (light, set) = (blackbody_rgb(kelvin), blackbody_rgb(BALANCED_FOR_K));
     let gains: [f64; 3] = std::array::from_fn(|colour| (light[colour] / set[colour]).max(0.0));
     let luminance = 0.2126 * gains[0] + 0.7152 * gains[1] + 0.0722 * gains[2];
     gains.map(|gain| gain / luminance)

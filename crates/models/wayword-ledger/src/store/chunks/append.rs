@@ -3,7 +3,7 @@
 use super::line::{CHUNK_LINE_FORMAT, ChunkEntry};
 use crate::{
     LedgerError, LedgerLocation,
-    recording::MOST_LINE_BYTES,
+    recording::MAX_LINE_BYTES,
     store::commit_queue::{CommitQueue, GroupCommit},
 };
 use std::{
@@ -61,7 +61,7 @@ impl ChunkAppender {
     fn encode_line(&self, entry: &ChunkEntry) -> Result<Vec<u8>, LedgerError> {
         let failed = LedgerError::io_error(&self.path, "write the recording");
         let line = entry.to_line().map_err(|error| failed(error.into()))?;
-        if line.len() as u64 > MOST_LINE_BYTES {
+        if line.len() as u64 > MAX_LINE_BYTES {
             return Err(failed(io::Error::new(io::ErrorKind::InvalidData, "a call is too long to be kept")));
         }
         Ok(line)

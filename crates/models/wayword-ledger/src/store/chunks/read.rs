@@ -1,7 +1,7 @@
 //! Reads a chunk's file, and finds out where its intact part ends.
 
 use super::line::{CHUNK_LINE_FORMAT, ChunkEntry};
-use crate::{LedgerError, recording::MOST_LINE_BYTES};
+use crate::{LedgerError, recording::MAX_LINE_BYTES};
 use std::{
     fs::File,
     io::{BufRead, BufReader, ErrorKind, Read},
@@ -27,8 +27,8 @@ pub(super) fn read_entries(path: &Path, mut take: impl FnMut(ChunkEntry)) -> Res
         if !read_next_line(&mut reader, &mut bytes).map_err(&failed)? {
             break;
         }
-        if bytes.len() as u64 > MOST_LINE_BYTES {
-            return Err(broken(format!("it is longer than {} MiB", MOST_LINE_BYTES >> 20)));
+        if bytes.len() as u64 > MAX_LINE_BYTES {
+            return Err(broken(format!("it is longer than {} MiB", MAX_LINE_BYTES >> 20)));
         }
         if bytes.last() != Some(&b'\n') {
             break;
@@ -52,7 +52,7 @@ pub(super) fn read_entries(path: &Path, mut take: impl FnMut(ChunkEntry)) -> Res
 /// Reads the next line, or the beginning of one that is too long. Returns whether there is one.
 fn read_next_line(reader: &mut BufReader<File>, bytes: &mut Vec<u8>) -> std::io::Result<bool> {
     bytes.clear();
-    reader.by_ref().take(MOST_LINE_BYTES + 1).read_until(b'\n', bytes)?;
+    reader.by_ref().take(MAX_LINE_BYTES + 1).read_until(b'\n', bytes)?;
     Ok(!bytes.is_empty())
 }
 

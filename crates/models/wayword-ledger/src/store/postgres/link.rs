@@ -48,7 +48,7 @@ SELECT EXISTS (SELECT FROM written) OR EXISTS (SELECT FROM wayword_ledger.sent W
     EXISTS (SELECT FROM wayword_ledger.runs WHERE run = $3)";
 
 /// Makes the row of a new run.
-const NEW_RUN: &str = "INSERT INTO wayword_ledger.runs (run) VALUES ($1) ON CONFLICT DO NOTHING";
+const INSERT_RUN_SQL: &str = "INSERT INTO wayword_ledger.runs (run) VALUES ($1) ON CONFLICT DO NOTHING";
 
 /// Ends a request and releases its money, as far as it was not lost. Executed a second time, it has no effect.
 const END_SQL: &str = "
@@ -169,7 +169,7 @@ impl DatabaseLink {
             Some((true, _)) => Ok(ReserveOutcome::Yes),
             Some((false, true)) => Ok(ReserveOutcome::No),
             Some((false, false)) => {
-                self.query_rows("begin a run", NEW_RUN, &[run])?;
+                self.query_rows("begin a run", INSERT_RUN_SQL, &[run])?;
                 Ok(ReserveOutcome::Again)
             }
             None => Ok(ReserveOutcome::Again),

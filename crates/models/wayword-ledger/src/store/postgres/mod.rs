@@ -52,7 +52,7 @@ WITH given AS (
 SELECT EXISTS (SELECT FROM wayword_ledger.calls WHERE key = $1), EXISTS (SELECT FROM given)";
 
 /// Selects whether a call is answered.
-const IS_ANSWERED: &str = "SELECT EXISTS (SELECT FROM wayword_ledger.calls WHERE key = $1)";
+const IS_ANSWERED_SQL: &str = "SELECT EXISTS (SELECT FROM wayword_ledger.calls WHERE key = $1)";
 
 /// Selects the holder of a claim. While the server has been running for less than a lease, no holder counts as gone, because programs
 /// could not give signs of life before.
@@ -136,7 +136,8 @@ impl CallStore for PostgresStore {
             (false, true) => {}
         }
         // The statement may have waited for the one that stored the answer, and did not see it.
-        let is_answered = self.link.query_row("claim a call", IS_ANSWERED, &[&key.as_str()], |row| row.try_get(0))?;
+        let is_answered =
+            self.link.query_row("claim a call", IS_ANSWERED_SQL, &[&key.as_str()], |row| row.try_get(0))?;
         if is_answered == Some(true) {
             self.release_call(key);
             return Ok(ClaimState::Answered);

@@ -15,7 +15,7 @@ use wayword_database::postgres::{self, types::ToSql};
 /// How many rows one query fetches. The next query goes on after the last of them.
 const PAGE_ROWS: i64 = 500;
 /// How many rows one statement drops. It is repeated until none is left, so that no statement runs into its time limit.
-const MOST_DROPPED: i64 = 5000;
+const MAX_DROPPED_ROWS: i64 = 5000;
 
 /// The conditions of a filter: model (`$1`), run (`$2`), and time (`$3`). Those that are NULL do not restrict.
 macro_rules! filtered {
@@ -27,7 +27,7 @@ macro_rules! filtered {
 }
 
 /// A page of `$5` calls in the order of their keys, after key `$4`.
-const BY_KEY: &str = concat!(
+const BY_KEY_SQL: &str = concat!(
     "SELECT ",
     columns!(),
     filtered!(),
@@ -120,7 +120,7 @@ impl CallQueries for PostgresStore {
             let page = remaining.min(PAGE_ROWS);
             let [model, run, before] = values.as_sql_values();
             let rows = match order {
-                CallOrder::Key => self.link.query_rows("list calls", BY_KEY, &[model, run, before, &key, &page])?,
+                CallOrder::Key => self.link.query_rows("list calls", BY_KEY_SQL, &[model, run, before, &key, &page])?,
                 CallOrder::Latest => {
                     self.link.query_rows("list calls", LATEST_SQL, &[model, run, before, &key, &page, &at])?
                 }
@@ -144,7 +144,7 @@ impl CallQueries for PostgresStore {
         let [model, run, before] = values.as_sql_values();
         let mut all = 0;
         loop {
-            let values = [model, run, before, &MOST_DROPPED];
+            let values = [model, run, before, &MAX_DROPPED_ROWS];
             let dropped =
                 self.link.query_row("drop calls", PRUNE_SQL, &values, |row| count_column(row, 0))?.unwrap_or(0);
             all += usize::try_from(dropped).unwrap_or(0);
@@ -160,7 +160,7 @@ impl CallQueries for PostgresStore {
         let values = FilterValues::from_filter(&all);
         loop {
             let [model, run, before] = values.as_sql_values();
-            let rows = self.link.query_rows("list calls", BY_KEY, &[model, run, before, &after, &PAGE_ROWS])?;
+            let rows = self.link.query_rows("list calls", BY_KEY_SQL, &[model, run, before, &after, &PAGE_ROWS])?;
             for row in &rows {
                 after = row.try_get(0).ok();
                 match read_checked_entry(row, &self.link.ledger_location()) {

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 const BURST_S: f64 = 0.1;
 
 /// Smallest burst, requests: a rate below 10 a second may be exceeded by one request, although a tenth of it is less.
-const LEAST_BURST: f64 = 1.0;
+const MIN_BURST_REQUESTS: f64 = 1.0;
 
 /// Takes a turn at provider `$1`. `$2` and `$3` are the `takes_s` of its requests and tokens, `$4` and `$5` the `early_s`. Selects
 /// how long to wait, seconds; the later of the two rates decides.
@@ -64,7 +64,7 @@ pub(super) fn take_turn(
     rates: ProviderRates,
     tokens: u64,
 ) -> Result<Option<SendSlot>, LedgerError> {
-    let requests = RateShare::from_rate(rates.requests_per_s, 1.0, LEAST_BURST);
+    let requests = RateShare::from_rate(rates.requests_per_s, 1.0, MIN_BURST_REQUESTS);
     let tokens = RateShare::from_rate(rates.tokens_per_s, tokens as f64, 0.0);
     let Some(late_s) = requests.iter().chain(&tokens).map(|share| share.late_s).reduce(f64::min) else {
         return Ok(None);
@@ -99,9 +99,9 @@ mod tests {
     #[test]
     fn in_no_second_more_than_the_rate_and_a_burst_leave() {
         for per_s in [0.5, 1.0, 7.0, 20.0, 60.0, 200.0, 3000.0] {
-            let share = RateShare::from_rate(Some(per_s), 1.0, LEAST_BURST).unwrap();
+            let share = RateShare::from_rate(Some(per_s), 1.0, MIN_BURST_REQUESTS).unwrap();
             let most = (per_s * (1.0 + share.early_s + share.late_s)).ceil();
-            assert!(most <= (per_s + (per_s * BURST_S).max(LEAST_BURST)).ceil(), "{per_s}: {most}");
+            assert!(most <= (per_s + (per_s * BURST_S).max(MIN_BURST_REQUESTS)).ceil(), "{per_s}: {most}");
         }
         assert_eq!([None, Some(0.0), Some(f64::NAN)].map(|per_s| RateShare::from_rate(per_s, 1.0, 1.0)), [None; 3]);
     }

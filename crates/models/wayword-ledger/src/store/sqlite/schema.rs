@@ -37,7 +37,7 @@ CREATE TABLE claims (key TEXT PRIMARY KEY, holder TEXT NOT NULL, sent INTEGER NO
 ";
 
 /// Brings a ledger of the first format to the current one. Its answers stay as they are, without checksums.
-const FROM_FIRST: &str = "
+const UPGRADE_FIRST_FORMAT_SQL: &str = "
 ALTER TABLE calls ADD COLUMN checksum TEXT;
 CREATE TABLE claims (key TEXT PRIMARY KEY, holder TEXT NOT NULL, sent INTEGER NOT NULL) WITHOUT ROWID;
 ";
@@ -64,7 +64,7 @@ pub(super) fn prepare_tables(connection: &mut Connection, path: &Path) -> Result
     let before = read_format(&transaction, path)?;
     if before != CURRENT_FORMAT {
         transaction
-            .execute_batch(if before == NEW_FILE_FORMAT { CREATE_TABLES_SQL } else { FROM_FIRST })
+            .execute_batch(if before == NEW_FILE_FORMAT { CREATE_TABLES_SQL } else { UPGRADE_FIRST_FORMAT_SQL })
             .map_err(&failed)?;
         transaction.pragma_update(None, "application_id", APPLICATION_ID).map_err(&failed)?;
         transaction.pragma_update(None, "user_version", CURRENT_FORMAT).map_err(&failed)?;

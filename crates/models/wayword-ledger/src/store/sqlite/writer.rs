@@ -14,7 +14,7 @@ use std::{
 };
 
 /// How long the last checkpoint, which moves the log into the main file, waits for other programs. They can make it too.
-const LAST_PATIENCE: Duration = Duration::from_secs(1);
+const LAST_CHECKPOINT_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A change to the ledger. `by` is the name of the program that makes it, which a ledger in memory does not need.
 #[derive(Debug)]
@@ -83,7 +83,7 @@ impl GroupCommit for LedgerCommitter {
 
     /// Puts everything into the main file, because then the ledger is easier to copy. Otherwise the next program would do this.
     fn finish(self) {
-        let _ = self.connection.busy_timeout(LAST_PATIENCE);
+        let _ = self.connection.busy_timeout(LAST_CHECKPOINT_TIMEOUT);
         let _ = self.connection.execute_batch("PRAGMA wal_checkpoint(TRUNCATE)");
     }
 }

@@ -4,7 +4,7 @@ use crate::hub::{
     ModelName,
     cache::RepoFolder,
     client::WebAddress,
-    name::{ModelSource, OnHub},
+    name::{HubModelName, ModelSource},
 };
 use proptest::prelude::*;
 use std::path::{Component, Path};
@@ -89,7 +89,7 @@ fn nearly_a_name() -> impl Strategy<Value = String> {
 #[test]
 fn revisions_and_files_are_encoded() {
     let hub = WebAddress::parse_endpoint("https://huggingface.co/").unwrap();
-    let on_hub = OnHub { org: "org".into(), name: "name".into(), revision: "main".into(), file: None };
+    let on_hub = HubModelName { org: "org".into(), name: "name".into(), revision: "main".into(), file: None };
     assert_eq!(
         hub.file_address(&on_hub, "refs/pr/1", "a/b+c.gguf"),
         "https://huggingface.co/org/name/resolve/refs%2Fpr%2F1/a/b%2Bc.gguf"

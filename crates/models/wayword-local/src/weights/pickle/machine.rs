@@ -8,7 +8,7 @@ use super::{PickleCallable, PickleTuple, PickleValue, TensorLocation, TensorStor
 use std::{collections::BTreeMap, rc::Rc};
 
 /// The most steps of a pickle, each of which makes at most one value, so that a small file cannot fill the memory.
-const MOST_VALUES: usize = 4 << 20;
+const MAX_PICKLE_STEPS: usize = 4 << 20;
 
 /// The deepest nesting of tuples; deeper ones are refused.
 const MAX_TUPLE_DEPTH: usize = 16;
@@ -24,7 +24,7 @@ pub(super) struct PickleMachine<'a> {
     /// The tables that the pickle makes. Values refer to them by their index.
     pub(super) tables: Vec<BTreeMap<Rc<str>, PickleValue>>,
     /// The number of steps so far.
-    made: usize,
+    step_count: usize,
 }
 
 impl<'a> PickleMachine<'a> {
@@ -41,9 +41,9 @@ impl<'a> PickleMachine<'a> {
     pub(super) fn run(&mut self) -> Result<PickleValue, String> {
         loop {
             let step = self.take_byte()?;
-            self.made += 1;
-            if self.made > MOST_VALUES {
-                return Err(format!("it has more than {MOST_VALUES} values"));
+            self.step_count += 1;
+            if self.step_count > MAX_PICKLE_STEPS {
+                return Err(format!("it has more than {MAX_PICKLE_STEPS} values"));
             }
             match step {
                 b'.' => return self.pop_value(),

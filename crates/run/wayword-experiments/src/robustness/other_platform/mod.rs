@@ -49,7 +49,7 @@ impl OtherPlatformScenes {
         world: &dyn Platform,
         (out, names): (&FilePath, &SceneNames),
     ) -> Result<Self, CommandError> {
-        let Spec { name, data, at } = Spec::from_spec(spec);
+        let Spec { name, data, address: at } = Spec::from_spec(spec);
         if name == "recording" {
             return Self::open_filmed(base, world, &out.join("films"));
         }

@@ -18,9 +18,9 @@ use wayword_metrics::captions::{CaptionRow, CaptionRowSets, CaptionVocabulary, N
 use wayword_run::error::CommandError;
 
 /// Time limit for a program over one set of texts.
-const MOST_TIME: Duration = Duration::from_secs(1800);
+const JAVA_TIME_LIMIT: Duration = Duration::from_secs(1800);
 /// Most bytes that are read of a line of a program's output, 64 MiB; the rest counts as the next line.
-const MOST_LINE: u64 = 64 << 20;
+const MAX_LINE_BYTES: u64 = 64 << 20;
 
 /// The scores of one program, over the same sets of texts as the other metrics.
 #[derive(Debug, Serialize)]
@@ -112,7 +112,7 @@ impl JavaProcess {
         let (done, is_done) = mpsc::channel();
         let watched = Arc::clone(&child);
         let watch = thread::spawn(move || {
-            if is_done.recv_timeout(MOST_TIME) == Err(mpsc::RecvTimeoutError::Timeout) {
+            if is_done.recv_timeout(JAVA_TIME_LIMIT) == Err(mpsc::RecvTimeoutError::Timeout) {
                 let _ = watched.lock().unwrap_or_else(PoisonError::into_inner).kill();
             }
         });
@@ -153,6 +153,6 @@ struct JavaPipes {
 /// Reads a line of a program's output; `None` at its end.
 fn read_output_line(from: &mut impl BufRead) -> Option<String> {
     let mut line = String::new();
-    let count = from.by_ref().take(MOST_LINE).read_line(&mut line).ok()?;
+    let count = from.by_ref().take(MAX_LINE_BYTES).read_line(&mut line).ok()?;
     (count > 0).then(|| line.trim().to_owned())
 }

@@ -11,7 +11,7 @@ use std::{
 use wayword_run::error::CommandError;
 
 /// Most bytes of the file of scores that is read, 256 MiB; a larger file counts as a failure of SPICE.
-const MOST_SCORES: u64 = 256 << 20;
+const MAX_SCORE_FILE_BYTES: u64 = 256 << 20;
 
 /// The mean F score of a set of texts. Texts whose score is no number are left out, as in the reference.
 pub(super) fn spice_score(args: &Args, jar: &Path, texts: &[TextWithReferences]) -> Result<f64, CommandError> {
@@ -43,7 +43,7 @@ pub(super) fn spice_score(args: &Args, jar: &Path, texts: &[TextWithReferences])
         let problem = format!("{}: the program failed, or did not answer as SPICE does", jar.display());
         CommandError::usage(problem, "use spice-1.0.jar with Stanford's models in lib/ beside it, and Java 8")
     };
-    let is_there = fs::metadata(&score_file).is_ok_and(|file| file.len() <= MOST_SCORES);
+    let is_there = fs::metadata(&score_file).is_ok_and(|file| file.len() <= MAX_SCORE_FILE_BYTES);
     if !running.is_well_at_end() || !is_there {
         return Err(failed());
     }

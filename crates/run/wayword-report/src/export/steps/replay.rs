@@ -17,7 +17,7 @@ use wayword_run::{
 };
 
 /// A pose counts as the written one if it is closer to it than this, metres.
-const SAME_M: f64 = 0.001;
+const SAME_POSE_M: f64 = 0.001;
 
 /// Counts of a replay.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -79,7 +79,7 @@ fn replay_end(
         .collect();
     let is_same = |taken: &Vec<DVec3>| {
         taken.len() == trajectory.actions.len() + 1
-            && taken.iter().zip(&trajectory.positions).all(|(a, b)| a.distance(*b) < SAME_M)
+            && taken.iter().zip(&trajectory.positions).all(|(a, b)| a.distance(*b) < SAME_POSE_M)
     };
     Ok(taken.filter(is_same).and_then(|taken| taken.last().copied()))
 }

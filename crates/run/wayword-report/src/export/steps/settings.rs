@@ -6,10 +6,10 @@ use wayword_habitat::walk::AgentGait;
 use wayword_run::{error::CommandError, own_format::OwnFormat};
 
 /// The allowed lengths of the sides of pictures, pixels.
-const SIDE_PX: std::ops::RangeInclusive<u32> = 16..=4096;
+const PICTURE_SIDE_RANGE_PX: std::ops::RangeInclusive<u32> = 16..=4096;
 
 /// Most walks in a shard, because the pictures of a shard are in memory before it is written. More are refused.
-const MOST_IN_SHARD: usize = 500;
+const MAX_SHARD_WALKS: usize = 500;
 
 /// The agent's gait and camera, and the way in which pictures are stored.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -70,8 +70,8 @@ impl StepExportSettings {
         within("--tolerance-m", self.tolerance_m, 0.05, 2.0)?;
         within("--fov-deg", self.fov_deg, 10.0, 140.0)?;
         within("--eye-m", self.eye_m, 0.1, 2.2)?;
-        if let Some(shard) = self.shard.filter(|shard| !(1..=MOST_IN_SHARD).contains(shard)) {
-            let hint = format!("give the number of walks in a shard, from 1 to {MOST_IN_SHARD}, as in --shard 100");
+        if let Some(shard) = self.shard.filter(|shard| !(1..=MAX_SHARD_WALKS).contains(shard)) {
+            let hint = format!("give the number of walks in a shard, from 1 to {MAX_SHARD_WALKS}, as in --shard 100");
             return Err(CommandError::usage(format!("--shard {shard}"), hint));
         }
         Ok(())
@@ -86,7 +86,7 @@ impl StepExportSettings {
 
 fn parse_size(typed: &str) -> Result<[u32; 2], CommandError> {
     let sides = typed.split_once('x').and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
-    sides.filter(|sides| sides.iter().all(|side| SIDE_PX.contains(side))).ok_or_else(|| {
+    sides.filter(|sides| sides.iter().all(|side| PICTURE_SIDE_RANGE_PX.contains(side))).ok_or_else(|| {
         CommandError::usage(
             format!("--size-px {typed}"),
             "give width and height in pixels, each from 16 to 4096: 224x224",

@@ -3,7 +3,9 @@
 use std::{collections::BTreeMap, fmt};
 use wayword_metrics::{McNemar, MeanEstimate, TrajectoryMetric};
 use wayword_navigation::{
-    comparison::{AgentComparison, AgentKind, ComparisonRow, EMPTY, EffortSummary, ListeningVerdict, SwapEffect},
+    comparison::{
+        AgentComparison, AgentKind, ComparisonRow, EMPTY_SET_SUFFIX, EffortSummary, ListeningVerdict, SwapEffect,
+    },
     swap::InstructionSwap,
     walk::{UselessReplies, WalkEnd},
 };
@@ -12,7 +14,7 @@ use wayword_navigation::{
 pub(super) const SHORT_TABLE_METRICS: [TrajectoryMetric; 3] =
     [TrajectoryMetric::SuccessRate, TrajectoryMetric::OracleSuccessRate, TrajectoryMetric::Spl];
 /// Most characters of a name, because names come from files. The rest is cut off.
-const MOST_NAME_CHARS: usize = 80;
+const MAX_NAME_CHARS: usize = 80;
 
 /// A figure with its interval, rounded: shares in per cent, lengths in metres.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -110,9 +112,9 @@ pub(super) const DEAF_MARK: &str = "†";
 /// The label of an agent that reads no set.
 pub(super) const READS_NOTHING: &str = "reads nothing";
 /// Columns to the right of the differences.
-pub(super) const BESIDE_DIFFERENCES: [&str; 3] = ["only this", "only first", "p"];
+pub(super) const DIFFERENCE_COLUMNS: [&str; 3] = ["only this", "only first", "p"];
 /// Columns to the right of the swaps.
-pub(super) const BESIDE_SWAPS: [&str; 3] = ["texts changed", "p", "follows"];
+pub(super) const SWAP_COLUMNS: [&str; 3] = ["texts changed", "p", "follows"];
 
 /// The lines of the main table.
 pub(super) fn comparison_lines(comparison: &AgentComparison) -> Vec<ComparisonLine<'_>> {
@@ -152,10 +154,10 @@ pub(super) fn swap_lines(comparison: &AgentComparison) -> Vec<ComparisonLine<'_>
 }
 
 /// Columns for the effort of walks.
-pub(super) const BESIDE_EFFORTS: [&str; 7] =
+pub(super) const EFFORT_COLUMNS: [&str; 7] =
     ["calls", "tokens in", "tokens out", "US$", "hops", "seconds", "largest prompt"];
 /// Columns for problems in walks.
-pub(super) const BESIDE_TROUBLE: [&str; 8] = [
+pub(super) const TROUBLE_COLUMNS: [&str; 8] = [
     "walks",
     "no call",
     "no such way",
@@ -261,7 +263,7 @@ fn is_deaf(comparison: &AgentComparison, agent: &str) -> bool {
 /// A set in words. `SET~SWAP` is a control set, which shows how much an agent reaches without its own instruction.
 fn set_words(set: &str) -> String {
     match set.split_once('~') {
-        Some((_, EMPTY)) => "an empty text".to_owned(),
+        Some((_, EMPTY_SET_SUFFIX)) => "an empty text".to_owned(),
         Some((_, swap)) if swap == InstructionSwap::OtherPath.name() => {
             swap_words(InstructionSwap::OtherPath).to_owned()
         }
@@ -282,8 +284,8 @@ fn swap_words(swap: InstructionSwap) -> &'static str {
 /// A name without control characters, because names come from files and a terminal would obey them.
 pub(super) fn printable_name(name: &str) -> String {
     let mut shown: String =
-        name.chars().take(MOST_NAME_CHARS).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
-    if name.chars().nth(MOST_NAME_CHARS).is_some() {
+        name.chars().take(MAX_NAME_CHARS).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    if name.chars().nth(MAX_NAME_CHARS).is_some() {
         shown.push('…');
     }
     shown
@@ -308,6 +310,6 @@ mod tests {
     #[test]
     fn name_removes_control_characters_and_cuts_long_names() {
         assert_eq!(printable_name("a\u{1b}[31m\nb"), "a\u{fffd}[31m\u{fffd}b");
-        assert_eq!(printable_name(&"x".repeat(500)).chars().count(), MOST_NAME_CHARS + 1);
+        assert_eq!(printable_name(&"x".repeat(500)).chars().count(), MAX_NAME_CHARS + 1);
     }
 }

@@ -64,7 +64,7 @@ pub(super) struct ForestContent<'a> {
 }
 
 /// Most steps of an axis. A longer axis gets larger steps.
-const MOST_TICKS: f64 = 8.0;
+const MAX_AXIS_STEPS: f64 = 8.0;
 /// How far above the axis' end a line may lie for the axis to be drawn out to it: an upper bound of 100 would press all else together.
 const NEAR_AXIS_FACTOR: f64 = 1.5;
 /// How much of the plot's width is left free on either side, so that no dot is cut.
@@ -129,8 +129,10 @@ impl ForestAxis {
             (low, high, is_any) = (low.min(per_cent), high.max(per_cent), true);
         }
         let span = (high - low).max(1.0);
-        let step =
-            [0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0].into_iter().find(|step| span / step <= MOST_TICKS).unwrap_or(25.0);
+        let step = [0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0]
+            .into_iter()
+            .find(|step| span / step <= MAX_AXIS_STEPS)
+            .unwrap_or(25.0);
         let (low, high) = ((low / step).floor() * step, (high / step).ceil() * step);
         is_any.then_some(Self { low, high: high.max(low + step), step })
     }

@@ -2,7 +2,7 @@
 
 use super::{
     figures::{
-        BESIDE_DIFFERENCES, BESIDE_EFFORTS, BESIDE_SWAPS, BESIDE_TROUBLE, ComparisonLine, SHORT_TABLE_METRICS,
+        ComparisonLine, DIFFERENCE_COLUMNS, EFFORT_COLUMNS, SHORT_TABLE_METRICS, SWAP_COLUMNS, TROUBLE_COLUMNS,
         comparison_lines, difference_lines, effort_lines, metric_heading, printable_name, swap_lines, trouble_lines,
     },
     notes,
@@ -24,19 +24,19 @@ pub fn markdown_tables(comparison: &AgentComparison) -> String {
     let differences = difference_lines(comparison);
     if !differences.is_empty() {
         append_text(&mut page, format_args!("\n## Minus {first}\n\n"));
-        append_table(&mut page, "Instructions", &differences, &SHORT_TABLE_METRICS, &BESIDE_DIFFERENCES);
+        append_table(&mut page, "Instructions", &differences, &SHORT_TABLE_METRICS, &DIFFERENCE_COLUMNS);
     }
     let swap_losses = swap_lines(comparison);
     if !swap_losses.is_empty() {
         append_text(&mut page, format_args!("\n## Loss by swap of set {first}\n\n"));
-        append_table(&mut page, "Swap", &swap_losses, &SHORT_TABLE_METRICS, &BESIDE_SWAPS);
+        append_table(&mut page, "Swap", &swap_losses, &SHORT_TABLE_METRICS, &SWAP_COLUMNS);
     }
     let efforts = effort_lines(comparison);
     if !efforts.is_empty() {
         page.push_str("\n## What a walk by a language model took\n\n");
-        append_table(&mut page, "Instructions", &efforts, &[], &BESIDE_EFFORTS);
+        append_table(&mut page, "Instructions", &efforts, &[], &EFFORT_COLUMNS);
         page.push_str("\n## What went wrong in it\n\n");
-        append_table(&mut page, "Instructions", &trouble_lines(comparison), &[], &BESIDE_TROUBLE);
+        append_table(&mut page, "Instructions", &trouble_lines(comparison), &[], &TROUBLE_COLUMNS);
     }
     append_list(&mut page, "Sets", comparison.sets.iter().map(notes::describe_set));
     append_list(

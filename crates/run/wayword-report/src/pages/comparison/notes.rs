@@ -4,7 +4,7 @@
 use super::figures::{DEAF_MARK, RoundedFigure, deaf_agents, other_path, printable_name};
 use wayword_metrics::{TrajectoryMetric, TrajectorySuccessRule};
 use wayword_navigation::comparison::{
-    AgentComparison, AgentKind, ComparisonInfo, FEWEST_PATHS, InstructionSet, ListeningVerdict, SwapEffect,
+    AgentComparison, AgentKind, ComparisonInfo, InstructionSet, ListeningVerdict, MIN_PATHS, SwapEffect,
 };
 use wayword_run::count::count_phrase;
 
@@ -89,7 +89,7 @@ pub(super) fn list_warnings(comparison: &AgentComparison) -> Vec<String> {
     if !untested.is_empty() {
         let agents = untested.join(", ");
         warnings.push(format!(
-            "{agents}: the swap test with another path's instruction covers fewer than {FEWEST_PATHS} paths, so its rows may say nothing about the instructions."
+            "{agents}: the swap test with another path's instruction covers fewer than {MIN_PATHS} paths, so its rows may say nothing about the instructions."
         ));
     }
     warnings

@@ -2,9 +2,9 @@
 
 use super::{
     figures::{
-        BESIDE_DIFFERENCES, BESIDE_EFFORTS, BESIDE_SWAPS, BESIDE_TROUBLE, ComparisonLine, READS_NOTHING, RoundedFigure,
-        SHORT_TABLE_METRICS, comparison_lines, difference_lines, effort_lines, metric_heading, printable_name,
-        swap_lines, trouble_lines,
+        ComparisonLine, DIFFERENCE_COLUMNS, EFFORT_COLUMNS, READS_NOTHING, RoundedFigure, SHORT_TABLE_METRICS,
+        SWAP_COLUMNS, TROUBLE_COLUMNS, comparison_lines, difference_lines, effort_lines, metric_heading,
+        printable_name, swap_lines, trouble_lines,
     },
     forest::{ForestContent, ForestView},
     notes,
@@ -64,12 +64,12 @@ impl ComparisonPageView {
                 "Instructions",
                 &differences,
                 &present_metrics(&differences),
-                BESIDE_DIFFERENCES.to_vec(),
+                DIFFERENCE_COLUMNS.to_vec(),
             );
             folded.push((format!("All differences to {first}, and McNemar's test"), view));
         }
         if !swap_losses.is_empty() {
-            let view = TableView::new("Swap", &swap_losses, &present_metrics(&swap_losses), BESIDE_SWAPS.to_vec());
+            let view = TableView::new("Swap", &swap_losses, &present_metrics(&swap_losses), SWAP_COLUMNS.to_vec());
             folded.push((format!("All losses by swaps of {first}"), view));
         }
         Self {
@@ -81,8 +81,8 @@ impl ComparisonPageView {
             notes: notes::all_notes(comparison),
             table: TableView::new("Instructions", &table, &SHORT_TABLE_METRICS, vec![]),
             efforts: [
-                (effort_lines(comparison), BESIDE_EFFORTS.to_vec()),
-                (trouble_lines(comparison), BESIDE_TROUBLE.to_vec()),
+                (effort_lines(comparison), EFFORT_COLUMNS.to_vec()),
+                (trouble_lines(comparison), TROUBLE_COLUMNS.to_vec()),
             ]
             .into_iter()
             .filter(|(lines, _)| !lines.is_empty())

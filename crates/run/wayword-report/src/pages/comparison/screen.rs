@@ -2,7 +2,7 @@
 
 use super::{
     figures::{
-        BESIDE_DIFFERENCES, BESIDE_EFFORTS, BESIDE_SWAPS, BESIDE_TROUBLE, ComparisonLine, SHORT_TABLE_METRICS,
+        ComparisonLine, DIFFERENCE_COLUMNS, EFFORT_COLUMNS, SHORT_TABLE_METRICS, SWAP_COLUMNS, TROUBLE_COLUMNS,
         comparison_lines, difference_lines, effort_lines, metric_heading, printable_name, swap_lines, trouble_lines,
     },
     notes,
@@ -23,7 +23,7 @@ pub fn screen_text(comparison: &AgentComparison) -> String {
     let first = comparison.sets.first().map_or_else(String::new, |set| printable_name(&set.name));
     let differences = difference_lines(comparison);
     if !differences.is_empty() {
-        append_table(&mut text, &format!("minus {first}"), &differences, &SHORT_TABLE_METRICS, &BESIDE_DIFFERENCES);
+        append_table(&mut text, &format!("minus {first}"), &differences, &SHORT_TABLE_METRICS, &DIFFERENCE_COLUMNS);
     }
     let swap_losses = swap_lines(comparison);
     if !swap_losses.is_empty() {
@@ -32,13 +32,13 @@ pub fn screen_text(comparison: &AgentComparison) -> String {
             &format!("loss by swap of set {first}"),
             &swap_losses,
             &SHORT_TABLE_METRICS,
-            &BESIDE_SWAPS,
+            &SWAP_COLUMNS,
         );
     }
     let efforts = effort_lines(comparison);
     if !efforts.is_empty() {
-        append_table(&mut text, "what a walk took", &efforts, &[], &BESIDE_EFFORTS);
-        append_table(&mut text, "what went wrong", &trouble_lines(comparison), &[], &BESIDE_TROUBLE);
+        append_table(&mut text, "what a walk took", &efforts, &[], &EFFORT_COLUMNS);
+        append_table(&mut text, "what went wrong", &trouble_lines(comparison), &[], &TROUBLE_COLUMNS);
     }
     let sets = comparison.sets.iter().map(notes::describe_set);
     let after = notes::all_notes(comparison)

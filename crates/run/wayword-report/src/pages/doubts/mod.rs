@@ -20,7 +20,7 @@ use wayword_run::{
 /// The version of the format of the JSON file.
 const FORMAT_VERSION: u32 = 1;
 /// Most texts that the page shows. The JSON file has all.
-const MOST_SHOWN: usize = 1000;
+const MAX_SHOWN_TEXTS: usize = 1000;
 
 /// Texts with their doubts, as the file has them.
 #[derive(Debug, Serialize)]
@@ -160,8 +160,8 @@ fn highlights_html(highlights: &DoubtHighlights) -> Result<String, CommandError>
         summary => Value::from_serialize(summary),
         grades => tallies(&DoubtGrade::ALL.map(grade_label), &summary.grades),
         causes => tallies(&causes, &summary.causes),
-        texts => texts.iter().take(MOST_SHOWN).map(text_view).collect::<Vec<_>>(),
-        left_out => texts.len().saturating_sub(MOST_SHOWN),
+        texts => texts.iter().take(MAX_SHOWN_TEXTS).map(text_view).collect::<Vec<_>>(),
+        left_out => texts.len().saturating_sub(MAX_SHOWN_TEXTS),
     };
     let templates = load_templates().map_err(template_error)?;
     templates.get_template("doubts.html").and_then(|page| page.render(view)).map_err(template_error)

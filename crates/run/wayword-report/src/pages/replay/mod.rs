@@ -20,11 +20,11 @@ use wayword_navigation::{
 use wayword_run::{count::count_phrase, run_folder::PathMap};
 
 /// Most steps of a walk that are shown.
-const MOST_STEPS: usize = 100;
+const MAX_SHOWN_STEPS: usize = 100;
 /// Most key phrases of an instruction that are shown.
-const MOST_PHRASES: usize = 50;
+const MAX_SHOWN_PHRASES: usize = 50;
 /// Most characters of a text that are shown. The rest is cut off.
-const MOST_TEXT_CHARS: usize = 2_000;
+const MAX_SHOWN_TEXT_CHARS: usize = 2_000;
 
 /// A walk, with the path that it is compared with.
 #[derive(Debug, Clone, Copy)]
@@ -94,7 +94,7 @@ impl ReplayView {
     pub(super) fn new(number: usize, replay: &WalkReplay<'_>) -> Self {
         let walk = replay.walk;
         let entry = ReplayEntry::new(number, replay);
-        let shown = walk.steps.len().min(MOST_STEPS);
+        let shown = walk.steps.len().min(MAX_SHOWN_STEPS);
         let phrases = walk.directions.as_ref().map_or(&[][..], |directions| &directions.phrases);
         let (steps, score_range) = step_views(walk, shown, |step| frame_anchor(&entry.anchor, step + 1));
         Self {
@@ -103,8 +103,8 @@ impl ReplayView {
             meta: replay.outcome_words(),
             text: cut_text(&walk.text),
             reads_nothing: walk.set == UNREAD_SET_NAME,
-            phrases: phrases.iter().take(MOST_PHRASES).map(|phrase| cut_text(phrase)).collect(),
-            phrases_left_out: phrases.len().saturating_sub(MOST_PHRASES),
+            phrases: phrases.iter().take(MAX_SHOWN_PHRASES).map(|phrase| cut_text(phrase)).collect(),
+            phrases_left_out: phrases.len().saturating_sub(MAX_SHOWN_PHRASES),
             activity: walk.directions.as_ref().map(|directions| cut_text(&directions.activity)),
             map: replay.draw_map(shown),
             map_radius: BADGE_RADIUS,
@@ -173,7 +173,7 @@ impl WalkReplay<'_> {
         };
         let steps = &self.walk.steps[..shown];
         let stops = places(&mut steps.iter().map(|step| &step.viewpoint))?;
-        let annotated = places(&mut self.reference.iter().take(MOST_STEPS))?;
+        let annotated = places(&mut self.reference.iter().take(MAX_SHOWN_STEPS))?;
         let backs: Vec<bool> = steps.iter().map(|step| step.choice == StepChoice::Back).collect();
         let around: Vec<DVec3> = stops.iter().chain(&annotated).copied().collect();
         let start = steps.first()?.heading_rad;
@@ -208,7 +208,7 @@ fn outcome_mark(outcome: Option<SuccessOutcome>) -> (&'static str, &'static str)
 
 /// A text, cut so that the page stays small enough for a phone.
 fn cut_text(text: &str) -> String {
-    text.chars().take(MOST_TEXT_CHARS).collect()
+    text.chars().take(MAX_SHOWN_TEXT_CHARS).collect()
 }
 
 /// A name, cut for headings.

@@ -7,10 +7,10 @@ use wayword_navigation::walk::{AgentStep, AgentWalkRecord, StepChoice, StepViewS
 use wayword_run::count::count_phrase;
 
 /// Most characters of a phrase in a cell. The rest is cut off.
-const MOST_PHRASE_CHARS: usize = 120;
+const MAX_PHRASE_CHARS: usize = 120;
 
 /// Most characters of a reason. The rest is cut off.
-const MOST_REASON_CHARS: usize = 400;
+const MAX_REASON_CHARS: usize = 400;
 
 /// A step.
 #[derive(Debug, Serialize)]
@@ -87,7 +87,7 @@ pub(super) fn step_views(
             StepChoice::Stop => "stopped",
         },
         then: choice_words(step.choice),
-        reason: step.reason.as_ref().map(|reason| reason.chars().take(MOST_REASON_CHARS).collect()),
+        reason: step.reason.as_ref().map(|reason| reason.chars().take(MAX_REASON_CHARS).collect()),
     };
     let views = walk.steps.iter().take(shown).enumerate().map(step).collect();
     (views, range.map(|range| (score_text(range.low), score_text(range.high))))
@@ -114,13 +114,13 @@ fn phrase_words(walk: &AgentWalkRecord, step: &AgentStep) -> String {
     let phrases = walk.directions.as_ref().map_or(&[][..], |directions| &directions.phrases);
     phrases.get(step.phrase).map_or_else(
         || "the activity alone".to_owned(),
-        |phrase| format!("{}. {}", step.phrase + 1, phrase.chars().take(MOST_PHRASE_CHARS).collect::<String>()),
+        |phrase| format!("{}. {}", step.phrase + 1, phrase.chars().take(MAX_PHRASE_CHARS).collect::<String>()),
     )
 }
 
 fn report_words(summary: &SurroundingsSummary) -> String {
     let room = match &summary.room {
-        Some(room) => format!("in room {}", room.chars().take(MOST_PHRASE_CHARS).collect::<String>()),
+        Some(room) => format!("in room {}", room.chars().take(MAX_PHRASE_CHARS).collect::<String>()),
         None => "in a room without a name".to_owned(),
     };
     format!("{room}, {} on, {}", count_phrase(summary.ways, "way"), count_phrase(summary.things, "thing"))

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use wayword_navigation::walk::AgentWalkRecord;
 
 /// Most groups (agent, set, success or failure) from which walks are shown.
-const MOST_GROUPS: usize = 1_000;
+const MAX_GROUPS: usize = 1_000;
 
 /// A sample of walks, taken while they are read. It keeps the positions of walks, not the walks.
 #[derive(Debug, Clone)]
@@ -39,7 +39,7 @@ impl<T: Ord> WalkSample<T> {
         self.offered += 1;
         // The sets of walks by swapped texts are named SET~SWAP.
         let group = (walk.set.contains('~'), walk.agent.clone(), walk.set.clone(), is_success);
-        if self.groups.len() >= MOST_GROUPS && !self.groups.contains_key(&group) {
+        if self.groups.len() >= MAX_GROUPS && !self.groups.contains_key(&group) {
             return;
         }
         let kept =

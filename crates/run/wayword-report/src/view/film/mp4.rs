@@ -12,14 +12,14 @@ use wayword_core::Image;
 use wayword_run::error::CommandError;
 
 /// Least frames for each second. Some players cannot show fewer, so a picture is shown several times instead.
-const LEAST_FPS: f64 = 10.0;
+const MIN_FPS: f64 = 10.0;
 /// Most seconds between two key frames, to which players can jump.
 const KEY_EVERY_S: f64 = 5.0;
 /// How coarse pictures may be: quantisation on the encoder's scale of 0 to 51.
 const QUANTISATION_RANGE: [u8; 2] = [18, 24];
 
 pub(super) fn open_video(out: &Path, fps: f64) -> Result<Box<dyn FilmWriter>, CommandError> {
-    let repeats = (LEAST_FPS / fps).ceil().max(1.0);
+    let repeats = (MIN_FPS / fps).ceil().max(1.0);
     let config = EncoderConfig::new()
         .max_frame_rate(FrameRate::from_hz((fps * repeats) as f32))
         .rate_control_mode(RateControlMode::Off)

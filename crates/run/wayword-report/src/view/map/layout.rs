@@ -2,7 +2,7 @@
 
 use super::sketch::{InkColour, MapMark, MapSketch, SheetPoint, ink_from_css};
 use crate::pages::{
-    map::{BADGE_RADIUS, MOST_NODES, MOST_SPAN_M, MapSpot, MapTrail, place_spots},
+    map::{BADGE_RADIUS, MAX_MAP_NODES, MAX_MAP_SPAN_M, MapSpot, MapTrail, place_spots},
     palette::frame_colour,
     sheet::{MapSheet, SheetLimits},
 };
@@ -33,9 +33,9 @@ pub(super) struct MapPlan<'a> {
 pub(super) fn sketch_plan(plan: &MapPlan<'_>) -> Option<MapSketch> {
     let stops: Vec<DVec3> =
         plan.path.into_iter().flat_map(|path| &path.frames).map(|frame| frame.pose.position).collect();
-    let nodes = || plan.graph.viewpoints().filter(|node| plan.is_here(plan.graph.level_of(node))).take(MOST_NODES);
+    let nodes = || plan.graph.viewpoints().filter(|node| plan.is_here(plan.graph.level_of(node))).take(MAX_MAP_NODES);
     let first = stops.first().copied().or_else(|| nodes().find_map(|node| plan.graph.position_of(node)))?;
-    let is_near = |at: &DVec3| (*at - first).abs().max_element() <= MOST_SPAN_M;
+    let is_near = |at: &DVec3| (*at - first).abs().max_element() <= MAX_MAP_SPAN_M;
     if !stops.iter().all(is_near) {
         return None;
     }
@@ -75,7 +75,7 @@ fn sketch_edges(
     position: impl Fn(&ViewpointId) -> Option<DVec3>,
     marks: &mut Vec<MapMark>,
 ) {
-    for (from, to, _) in plan.graph.edges().take(4 * MOST_NODES) {
+    for (from, to, _) in plan.graph.edges().take(4 * MAX_MAP_NODES) {
         let here = [from, to].map(|node| plan.is_here(plan.graph.level_of(node)));
         let (Some(from), Some(to)) = (position(from), position(to)) else { continue };
         if here.contains(&true) {

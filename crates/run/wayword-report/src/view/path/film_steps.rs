@@ -5,9 +5,9 @@ use wayword_core::{Frame, Path, PathMove, Pose};
 use wayword_run::error::CommandError;
 
 /// How fast the camera turns on the spot, radians for each second.
-const TURNS_RAD: f64 = FRAC_PI_2;
+const TURN_SPEED_RAD_PER_S: f64 = FRAC_PI_2;
 /// How fast the camera moves straight on, metres for each second.
-const WALKS_M: f64 = 1.0;
+const WALK_SPEED_M_PER_S: f64 = 1.0;
 
 /// A place from which a picture of the film is taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,15 +41,15 @@ pub fn film_steps(path: &Path, between: usize) -> Result<Vec<FilmStep>, CommandE
 /// The place at a share of the time that a move takes.
 fn on_the_way(from: &Frame, to: &Frame, share: f64) -> FilmStep {
     let step = PathMove::between_poses(&from.pose, &to.pose);
-    let turning_s = step.turn_rad.abs() / TURNS_RAD;
-    let passed_s = share * (turning_s + from.pose.position.distance(to.pose.position) / WALKS_M);
+    let turning_s = step.turn_rad.abs() / TURN_SPEED_RAD_PER_S;
+    let passed_s = share * (turning_s + from.pose.position.distance(to.pose.position) / WALK_SPEED_M_PER_S);
     let frame = if passed_s <= turning_s {
         let turned = if turning_s > 0.0 { step.turn_rad * passed_s / turning_s } else { 0.0 };
         let heading = from.pose.heading.turned_by(turned);
         Frame { pose: Pose { heading, ..from.pose }, ..from.clone() }
     } else {
         let way = to.pose.position - from.pose.position;
-        let position = from.pose.position + way.normalize_or_zero() * ((passed_s - turning_s) * WALKS_M);
+        let position = from.pose.position + way.normalize_or_zero() * ((passed_s - turning_s) * WALK_SPEED_M_PER_S);
         Frame { pose: Pose { position, ..to.pose }, viewpoint: None, level: from.level }
     };
     FilmStep { frame, is_between: true }
@@ -80,7 +80,7 @@ mod tests {
         assert_eq!(steps.len(), 2 * 28 + 1);
         for pair in steps.windows(2) {
             let step = PathMove::between_poses(&pair[0].frame.pose, &pair[1].frame.pose);
-            let seconds = step.turn_rad.abs() / TURNS_RAD + step.distance_m / WALKS_M;
+            let seconds = step.turn_rad.abs() / TURN_SPEED_RAD_PER_S + step.distance_m / WALK_SPEED_M_PER_S;
             // 100 degrees and 2 m, then 90 degrees and 2 m, in 28 steps each.
             assert!([(100.0 / 90.0 + 2.0) / 28.0, 3.0 / 28.0].iter().any(|even| (even - seconds).abs() < 1e-9));
             assert!(step.turn_rad >= -FRAC_PI_2 && (step.distance_m < 1e-9 || step.turn_rad.abs() < 0.2));

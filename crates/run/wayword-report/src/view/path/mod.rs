@@ -11,28 +11,28 @@ use wayword_core::{Image, Platform, PlatformError, SceneId, ViewGaze};
 use wayword_run::{count::count_phrase, error::CommandError, output::CommandOutput};
 
 /// Most pictures of a path. A path that needs more is refused.
-const MOST_STEPS: usize = 20_000;
+const MAX_PICTURES: usize = 20_000;
 /// Pictures for each second: with the path's own frames only, and with pictures between them.
 const DEFAULT_FPS: [f64; 2] = [1.0, 12.0];
 /// The rates that can be asked for: a GIF counts in hundredths of a second.
 const FPS_RANGE: std::ops::RangeInclusive<f64> = 0.1..=50.0;
 /// Greatest width of the pictures, pixels. A wider one is refused.
-const WIDEST_PX: u32 = 8192;
+const MAX_WIDTH_PX: u32 = 8192;
 
 pub(super) fn write_path(args: &ViewPath, output: &CommandOutput) -> Result<WrittenView, CommandError> {
     let fps = args.fps.unwrap_or(DEFAULT_FPS[usize::from(args.smooth.is_some_and(|between| between > 0))]);
     if !FPS_RANGE.contains(&fps) {
         return Err(CommandError::usage(format!("--fps {fps} is out of range"), "give a number from 0.1 to 50"));
     }
-    if args.width.is_some_and(|width| !(1..=WIDEST_PX).contains(&width)) {
-        return Err(CommandError::usage("--width is out of range", format!("give a number from 1 to {WIDEST_PX}")));
+    if args.width.is_some_and(|width| !(1..=MAX_WIDTH_PX).contains(&width)) {
+        return Err(CommandError::usage("--width is out of range", format!("give a number from 1 to {MAX_WIDTH_PX}")));
     }
     let place = film::FilmPlace::from_out(&args.out, args.platform.data.as_deref())?;
     let platform = open_platform(&args.platform)?;
     let path = walk::choose_path(&args.walk, &args.platform, &*platform)?;
     let steps = film_steps::film_steps(&path, args.smooth.unwrap_or(0))?;
-    if steps.len() > MOST_STEPS {
-        let problem = format!("the path would need {} pictures, but at most {MOST_STEPS} are allowed", steps.len());
+    if steps.len() > MAX_PICTURES {
+        let problem = format!("the path would need {} pictures, but at most {MAX_PICTURES} are allowed", steps.len());
         return Err(CommandError::usage(problem, "ask for a shorter path, or a smaller --smooth"));
     }
     let mut film = place.open_writer(fps, steps.len())?;
@@ -83,7 +83,7 @@ fn size_of(first: &Image, width: Option<u32>) -> (u32, u32) {
     let size = (first.width_px(), first.height_px());
     width.map_or(size, |width| {
         let height = f64::from(size.1) * f64::from(width) / f64::from(size.0.max(1));
-        (width, (height.round() as u32).clamp(1, WIDEST_PX))
+        (width, (height.round() as u32).clamp(1, MAX_WIDTH_PX))
     })
 }
 

@@ -18,7 +18,7 @@ use wayword_queue::{ChunkClaim, ChunkOutcome, ChunkPlan, ChunkRecord, chunk_fold
 
 /// Longest reason of a failure that a completion mark keeps, characters. The rest is cut off; `errors.jsonl` has all of
 /// it.
-const MOST_REASON_CHARS: usize = 200;
+const MAX_REASON_CHARS: usize = 200;
 
 /// Makes a claimed chunk. The outcome is done, with the completion mark; stopped, through no fault of the chunk; or
 /// failed.
@@ -107,7 +107,7 @@ fn completion_mark(
     };
     let mut failed: BTreeMap<String, usize> = BTreeMap::new();
     for FailedItem { reason, .. } in read_lines(&folder.join(file::ERRORS))? {
-        *failed.entry(reason.chars().take(MOST_REASON_CHARS).collect()).or_default() += 1;
+        *failed.entry(reason.chars().take(MAX_REASON_CHARS).collect()).or_default() += 1;
     }
     let at_unix_s = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
     Ok(ChunkRecord {

@@ -19,9 +19,9 @@ pub(super) struct LineFile {
 struct LineFileState {
     file: File,
     /// Length of the complete lines, bytes. A half-written line is cut off there.
-    whole: u64,
+    whole_bytes: u64,
     /// Whether the warning about lost lines was printed.
-    is_told: bool,
+    has_warned: bool,
 }
 
 impl LineFile {
@@ -44,7 +44,7 @@ impl LineFile {
     }
 
     fn from_file(path: &Path, file: File, output: &CommandOutput) -> Self {
-        let state = Mutex::new(LineFileState { file, whole: 0, is_told: false });
+        let state = Mutex::new(LineFileState { file, whole_bytes: 0, has_warned: false });
         Self { path: path.to_owned(), output: output.clone(), state }
     }
 
@@ -54,11 +54,11 @@ impl LineFile {
         bytes.push(b'\n');
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         match state.file.write_all(&bytes) {
-            Ok(()) => state.whole += bytes.len() as u64,
+            Ok(()) => state.whole_bytes += bytes.len() as u64,
             Err(error) => {
                 // A part of the line may be there. If it cannot be cut off, the file cannot be written at all.
-                let _ = state.file.set_len(state.whole);
-                if !std::mem::replace(&mut state.is_told, true) {
+                let _ = state.file.set_len(state.whole_bytes);
+                if !std::mem::replace(&mut state.has_warned, true) {
                     self.output.say(lost_warning(&self.path, &error));
                 }
             }

@@ -10,13 +10,13 @@ use ureq::{
 };
 
 /// Largest answer of a collector that is read, bytes; a larger one is an error. An answer is empty or a few words.
-const LARGEST_ANSWER: u64 = 1 << 16;
+const MAX_ANSWER_BYTES: u64 = 1 << 16;
 
 /// A blocking client; the exporter uses it on a thread of its own.
 #[derive(Debug)]
 pub(super) struct CollectorClient {
     agent: Agent,
-    teller: Arc<FailureReporter>,
+    reporter: Arc<FailureReporter>,
 }
 
 impl CollectorClient {

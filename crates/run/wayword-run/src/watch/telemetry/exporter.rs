@@ -21,9 +21,9 @@ use std::{
 pub(super) struct FailureReporter {
     output: CommandOutput,
     /// Whether the warning was printed.
-    is_told: AtomicBool,
+    has_warned: AtomicBool,
     /// Why the last request failed.
-    noted: Mutex<String>,
+    last_reason: Mutex<String>,
 }
 
 impl FailureReporter {
@@ -53,7 +53,7 @@ impl FailureReporter {
 #[derive(Debug)]
 pub(super) struct ReportingExporter {
     inner: opentelemetry_otlp::SpanExporter,
-    teller: Arc<FailureReporter>,
+    reporter: Arc<FailureReporter>,
 }
 
 impl ReportingExporter {

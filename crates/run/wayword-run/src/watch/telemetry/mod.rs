@@ -26,7 +26,7 @@ const LAST_WAIT: Duration = Duration::from_secs(5);
 /// The connection to a collector.
 pub(super) struct SpanTelemetry {
     provider: SdkTracerProvider,
-    teller: Arc<FailureReporter>,
+    reporter: Arc<FailureReporter>,
 }
 
 impl SpanTelemetry {

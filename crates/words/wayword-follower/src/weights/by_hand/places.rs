@@ -11,9 +11,9 @@ use crate::{
 use wayword_language::reading::steps::StepRelation;
 
 /// Weights of a mentioned object by the class of its distance, the nearest first; the last class is unknown.
-const OF_THING: [f64; CLASSES] = [1.0, 0.8, 0.3, -0.4, -1.0, -1.5, 0.0];
+const THING_WEIGHTS: [f64; CLASSES] = [1.0, 0.8, 0.3, -0.4, -1.0, -1.5, 0.0];
 /// Weights of a mentioned room by the class of its distance, the nearest first; the last class is unknown.
-const OF_ROOM: [f64; CLASSES] = [1.5, 1.0, 0.2, -0.7, -1.5, -2.0, 0.0];
+const ROOM_WEIGHTS: [f64; CLASSES] = [1.5, 1.0, 0.2, -0.7, -1.5, -2.0, 0.0];
 
 /// Sets the weights of rooms and objects.
 pub(super) fn set_places(set: &mut WeightSetter<'_>) {
@@ -22,8 +22,8 @@ pub(super) fn set_places(set: &mut WeightSetter<'_>) {
         set_direction(relation, set);
     }
     for class in 0..CLASSES {
-        set(&TURN_AT, &[(0, 2), (class, CLASSES)], 0.4 * OF_THING[class]);
-        set(&TURN_AT, &[(1, 2), (class, CLASSES)], 0.4 * OF_ROOM[class]);
+        set(&TURN_AT, &[(0, 2), (class, CLASSES)], 0.4 * THING_WEIGHTS[class]);
+        set(&TURN_AT, &[(1, 2), (class, CLASSES)], 0.4 * ROOM_WEIGHTS[class]);
         for is_goal in 0..2 {
             of_walk(class, is_goal, set);
         }
@@ -51,14 +51,14 @@ pub(super) fn set_places(set: &mut WeightSetter<'_>) {
 /// Weights of the whole walk by its distance from the named places.
 fn of_walk(class: usize, is_goal: usize, set: &mut WeightSetter<'_>) {
     let (is_goal, class) = ((is_goal, 2), (class, CLASSES));
-    set(&NAMED_ROOM, &[is_goal, class], 0.5 * OF_ROOM[class.0]);
+    set(&NAMED_ROOM, &[is_goal, class], 0.5 * ROOM_WEIGHTS[class.0]);
     for commonness in 0..3 {
-        set(&NAMED_THING, &[is_goal, (commonness, 3), class], 0.5 * OF_THING[class.0]);
+        set(&NAMED_THING, &[is_goal, (commonness, 3), class], 0.5 * THING_WEIGHTS[class.0]);
     }
     // The last room and the last thing that a step leads to, or that it is in or at, are where the walk ends.
     for group in [1, 2] {
-        set(&LAST_ROOM, &[is_goal, (group, GROUPS), class], 0.8 * OF_ROOM[class.0]);
-        set(&LAST_THING, &[is_goal, (group, GROUPS), class], 0.6 * OF_THING[class.0]);
+        set(&LAST_ROOM, &[is_goal, (group, GROUPS), class], 0.8 * ROOM_WEIGHTS[class.0]);
+        set(&LAST_THING, &[is_goal, (group, GROUPS), class], 0.6 * THING_WEIGHTS[class.0]);
     }
 }
 
@@ -76,10 +76,10 @@ fn set_nearness(relation: StepRelation, set: &mut WeightSetter<'_>) {
     };
     let number = (relation as usize, RELATIONS);
     for class in 0..CLASSES {
-        set(&ROOM, &[number, (at, 3), (class, CLASSES)], room_strength * OF_ROOM[class]);
+        set(&ROOM, &[number, (at, 3), (class, CLASSES)], room_strength * ROOM_WEIGHTS[class]);
         for (commonness, strength) in [0.8, 0.6, 0.3].into_iter().enumerate() {
             let place = [number, (commonness, 3), (at, 3), (class, CLASSES)];
-            set(&THING, &place, strength * OF_THING[class]);
+            set(&THING, &place, strength * THING_WEIGHTS[class]);
         }
     }
     // By whether the stretch begins in the room (2) and ends in it (1).

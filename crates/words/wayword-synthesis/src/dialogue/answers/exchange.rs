@@ -29,7 +29,7 @@ fn of_answer(exchange: &DialogueExchange) -> Vec<AnswerSighting> {
     let answer = &exchange.answer.replace('’', "'");
     match read_question(&exchange.question) {
         _ if answer.trim().is_empty() => Vec::new(),
-        QuestionSubject::Presence { wanted, or } => read_presence(&wanted, or, answer),
+        QuestionSubject::Presence { wanted, are_alternatives: or } => read_presence(&wanted, or, answer),
         QuestionSubject::Colour { name, guesses } => read_colour(&name, &guesses, answer),
         QuestionSubject::Number(wanted) => read_number(wanted, answer),
         QuestionSubject::Place(wanted) => read_place(&wanted, answer),

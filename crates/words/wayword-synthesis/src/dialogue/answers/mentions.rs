@@ -40,13 +40,13 @@ pub(in crate::dialogue) struct AnswerMention {
 }
 
 /// Longest name of a mention, bytes; a longer one is no mention.
-const MOST_NAME_BYTES: usize = 60;
+const MAX_NAME_BYTES: usize = 60;
 /// Longest text that is read, bytes. Answers are shorter; the rest of a longer one is ignored.
-const MOST_BYTES: usize = 16_384;
+const MAX_TEXT_BYTES: usize = 16_384;
 
 /// Finds the mentions of a text. `known` contains names, in normal spelling, that the lexicon may lack.
 pub(in crate::dialogue) fn find_mentions(text: &str, known: &BTreeSet<String>) -> Vec<AnswerMention> {
-    let text = &text[..text.floor_char_boundary(MOST_BYTES)].replace('’', "'");
+    let text = &text[..text.floor_char_boundary(MAX_TEXT_BYTES)].replace('’', "'");
     let tokens = split_tokens(text);
     let words: Vec<&str> = tokens.iter().map(|token| token.word.as_str()).collect();
     let nouns = find_nouns(text, &tokens, &words, known);
@@ -250,7 +250,7 @@ fn find_nouns(text: &str, tokens: &[TextToken], words: &[&str], known: &BTreeSet
             } else {
                 is_brought_in(words, from, to)
             };
-            (is_object && !is_depicted(words, from) && name.len() <= MOST_NAME_BYTES).then_some(NounMention {
+            (is_object && !is_depicted(words, from) && name.len() <= MAX_NAME_BYTES).then_some(NounMention {
                 at: from..to,
                 is_thing: place.is_thing,
                 is_room: place.is_room,

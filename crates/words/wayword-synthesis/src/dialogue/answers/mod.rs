@@ -132,7 +132,7 @@ fn add_sighting(joined: &mut Vec<ObjectSighting>, earlier: usize, answered: Answ
 }
 
 /// Longest name of a room, bytes; a longer text names none.
-const MOST_BYTES: usize = 40;
+const MAX_ROOM_NAME_BYTES: usize = 40;
 
 /// The name of the room: from the answer to a question for it, or else from the first description.
 pub(crate) fn dialogue_room(transcript: &[DialogueExchange]) -> Option<String> {
@@ -160,7 +160,7 @@ fn room_from_answer(answer: &str) -> Option<String> {
     }
     let leads = ["it is ", "this is ", "a ", "an ", "the ", "some "];
     let bare = leads.iter().fold(said.as_str(), |rest, lead| rest.strip_prefix(lead).unwrap_or(rest));
-    let short = |name: &str| !name.is_empty() && name.len() <= MOST_BYTES && !is_sentence(name);
+    let short = |name: &str| !name.is_empty() && name.len() <= MAX_ROOM_NAME_BYTES && !is_sentence(name);
     let exact = said.starts_with("it is ") && short(bare);
     if exact {
         return Some(bare.to_owned());
@@ -187,5 +187,5 @@ fn first_named(text: &str, ambiguous: bool) -> Option<String> {
             && !mention.is_beyond
             && !ELSEWHERE_PREPOSITIONS.contains(&mention.before.as_str())
     });
-    found.map(|mention| mention.name).filter(|name| name.len() <= MOST_BYTES)
+    found.map(|mention| mention.name).filter(|name| name.len() <= MAX_ROOM_NAME_BYTES)
 }

@@ -115,15 +115,15 @@ pub(super) fn colour_said_of(after: &[&str]) -> Option<String> {
 }
 
 /// Longest name that is asked for, bytes; a question for a longer one asks for nothing that we know.
-const MOST_NAME_BYTES: usize = 60;
+const MAX_NAME_BYTES: usize = 60;
 /// Most things that one question asks for; further ones are ignored.
-const MOST_THINGS: usize = 8;
+const MAX_QUESTION_THINGS: usize = 8;
 
 /// A thing that a question asks for.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct QuestionThing {
     /// Its name in the words of the question, without article and adjectives of size.
-    pub(crate) said: String,
+    pub(crate) phrase: String,
     /// The name without its colour, in the singular where it has one.
     pub(crate) name: String,
     /// The colour that is asked for.
@@ -153,7 +153,7 @@ pub(super) fn all_wanted(words: &[&str]) -> Option<(Vec<QuestionThing>, bool)> {
             _ => return Some((found, or)),
         }
         at += 1;
-        if found.len() == MOST_THINGS
+        if found.len() == MAX_QUESTION_THINGS
             || noun_phrase(words, &mut at.clone()).and_then(|name| question_thing(&name, None)).is_none()
         {
             return Some((found, or));
@@ -207,7 +207,7 @@ pub(super) fn question_thing(name: &[&str], place: Option<ViewThird>) -> Option<
         return None;
     }
     let said = name.join(" ");
-    if said.len() > MOST_NAME_BYTES {
+    if said.len() > MAX_NAME_BYTES {
         return None;
     }
     let in_lexicon = is_thing(&normalise_name(&said));
@@ -218,7 +218,7 @@ pub(super) fn question_thing(name: &[&str], place: Option<ViewThird>) -> Option<
         return None;
     }
     let several = says_several(&bare);
-    Some(QuestionThing { said, name: if several { to_singular(&bare) } else { bare }, colour, several, place })
+    Some(QuestionThing { phrase: said, name: if several { to_singular(&bare) } else { bare }, colour, several, place })
 }
 
 #[cfg(test)]

@@ -92,7 +92,7 @@ struct TriggerReach {
     /// The word at which the reach begins, right after the trigger.
     from: usize,
     /// The witness of the nouns that it reaches: denied or unsure.
-    says: WitnessAnswer,
+    witness: WitnessAnswer,
     /// Whether it covers a whole list ("a lamp, a bed or a sofa"), as a negated verb does, and not only the first noun.
     over_articles: bool,
     /// Whether only the end of the sentence or a "but" ends it.
@@ -114,7 +114,7 @@ impl AnswerSentence<'_> {
         for reach in (0..self.words.len()).filter_map(|at| self.trigger_at(at)) {
             for noun in self.nouns_within(reach) {
                 witnesses[noun] =
-                    if witnesses[noun] == WitnessAnswer::Denied { WitnessAnswer::Denied } else { reach.says };
+                    if witnesses[noun] == WitnessAnswer::Denied { WitnessAnswer::Denied } else { reach.witness };
             }
         }
         for noun in 0..self.nouns.len() {
@@ -143,12 +143,12 @@ impl AnswerSentence<'_> {
     fn trigger_at(&self, at: usize) -> Option<TriggerReach> {
         let word = self.word_at(at);
         let denial = |from, over_articles| {
-            Some(TriggerReach { from, says: WitnessAnswer::Denied, over_articles, to_the_end: false })
+            Some(TriggerReach { from, witness: WitnessAnswer::Denied, over_articles, to_the_end: false })
         };
         if let Some(length) = doubt_at(&self.words[at..]) {
             return Some(TriggerReach {
                 from: at + length,
-                says: WitnessAnswer::Unsure,
+                witness: WitnessAnswer::Unsure,
                 over_articles: true,
                 to_the_end: true,
             });
@@ -182,7 +182,7 @@ impl AnswerSentence<'_> {
         };
         is_hedge.then_some(TriggerReach {
             from: at + 1,
-            says: WitnessAnswer::Unsure,
+            witness: WitnessAnswer::Unsure,
             over_articles: false,
             to_the_end: false,
         })
@@ -245,12 +245,13 @@ impl AnswerSentence<'_> {
             let of_signs = word == "of" && at > 0 && SIGNS.contains(&self.word_at(at - 1));
             let elsewhere = AFTER_NOUN.contains(&word) && !of_signs && !matches!(word, "have" | "there" | "is" | "are");
             let too_far = at > reach.from + 6;
-            let hedged_verb = reach.says == WitnessAnswer::Unsure && matches!(word, "be" | "have" | "contain" | "show");
+            let hedged_verb =
+                reach.witness == WitnessAnswer::Unsure && matches!(word, "be" | "have" | "contain" | "show");
             return !hedged_verb
                 && (elsewhere
                     || too_far
                     || word == ","
-                    || (NO_OBJECT.contains(&word) && reach.says == WitnessAnswer::Denied));
+                    || (NO_OBJECT.contains(&word) && reach.witness == WitnessAnswer::Denied));
         }
         match word {
             "," => !self.goes_on(at + 1, reach),

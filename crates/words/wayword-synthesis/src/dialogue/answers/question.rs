@@ -19,7 +19,7 @@ pub(crate) enum QuestionSubject {
         /// One, or several with "or" or "and" between them.
         wanted: Vec<QuestionThing>,
         /// Whether they are alternatives ("a bed or a sofa"): a yes to them is not a yes to each.
-        or: bool,
+        are_alternatives: bool,
     },
     /// The colour of a thing, which the question takes to be there.
     Colour {
@@ -163,8 +163,8 @@ fn presence_question(words: &[&str]) -> Option<QuestionSubject> {
 }
 
 /// Makes the question for the presence of the things that [`all_wanted`] found.
-fn presence_of((wanted, or): (Vec<QuestionThing>, bool)) -> QuestionSubject {
-    QuestionSubject::Presence { wanted, or }
+fn presence_of((wanted, are_alternatives): (Vec<QuestionThing>, bool)) -> QuestionSubject {
+    QuestionSubject::Presence { wanted, are_alternatives }
 }
 
 /// The words after one of these verbs, if it comes early.
@@ -188,7 +188,7 @@ mod tests {
 
     fn presence(question: &str) -> Option<(Vec<String>, bool)> {
         match read_question(question) {
-            QuestionSubject::Presence { wanted, or } => {
+            QuestionSubject::Presence { wanted, are_alternatives: or } => {
                 Some((wanted.into_iter().map(|wanted| wanted.name).collect(), or))
             }
             _ => None,
@@ -277,7 +277,7 @@ mod tests {
         let QuestionSubject::Presence { wanted, .. } = read_question("Is there a red chair on the right?") else {
             panic!()
         };
-        assert_eq!((wanted[0].said.as_str(), wanted[0].colour.as_deref()), ("red chair", Some("red")));
+        assert_eq!((wanted[0].phrase.as_str(), wanted[0].colour.as_deref()), ("red chair", Some("red")));
         assert_eq!(wanted[0].place, Some(ViewThird::Right));
     }
 }

@@ -67,7 +67,7 @@ pub(super) struct ListingRoom {
 }
 
 /// An object may be in the room of each viewpoint that is not farther from it than this many times the nearest one.
-const ALSO_IN: f64 = 1.3;
+const ALSO_IN_ROOM_RATIO: f64 = 1.3;
 
 impl ListingObject {
     /// Whether both could be called by the same name.
@@ -189,7 +189,8 @@ impl BuildingListing {
             let how_far = |at: usize| position.map_or(0.0, |position| self.places[at].eye.distance(position));
             let nearest = seen.iter().map(|(at, _)| *at).min_by(|a, b| how_far(*a).total_cmp(&how_far(*b)));
             let Some(nearest) = nearest else { continue };
-            let near = seen.iter().map(|(at, _)| *at).filter(|at| how_far(*at) <= ALSO_IN * how_far(nearest));
+            let near =
+                seen.iter().map(|(at, _)| *at).filter(|at| how_far(*at) <= ALSO_IN_ROOM_RATIO * how_far(nearest));
             let rooms: BTreeSet<usize> = near.map(|at| self.places[at].room).collect();
             self.rooms[self.places[nearest].room].things.push(object);
             let level = self.places[nearest].level;

@@ -18,9 +18,9 @@ use properties::{TargetContext, TargetProperty};
 use wayword_core::{Frame, ObjectDescription, ObjectDistinction, PathTarget};
 
 /// Most descriptions of a target, the cheapest first; dearer ones are dropped.
-const MOST_KEPT: usize = 32;
+const MAX_DESCRIPTIONS: usize = 32;
 /// Most properties that are combined, the cheapest first; dearer ones are not tried.
-const MOST_PROPERTIES: usize = 36;
+const MAX_PROPERTIES: usize = 36;
 /// Extra cost, in words, of a superlative ("the leftmost") where more objects of the kind exist than can be seen from
 /// the end.
 const UNCLEAR_SUPERLATIVE_COST: f64 = 1.2;
@@ -37,7 +37,7 @@ pub fn describe_target(target: &mut PathTarget, last: &Frame, listing: &Building
     let context = TargetContext::new(listing, last, place, own);
     let mut properties = context.all_properties();
     properties.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    properties.truncate(MOST_PROPERTIES);
+    properties.truncate(MAX_PROPERTIES);
     let namesakes: Vec<bool> = context.rivals.iter().map(|rival| context.sight_of_object(*rival).is_some()).collect();
     target.has_namesake = namesakes.contains(&true);
     target.told_by = told_by(&context, &properties, &namesakes);
@@ -49,10 +49,11 @@ pub fn describe_target(target: &mut PathTarget, last: &Frame, listing: &Building
 /// The single properties that no namesake in view has, the cheapest first.
 fn told_by(context: &TargetContext<'_>, properties: &[TargetProperty], namesakes: &[bool]) -> Vec<ObjectDistinction> {
     let distinguishes = |property: &&TargetProperty| {
-        !property.told.is_of_room() && !property.fits.iter().zip(namesakes).any(|(fits, in_view)| *fits && *in_view)
+        !property.distinction.is_of_room()
+            && !property.fits.iter().zip(namesakes).any(|(fits, in_view)| *fits && *in_view)
     };
     let mut told: Vec<(f64, ObjectDistinction)> =
-        properties.iter().filter(distinguishes).map(|property| (property.cost, property.told.clone())).collect();
+        properties.iter().filter(distinguishes).map(|property| (property.cost, property.distinction.clone())).collect();
     if namesakes.contains(&true) {
         told.extend(context.superlatives_among(namesakes));
     }
@@ -62,14 +63,15 @@ fn told_by(context: &TargetContext<'_>, properties: &[TargetProperty], namesakes
         // No property excludes all namesakes: one that excludes most of them is better than none.
         let count = |fits: &[bool]| fits.iter().zip(namesakes).filter(|(fits, in_view)| **fits && **in_view).count();
         let all = namesakes.iter().filter(|in_view| **in_view).count();
-        let of_object = properties.iter().filter(|property| is_clear(&property.told) && count(&property.fits) < all);
-        told.extend(of_object.map(|property| (count(&property.fits) as f64, property.told.clone())));
+        let of_object =
+            properties.iter().filter(|property| is_clear(&property.distinction) && count(&property.fits) < all);
+        told.extend(of_object.map(|property| (count(&property.fits) as f64, property.distinction.clone())));
     }
     if told.is_empty() {
         // A property that all of them share still narrows down where to look.
         let is_usable = |told: &ObjectDistinction| is_clear(told) || !told.is_of_room() && context.is_outermost();
-        let of_object = properties.iter().filter(|property| is_usable(&property.told));
-        told.extend(of_object.map(|property| (property.cost, property.told.clone())));
+        let of_object = properties.iter().filter(|property| is_usable(&property.distinction));
+        told.extend(of_object.map(|property| (property.cost, property.distinction.clone())));
     }
     told.sort_by(|a, b| a.0.total_cmp(&b.0));
     told.into_iter().map(|(_, told)| told).collect()
@@ -149,26 +151,27 @@ fn push_candidate(
 ) {
     let cost = by.iter().map(|property| property.cost).sum::<f64>() + superlative.as_ref().map_or(0.0, |of| of.0);
     // Two properties of the object and two of its room are enough.
-    let of_room = by.iter().filter(|property| property.told.is_of_room()).count();
+    let of_room = by.iter().filter(|property| property.distinction.is_of_room()).count();
     if of_room > 2 || by.len() + usize::from(superlative.is_some()) - of_room > 2 {
         return;
     }
     // No thing is mentioned twice in a description.
-    let names = |at: usize| by[at].told.named_things();
+    let names = |at: usize| by[at].distinction.named_things();
     let repeats = (1..by.len()).any(|at| names(at).any(|name| (0..at).any(|before| names(before).any(|o| o == name))));
     if repeats {
         return;
     }
-    let of_object =
-        |told: &&&TargetProperty| !told.told.is_of_room() && !matches!(told.told, ObjectDistinction::Colour { .. });
+    let of_object = |told: &&&TargetProperty| {
+        !told.distinction.is_of_room() && !matches!(told.distinction, ObjectDistinction::Colour { .. })
+    };
     let more = by.iter().filter(of_object).count() + usize::from(superlative.is_some());
-    let has_side = by.iter().any(|property| matches!(property.told, ObjectDistinction::OnSide { .. }));
+    let has_side = by.iter().any(|property| matches!(property.distinction, ObjectDistinction::OnSide { .. }));
     // "The lamp by the sofa on the left": it is unclear which of the two is on the left.
     if has_side && more > 1 {
         return;
     }
     let cost = cost + if more > 1 { SECOND_PROPERTY_COST } else { 0.0 };
-    let told = by.iter().map(|property| property.told.clone()).chain(superlative.map(|of| of.1));
+    let told = by.iter().map(|property| property.distinction.clone()).chain(superlative.map(|of| of.1));
     found.push(DescriptionCandidate { cost, description: ObjectDescription { by: told.collect(), leaves: rest + 1 } });
 }
 
@@ -187,6 +190,6 @@ fn best_descriptions(mut found: Vec<DescriptionCandidate>) -> Vec<ObjectDescript
         kept.push(candidate);
     }
     kept.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    kept.truncate(MOST_KEPT);
+    kept.truncate(MAX_DESCRIPTIONS);
     kept.into_iter().map(|found| found.description).collect()
 }

@@ -10,7 +10,7 @@ use wayword_language::lexicon::{ThingClass, room_name, same_room};
 #[derive(Debug, Clone)]
 pub(super) struct TargetProperty {
     /// The property as a description mentions it.
-    pub(super) told: ObjectDistinction,
+    pub(super) distinction: ObjectDistinction,
     /// For each rival, in the order of [`TargetContext::rivals`], whether the property fits it too.
     pub(super) fits: Vec<bool>,
     /// The cost of mentioning it, roughly its words.
@@ -33,7 +33,7 @@ pub(super) struct TargetContext<'a> {
 /// Greatest distance at which an object in the same room counts as visible, metres.
 const IN_SIGHT_M: f64 = 8.0;
 /// A thing on a wall counts as hanging if it is less than this far below the eye, metres.
-const HIGH_M: f64 = 0.4;
+const MAX_BELOW_EYE_M: f64 = 0.4;
 
 impl<'a> TargetContext<'a> {
     pub(super) fn new(listing: &'a BuildingListing, last: &Frame, place: &'a ListingViewpoint, target: usize) -> Self {
@@ -85,7 +85,7 @@ impl<'a> TargetContext<'a> {
         cost: f64,
         fits: impl Fn(usize) -> bool,
     ) -> TargetProperty {
-        TargetProperty { told, cost, fits: self.rivals.iter().map(|rival| fits(*rival)).collect() }
+        TargetProperty { distinction: told, cost, fits: self.rivals.iter().map(|rival| fits(*rival)).collect() }
     }
 
     /// All properties of the target that do not depend on the rest of the description, as superlatives do.
@@ -119,7 +119,7 @@ impl<'a> TargetContext<'a> {
                 && aside < 0.7
                 && (-0.2..0.6).contains(&(here.z - there.z))
         };
-        let is_high = here.z > self.place.eye.z - HIGH_M;
+        let is_high = here.z > self.place.eye.z - MAX_BELOW_EYE_M;
         matches!(own.class, ThingClass::WallArt | ThingClass::Glass)
             && own.kind() != "window"
             && is_high

@@ -17,13 +17,13 @@ const NOT_NEAR_M: f64 = 1.8;
 /// The target has to be nearer than this share of the distance of every rival.
 const CLEARLY_NEARER_SHARE: f64 = 0.7;
 /// The target also has to be nearer than every rival by this, metres.
-const CLEARLY_M: f64 = 0.3;
+const CLEARLY_NEARER_M: f64 = 0.3;
 /// Extra cost of a relation to a small thing, in words.
 const SMALL_NEIGHBOUR_COST: f64 = 0.9;
 /// Distances are compared after rounding to this many units per metre, a tenth of a millimetre each.
-const PER_M: f64 = 10_000.0;
+const ROUNDING_STEPS_PER_M: f64 = 10_000.0;
 /// Most neighbours of the target that are considered, the nearest first.
-const MOST_NEIGHBOURS: usize = 8;
+const MAX_NEIGHBOURS: usize = 8;
 
 impl<'a> TargetContext<'a> {
     /// The things near the target that a walker at the end can see too, the nearest first.
@@ -38,8 +38,8 @@ impl<'a> TargetContext<'a> {
             seen.filter(tells).filter_map(|at| Some((at, centre_distance_m(own, self.object_at(at))?))).collect();
         near.retain(|(_, apart_m)| *apart_m <= NEAR_M);
         // At equal distance the order of ids decides, not rounding errors of the positions.
-        near.sort_by_key(|(_, apart_m)| (apart_m * PER_M).round() as i64);
-        near.truncate(MOST_NEIGHBOURS);
+        near.sort_by_key(|(_, apart_m)| (apart_m * ROUNDING_STEPS_PER_M).round() as i64);
+        near.truncate(MAX_NEIGHBOURS);
         near
     }
 
@@ -49,7 +49,9 @@ impl<'a> TargetContext<'a> {
         let mut all: Vec<TargetProperty> = Vec::new();
         for (at, apart_m) in &neighbours {
             let name = &self.object_at(*at).name;
-            if all.iter().any(|property| matches!(&property.told, ObjectDistinction::Related { to, .. } if to == name))
+            if all
+                .iter()
+                .any(|property| matches!(&property.distinction, ObjectDistinction::Related { to, .. } if to == name))
             {
                 continue;
             }
@@ -89,7 +91,7 @@ impl<'a> TargetContext<'a> {
             let told = ObjectDistinction::NextTo { neighbour: to.name.clone() };
             let may_be = |rival: usize| {
                 let other_m = centre_distance_m(self.object_at(rival), to).unwrap_or(0.0);
-                let is_elsewhere = other_m > (apart_m / CLEARLY_NEARER_SHARE).max(apart_m + CLEARLY_M);
+                let is_elsewhere = other_m > (apart_m / CLEARLY_NEARER_SHARE).max(apart_m + CLEARLY_NEARER_M);
                 let own_one = alike.iter().filter(|other| other.position != to.position);
                 let has_own = own_one
                     .filter_map(|other| centre_distance_m(self.object_at(rival), other))

@@ -4,15 +4,15 @@ use super::properties::TargetContext;
 use wayword_core::{ObjectDistinction, Side};
 
 /// Least angle between the target and the next object in a row, degrees; closer ones make the row unclear.
-const APART_DEG: f64 = 5.0;
+const MIN_APART_DEG: f64 = 5.0;
 /// The widest row, degrees. If things lie all around the walker, none of them is the leftmost.
-const WIDEST_DEG: f64 = 150.0;
+const MAX_ROW_WIDTH_DEG: f64 = 150.0;
 /// The nearest object has to be nearer than this share of the distance of the next.
 const CLEARLY_NEAREST_SHARE: f64 = 0.75;
 /// The highest object has to be higher than the next by this, metres.
 const HIGHER_M: f64 = 0.3;
 /// The longest row in which people count ("the third from the left"), objects.
-const LONGEST_ROW: usize = 5;
+const MAX_COUNTED_ROW: usize = 5;
 
 impl TargetContext<'_> {
     /// The superlatives that hold clearly of the target among itself and the given rivals, each with its cost.
@@ -34,8 +34,8 @@ impl TargetContext<'_> {
         let all = || turns.iter().copied().chain([own]);
         let (first, last) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
         // A row behind the walker's back has no clear left end.
-        let is_clear = last - first <= WIDEST_DEG && first > -165.0 && last < 165.0;
-        if !is_clear || turns.iter().any(|turn| (turn - own).abs() < APART_DEG) {
+        let is_clear = last - first <= MAX_ROW_WIDTH_DEG && first > -165.0 && last < 165.0;
+        if !is_clear || turns.iter().any(|turn| (turn - own).abs() < MIN_APART_DEG) {
             return None;
         }
         let left = turns.iter().filter(|turn| **turn < own).count();
@@ -43,7 +43,7 @@ impl TargetContext<'_> {
         let (place, from) = if left <= right { (left + 1, Side::Left) } else { (right + 1, Side::Right) };
         let cost = match (place, of) {
             (1, _) => 1.7,
-            _ if of > LONGEST_ROW => return None,
+            _ if of > MAX_COUNTED_ROW => return None,
             _ => 2.3,
         };
         Some((cost, ObjectDistinction::InRow { place, of, from }))

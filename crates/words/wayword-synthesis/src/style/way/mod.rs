@@ -58,12 +58,12 @@ static ALLOWED_SHAPE_WORDS: LazyLock<BTreeSet<&'static str>> =
     LazyLock::new(|| BUILT_IN.words.split_whitespace().collect());
 
 /// A shape is used if at least this many texts have it.
-const FEWEST_TEXTS: f64 = 3.0;
+const MIN_SHAPE_TEXTS: f64 = 3.0;
 /// With this many clauses of one kind, or the square of this number of all kinds, the measured counts are preferred to
 /// the built-in ones.
 const ENOUGH_CLAUSES: f64 = 40.0;
 /// A name belongs to a room or thing if at least this share of the mentions of the room or thing use it.
-const LEAST_SHARE: f64 = 0.04;
+const MIN_NAME_SHARE: f64 = 0.04;
 
 impl WayWording {
     /// Measures texts with their readings. Where their clauses show too little, the built-in constructions fill in.
@@ -120,7 +120,7 @@ impl WayWording {
     fn keep_common(&mut self) {
         for (kind, shapes) in &mut self.shapes {
             shapes.retain(|shape, texts| {
-                *texts >= FEWEST_TEXTS && shapes::reads_the_same(*kind, shape, &ALLOWED_SHAPE_WORDS)
+                *texts >= MIN_SHAPE_TEXTS && shapes::reads_the_same(*kind, shape, &ALLOWED_SHAPE_WORDS)
             });
         }
         self.shapes.retain(|_, shapes| !shapes.is_empty());
@@ -128,7 +128,10 @@ impl WayWording {
             let total: f64 = names.values().sum();
             names.retain(|name, texts| {
                 let is_plain = name == usual || !name.ends_with(&format!(" {usual}"));
-                *texts >= FEWEST_TEXTS && *texts >= total * LEAST_SHARE && is_plain && normalise_name(name) == *name
+                *texts >= MIN_SHAPE_TEXTS
+                    && *texts >= total * MIN_NAME_SHARE
+                    && is_plain
+                    && normalise_name(name) == *name
             });
         }
         self.rooms.retain(|_, names| !names.is_empty());

@@ -9,7 +9,7 @@ use wayword_language::{
 };
 
 /// Most words of a shape; a clause with more has no shape.
-const MOST_WORDS: usize = 13;
+const MAX_SHAPE_WORDS: usize = 13;
 
 /// A clause of a text, with its joint to the clause before and, if it has one, its shape.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -141,7 +141,7 @@ fn words_with_slots(
     kind: ClauseKind,
     allowed: &BTreeSet<&str>,
 ) -> Option<String> {
-    if words.len() > MOST_WORDS {
+    if words.len() > MAX_SHAPE_WORDS {
         return None;
     }
     let mut shaped: Vec<&str> = Vec::new();

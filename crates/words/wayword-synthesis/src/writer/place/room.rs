@@ -26,7 +26,7 @@ pub(super) struct GoalRoom<'a> {
 
 /// How often a text names the storey, relative to the style's average: where the storey changes along the path, where
 /// the building has several storeys, and where it has one.
-const BY_NEED: [f64; 3] = [1.5, 0.75, 0.2];
+const STOREY_SHARE_FACTORS: [f64; 3] = [1.5, 0.75, 0.2];
 
 impl<'a> GoalRoom<'a> {
     pub(super) fn new(brief: &WritingBrief<'a>, room: &'a str) -> Self {
@@ -34,10 +34,10 @@ impl<'a> GoalRoom<'a> {
         let levels: BTreeSet<u32> = path.frames.iter().filter_map(|frame| frame.level).collect();
         let storeys = path.target.as_ref().map_or(0, |target| target.storeys);
         let need = match storeys {
-            _ if levels.len() > 1 => BY_NEED[0],
+            _ if levels.len() > 1 => STOREY_SHARE_FACTORS[0],
             0 => 1.0,
-            1 => BY_NEED[2],
-            _ => BY_NEED[1],
+            1 => STOREY_SHARE_FACTORS[2],
+            _ => STOREY_SHARE_FACTORS[1],
         };
         let wording = &brief.profile.wording;
         let names_level = (wording.share_of_texts("level") * need).clamp(0.0, 0.97);

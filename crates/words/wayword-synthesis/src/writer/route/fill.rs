@@ -48,9 +48,9 @@ const FILLER_SHARES: [(f64, FillerKind); 8] = [
 ];
 
 /// Share of the added places for things that accept poor landmarks too.
-const LESS_SALIENT: f64 = 0.25;
+const POOR_LANDMARK_SHARE: f64 = 0.25;
 /// Least number of places for things before the end of a text.
-const LEAST_OFFERS: usize = 2;
+const MIN_OFFERS: usize = 2;
 
 /// Adds one detail; `false` if there is none to add.
 pub(in crate::writer) fn fill_plan(clauses: &mut Vec<WayClause>, brief: &WritingBrief<'_>, dice: TextDice) -> bool {
@@ -80,13 +80,13 @@ pub(in crate::writer) fn fill_plan(clauses: &mut Vec<WayClause>, brief: &Writing
 pub(in crate::writer) fn offer_places(clauses: &mut Vec<WayClause>, brief: &WritingBrief<'_>, dice: TextDice) {
     let offers = |clauses: &[WayClause]| clauses.iter().rev().skip(1).filter(|clause| clause.offer.is_some()).count();
     let mut times = 0;
-    while offers(clauses) < LEAST_OFFERS {
+    while offers(clauses) < MIN_OFFERS {
         if !(PlanFiller { clauses, brief, rng: dice.other_draws(times).named_rng(&["one thing"]) }).add_landmark() {
             break;
         }
         times += 1;
     }
-    for clause in clauses.iter_mut().rev().skip(1).filter(|clause| clause.offer.is_some()).take(LEAST_OFFERS) {
+    for clause in clauses.iter_mut().rev().skip(1).filter(|clause| clause.offer.is_some()).take(MIN_OFFERS) {
         clause.weight = clause.weight.max(MAIN_WEIGHT);
     }
     for offer in clauses.iter_mut().filter_map(|clause| clause.offer.as_mut()) {
@@ -111,7 +111,7 @@ impl PlanFiller<'_> {
     /// A place for a thing between the ends.
     fn add_landmark(&mut self) -> bool {
         let Some(hop) = free_hops(self.clauses, self.brief.memory).choose(&mut self.rng).copied() else { return false };
-        let is_faint = self.rng.random_bool(LESS_SALIENT);
+        let is_faint = self.rng.random_bool(POOR_LANDMARK_SHARE);
         let things = if is_faint { OfferThings::Faint } else { OfferThings::Fair };
         insert_offer(self.clauses, hop, ThingOffer::new(OfferRole::Onward, hop + 1).with_things(things));
         true

@@ -57,15 +57,15 @@ const SIDE_WEIGHT: u8 = 2;
 const FILLER_WEIGHT: u8 = 1;
 
 /// Least salience of a landmark on the way.
-const WALKED_PAST: u8 = 2;
+const MIN_PASSED_SALIENCE: u8 = 2;
 /// Least salience of a landmark that the walk stops at.
-const STOPPED_AT: u8 = 1;
+const MIN_STOP_SALIENCE: u8 = 1;
 /// A hop longer than this is worth a clause, metres.
-pub(super) const LONG_M: f64 = 3.0;
+pub(super) const LONG_HOP_M: f64 = 3.0;
 /// On a way without turns and doors, one clause is possible for each stretch of this length, metres.
 const STRETCH_M: f64 = 2.0;
 /// The walk can stop in a doorway if the hop through it is at most this long, metres.
-const DOORWAY_M: f64 = 2.2;
+const MAX_DOORWAY_HOP_M: f64 = 2.2;
 
 impl WayClause {
     fn new(kind: ClauseKind, at: usize, weight: u8) -> Self {

@@ -1,6 +1,6 @@
 //! Offers: places of a plan where a thing may be named, if there is one.
 
-use super::{STOPPED_AT, WALKED_PAST, WayClause};
+use super::{MIN_PASSED_SALIENCE, MIN_STOP_SALIENCE, WayClause};
 use crate::{
     style::way::ClauseKind,
     writer::landmarks::{LandmarkSearch, LandmarkSpot, LandmarkUse},
@@ -72,21 +72,24 @@ impl ThingOffer {
 
     /// The spot with the searches for its thing.
     pub(super) fn landmark_spot(&self) -> LandmarkSpot {
-        let at = |frame, salience, to| LandmarkSearch { frame, salience, to };
+        let at = |frame, salience, to| LandmarkSearch { frame, salience, purpose: to };
         let frame = self.frame;
         let mut searches = match self.role {
-            OfferRole::Turn | OfferRole::EnterWith => vec![at(frame, WALKED_PAST, LandmarkUse::Here)],
-            OfferRole::PassEnter | OfferRole::Onward => vec![at(frame, WALKED_PAST, LandmarkUse::Onward)],
+            OfferRole::Turn | OfferRole::EnterWith => vec![at(frame, MIN_PASSED_SALIENCE, LandmarkUse::Here)],
+            OfferRole::PassEnter | OfferRole::Onward => vec![at(frame, MIN_PASSED_SALIENCE, LandmarkUse::Onward)],
             OfferRole::Stop(_) => {
-                vec![at(frame, WALKED_PAST, LandmarkUse::Stop), at(frame, STOPPED_AT, LandmarkUse::Stop)]
+                vec![at(frame, MIN_PASSED_SALIENCE, LandmarkUse::Stop), at(frame, MIN_STOP_SALIENCE, LandmarkUse::Stop)]
             }
         };
         if self.role == OfferRole::Onward && self.things != OfferThings::Fair {
-            searches.push(at(frame, STOPPED_AT, LandmarkUse::Onward));
+            searches.push(at(frame, MIN_STOP_SALIENCE, LandmarkUse::Onward));
         }
         if self.role == OfferRole::Onward && self.things == OfferThings::Any {
             let before = frame.saturating_sub(1);
-            searches.extend([at(before, WALKED_PAST, LandmarkUse::Onward), at(frame, STOPPED_AT, LandmarkUse::Beside)]);
+            searches.extend([
+                at(before, MIN_PASSED_SALIENCE, LandmarkUse::Onward),
+                at(frame, MIN_STOP_SALIENCE, LandmarkUse::Beside),
+            ]);
         }
         LandmarkSpot { searches, pair: self.pair, is_spare: self.stands_in_for.is_some() }
     }

@@ -1,7 +1,7 @@
 //! Plans hops that go straight on: past things, and along hallways.
 
 use super::{
-    FILLER_WEIGHT, LONG_M, MAIN_WEIGHT, OfferRole, SIDE_WEIGHT, ThingOffer, WayClause, WayPlanner, usable_room,
+    FILLER_WEIGHT, LONG_HOP_M, MAIN_WEIGHT, OfferRole, SIDE_WEIGHT, ThingOffer, WayClause, WayPlanner, usable_room,
 };
 use crate::style::way::{ClauseKind, WayWording};
 use rand::Rng;
@@ -27,11 +27,11 @@ impl WayPlanner<'_> {
         let hall = room.filter(|room| room_name(room) == Some("hallway"));
         if let Some(hall) = hall.filter(|_| !self.along && self.rng.random_bool(0.5)) {
             let left = self.memory.stay_at(at + 1).map_or(at, |stay| stay.left);
-            let weight = if self.brief.walk.walked_m(at, left) >= LONG_M { MAIN_WEIGHT } else { SIDE_WEIGHT };
+            let weight = if self.brief.walk.walked_m(at, left) >= LONG_HOP_M { MAIN_WEIGHT } else { SIDE_WEIGHT };
             return self.go_along(at, &hall, weight);
         }
         let left = self.memory.stay_at(at).map_or(at + 1, |stay| stay.left);
-        let is_long = self.brief.walk.moves.is_empty() || self.brief.walk.walked_m(at, left) >= LONG_M;
+        let is_long = self.brief.walk.moves.is_empty() || self.brief.walk.walked_m(at, left) >= LONG_HOP_M;
         let goes_straight = is_long && !self.along && self.rng.random_bool(0.25);
         if offers {
             let offer = ThingOffer { or_straight: goes_straight, ..ThingOffer::new(OfferRole::Onward, at + 1) };

@@ -11,25 +11,25 @@ use wayword_core::{Side, motion};
 use wayword_language::lexicon::{ThingClass, find_thing, room_name};
 
 /// The start room counts as left soon if the path leaves it after at most this many hops.
-const LEFT_SOON: usize = 2;
+const MAX_SOON_HOPS: usize = 2;
 /// Share of texts that begin with leaving the start room, where the path leaves it soon.
-const LEFT_AT_ONCE: f64 = 0.6;
+const LEAVE_AT_ONCE_SHARE: f64 = 0.6;
 
 /// Greatest distance from a door at which the walker counts as being in it, metres.
-const IN_DOOR_M: f64 = 0.5;
+const MAX_DOOR_DISTANCE_M: f64 = 0.5;
 
 impl WayPlanner<'_> {
     /// Begins the text with leaving the room of the start, as many texts do, without describing the first turn. Returns
     /// the frame where the plan goes on.
     pub(super) fn leave_at_once(&mut self) -> Option<usize> {
-        let opening = self.memory.openings.first().filter(|opening| opening.before <= LEFT_SOON)?;
+        let opening = self.memory.openings.first().filter(|opening| opening.before <= MAX_SOON_HOPS)?;
         let mut bends = self.memory.bends.iter().filter(|bend| bend.first > 0);
         if bends.any(|bend| bend.first <= opening.before && !self.is_left_out(*bend)) {
             return None;
         }
         let from = usable_room(&opening.from).filter(|from| self.here.as_ref() == Some(from))?;
         let is_hall = room_name(&from) == Some("hallway");
-        if is_hall || !self.rng.random_bool(LEFT_AT_ONCE) {
+        if is_hall || !self.rng.random_bool(LEAVE_AT_ONCE_SHARE) {
             return None;
         }
         let to = usable_room(&opening.to);
@@ -144,7 +144,7 @@ impl WayPlanner<'_> {
     fn stands_in_a_door(&self, at: usize) -> bool {
         let is_door = |name: &str| find_thing(name).is_some_and(|thing| thing.class == ThingClass::Door);
         let doors = self.memory.things.iter().filter(|seen| seen.position.is_some() && is_door(&seen.name));
-        doors.filter_map(|door| self.memory.distance_m(door, at)).any(|distance_m| distance_m <= IN_DOOR_M)
+        doors.filter_map(|door| self.memory.distance_m(door, at)).any(|distance_m| distance_m <= MAX_DOOR_DISTANCE_M)
     }
 
     /// Whether a hallway ends where the walk leaves it: the walk went along the hallway, and straight on into the room

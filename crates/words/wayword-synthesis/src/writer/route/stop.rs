@@ -1,12 +1,12 @@
 //! Plans the last clause: where the walk stops.
 
-use super::{DOORWAY_M, KEPT_WEIGHT, OfferRole, ThingOffer, WayClause, WayPlanner, usable_room};
+use super::{KEPT_WEIGHT, MAX_DOORWAY_HOP_M, OfferRole, ThingOffer, WayClause, WayPlanner, usable_room};
 use crate::{style::way::ClauseKind, writer::phrases::draw_option};
 use wayword_core::ClimbDirection;
 use wayword_language::lexicon::{names_agree, room_name};
 
 /// Factor on the weight of "stop in the room" where the text has just named the room.
-const NAMED_AGAIN: f64 = 0.1;
+const NAMED_AGAIN_FACTOR: f64 = 0.1;
 
 impl WayPlanner<'_> {
     /// The end: at a thing within reach, in the room, in the doorway, or at the stairs.
@@ -35,7 +35,7 @@ impl WayPlanner<'_> {
         if room.is_some() {
             kinds.push((self.kind_count(ClauseKind::StopAtIn) * 3.0, ClauseKind::StopAtIn));
         }
-        if door.is_some() && last_hop_m <= DOORWAY_M {
+        if door.is_some() && last_hop_m <= MAX_DOORWAY_HOP_M {
             kinds.push((self.kind_count(ClauseKind::StopInDoorway) * 1.5, ClauseKind::StopInDoorway));
             if room.is_some() {
                 kinds.push((self.kind_count(ClauseKind::StopInDoorwayOf) * 2.0, ClauseKind::StopInDoorwayOf));
@@ -53,7 +53,7 @@ impl WayPlanner<'_> {
             kinds.push((self.kind_count(ClauseKind::Stop) * if has_place { 0.5 } else { 0.02 }, ClauseKind::Stop));
             if room.is_some() {
                 // A text that has just sent the walker into it does not name it again.
-                kinds.push((self.kind_count(ClauseKind::StopIn) * in_room * NAMED_AGAIN, ClauseKind::StopIn));
+                kinds.push((self.kind_count(ClauseKind::StopIn) * in_room * NAMED_AGAIN_FACTOR, ClauseKind::StopIn));
             }
         }
         if misleads && room.is_some() {

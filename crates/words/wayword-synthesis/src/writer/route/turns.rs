@@ -1,6 +1,6 @@
 //! Plans turns within a room, and the turn at the start.
 
-use super::{LONG_M, MAIN_WEIGHT, OfferRole, ThingOffer, WayClause, WayPlanner, usable_room};
+use super::{LONG_HOP_M, MAIN_WEIGHT, OfferRole, ThingOffer, WayClause, WayPlanner, usable_room};
 use crate::{style::way::ClauseKind, writer::phrases::draw_option};
 use rand::Rng;
 use wayword_checks::memory::WalkBend;
@@ -76,7 +76,7 @@ impl WayPlanner<'_> {
         let stay = self.memory.stay_at(at)?;
         let told = self.clauses.last().map_or(0, |before| before.at + 1);
         let from = stay.entered.max(told);
-        (!self.along && self.brief.walk.walked_m(from, at) >= LONG_M).then_some((from, stay.room.as_str()))
+        (!self.along && self.brief.walk.walked_m(from, at) >= LONG_HOP_M).then_some((from, stay.room.as_str()))
     }
 
     /// Whether a turn that gets no thing needs a "go straight" before it.
@@ -115,7 +115,7 @@ impl WayPlanner<'_> {
     /// Whether a turn is left out: people do not mention small turns that the way requires anyway. All candidates of a
     /// text leave out the same ones, and the way back the same ones as the way there.
     pub(super) fn is_left_out(&self, bend: WalkBend) -> bool {
-        if bend.turn_rad.to_degrees().abs() >= HARDLY_DEG {
+        if bend.turn_rad.to_degrees().abs() >= SMALL_TURN_DEG {
             return false;
         }
         let brief = self.brief;
@@ -124,11 +124,11 @@ impl WayPlanner<'_> {
         let place = on_the_way.iter().position(|last| *last == bend.last);
         let from_an_end = place.map_or(0, |place| 1 + place.min(on_the_way.len() - 1 - place));
         let names = ["left out", &brief.style.name, &brief.walk.path.id, &from_an_end.to_string()];
-        seeded_rng(brief.seed, &names).random_bool(LEFT_OUT)
+        seeded_rng(brief.seed, &names).random_bool(LEFT_OUT_SHARE)
     }
 }
 
 /// Turns of a smaller angle may be left out, degrees.
-const HARDLY_DEG: f64 = 40.0;
+const SMALL_TURN_DEG: f64 = 40.0;
 /// Share of these small turns that is left out.
-const LEFT_OUT: f64 = 0.6;
+const LEFT_OUT_SHARE: f64 = 0.6;

@@ -7,11 +7,11 @@ use wayword_core::DVec3;
 pub(super) const HALLWAY_NAME: &str = "hallway";
 
 /// Greatest width of a hallway, metres.
-const BROAD_M: f64 = 2.2;
+const MAX_WIDTH_M: f64 = 2.2;
 /// Least length of a hallway, metres.
-const LONG_M: f64 = 3.0;
+const MIN_LENGTH_M: f64 = 3.0;
 /// Greatest length of a hallway, metres. A longer one is hardly a single hallway, and would take long to examine.
-const LONGEST_M: f64 = 40.0;
+const MAX_LENGTH_M: f64 = 40.0;
 /// Least length as a multiple of the width.
 const MIN_LENGTH_FACTOR: f64 = 2.0;
 /// Least number of rooms to which a hallway leads.
@@ -19,21 +19,21 @@ const MIN_ADJACENT_ROOMS: usize = 3;
 /// Width of a door or doorway, metres.
 const DOOR_M: std::ops::RangeInclusive<f64> = 0.4..=1.8;
 /// Two floors that touch along more than this are parts of one open room, metres, although each part has its own number.
-const OPEN_M: f64 = 2.6;
+const MAX_OPENING_M: f64 = 2.6;
 /// Most rooms that are examined; the others are no hallways. With more than this many triangles near one place, no room of the
 /// scene is one. Real scenes have fewer of both, and more would take long.
-const MOST_ROOMS: usize = 64;
-const MOST_NEAR: usize = 1000;
+const MAX_EXAMINED_ROOMS: usize = 64;
+const MAX_TRIANGLES_PER_CELL: usize = 1000;
 /// Distance of the places at which floors are looked up, metres: less than the thickness of a wall.
 const STEP_M: f64 = 0.05;
 
 impl NumberedRooms {
     /// The hallways among `silent`, the rooms in which no thing suggests another name.
     pub(super) fn find_hallways(&self, silent: &[u32], things: &[SemanticThing]) -> Vec<u32> {
-        if self.shell.as_ref().is_none_or(|shell| shell.most_near() > MOST_NEAR) {
+        if self.shell.as_ref().is_none_or(|shell| shell.most_near() > MAX_TRIANGLES_PER_CELL) {
             return Vec::new();
         }
-        let examined = silent.iter().copied().take(MOST_ROOMS);
+        let examined = silent.iter().copied().take(MAX_EXAMINED_ROOMS);
         examined.filter(|room| self.is_hallway(*room, things)).collect()
     }
 
@@ -47,8 +47,8 @@ impl NumberedRooms {
         let (Some((low, high)), Some(_)) = (bounds(ShellPart::Floor), bounds(ShellPart::Ceiling)) else { return false };
         let size = high - low;
         let (broad_m, long_m) = (size.x.min(size.y), size.x.max(size.y));
-        let is_long = (LONG_M..=LONGEST_M).contains(&long_m) && long_m >= MIN_LENGTH_FACTOR * broad_m;
-        broad_m <= BROAD_M && is_long && size.z <= LEVEL_M && self.leads_on(room, low, high)
+        let is_long = (MIN_LENGTH_M..=MAX_LENGTH_M).contains(&long_m) && long_m >= MIN_LENGTH_FACTOR * broad_m;
+        broad_m <= MAX_WIDTH_M && is_long && size.z <= LEVEL_M && self.leads_on(room, low, high)
     }
 
     /// Whether a room has doors to enough other rooms, one of which is certainly indoors, and is not a part of an open room.
@@ -60,7 +60,7 @@ impl NumberedRooms {
         let is_indoors = |room: &u32| self.names.get(room) == Some(&"bathroom") || has_stairs(room);
         doors.len() >= MIN_ADJACENT_ROOMS
             && doors.iter().any(is_indoors)
-            && touching_m.values().all(|metres| *metres <= OPEN_M)
+            && touching_m.values().all(|metres| *metres <= MAX_OPENING_M)
     }
 
     /// Along how many metres the floors of other rooms touch a room's floor. Floors are looked up on a grid that reaches a little

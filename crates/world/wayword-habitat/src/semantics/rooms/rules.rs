@@ -53,7 +53,7 @@ struct RoomRule {
     /// Each group decides if all its things are in the room.
     decides: Vec<Vec<&'static str>>,
     /// Things that only suggest the room.
-    speaks: Vec<&'static str>,
+    suggests: Vec<&'static str>,
     /// Other rooms: things that suggest them may lie in this room too.
     also: Vec<&'static str>,
 }
@@ -82,7 +82,7 @@ impl RoomRules {
                     [room, decides, suggests, also] => rules.rooms.push(RoomRule {
                         room: room.trim(),
                         decides: list_entries(decides).map(|all| all.split('+').map(str::trim).collect()).collect(),
-                        speaks: list_entries(suggests).collect(),
+                        suggests: list_entries(suggests).collect(),
                         also: list_entries(also).collect(),
                     }),
                     _ => rules.odd.push(line),
@@ -98,7 +98,7 @@ impl RoomRules {
         let names: BTreeSet<&str> = names.iter().map(|name| self.same.get(name).copied().unwrap_or(name)).collect();
         let is_decided =
             |rule: &&RoomRule| rule.decides.iter().any(|all| all.iter().all(|thing| names.contains(thing)));
-        let suggests = |rule: &&RoomRule| is_decided(rule) || rule.speaks.iter().any(|thing| names.contains(thing));
+        let suggests = |rule: &&RoomRule| is_decided(rule) || rule.suggests.iter().any(|thing| names.contains(thing));
         let suggested: Vec<&RoomRule> = self.rooms.iter().filter(suggests).collect();
         if suggested.is_empty() {
             return RoomVerdict::Silent;
@@ -134,7 +134,7 @@ mod tests {
                 assert!(ROOM_RULES.rooms.iter().any(|rule| rule.room == *other), "{other} has no line");
             }
             // The reader replaces synonyms, so a rule that names one would never match.
-            for thing in rule.decides.iter().flatten().chain(&rule.speaks) {
+            for thing in rule.decides.iter().flatten().chain(&rule.suggests) {
                 assert!(!ROOM_RULES.same.contains_key(thing), "{thing} is another name of {}", ROOM_RULES.same[thing]);
             }
         }

@@ -11,7 +11,7 @@ use wayword_house::ObjectRole;
 use wayword_render::PinholeCamera;
 
 /// The first id of a room: above the ids of objects.
-const FIRST_ROOM: usize = 100_000;
+const FIRST_ROOM_ID: usize = 100_000;
 
 /// A generated house that is presented as a home.
 #[derive(Debug)]
@@ -43,7 +43,7 @@ impl GeneratedHome {
     /// Rooms and objects, and which object is in which room.
     pub(super) fn graph_json(&self) -> Value {
         let house = &self.world.house_scene().house;
-        let room_id = |room: usize| (FIRST_ROOM + room) as u64;
+        let room_id = |room: usize| (FIRST_ROOM_ID + room) as u64;
         let mut nodes: Vec<Value> = house
             .rooms
             .iter()

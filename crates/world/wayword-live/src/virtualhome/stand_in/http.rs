@@ -8,9 +8,9 @@ use std::{
 };
 
 /// Longest head of a request, bytes; a longer one counts as broken off.
-const MAX_HEAD: u64 = 16 << 10;
+const MAX_HEAD_BYTES: u64 = 16 << 10;
 /// Longest body of a request, bytes; the rest is not read.
-const MAX_BODY: u64 = 16 << 20;
+const MAX_BODY_BYTES: u64 = 16 << 20;
 
 /// Reads a request, sends the answer, and closes the connection.
 pub(super) fn serve_request(stream: TcpStream, answer: impl FnOnce(&Value) -> Value) -> io::Result<()> {
@@ -18,7 +18,7 @@ pub(super) fn serve_request(stream: TcpStream, answer: impl FnOnce(&Value) -> Va
     stream.set_read_timeout(Some(Duration::from_secs(10)))?;
     stream.set_write_timeout(Some(Duration::from_secs(10)))?;
     let mut reader = BufReader::new(stream);
-    let mut head = (&mut reader).take(MAX_HEAD);
+    let mut head = (&mut reader).take(MAX_HEAD_BYTES);
     let mut length = 0;
     loop {
         let mut line = String::new();
@@ -31,7 +31,7 @@ pub(super) fn serve_request(stream: TcpStream, answer: impl FnOnce(&Value) -> Va
         }
     }
     let mut body = Vec::new();
-    reader.by_ref().take(length.min(MAX_BODY)).read_to_end(&mut body)?;
+    reader.by_ref().take(length.min(MAX_BODY_BYTES)).read_to_end(&mut body)?;
     let (status, content) = match serde_json::from_slice(&body) {
         Ok(request) => ("200 OK", answer(&request).to_string()),
         Err(_) => ("400 Bad Request", r#"{"message":"no JSON"}"#.to_owned()),

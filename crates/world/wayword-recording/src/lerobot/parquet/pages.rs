@@ -27,13 +27,13 @@ const HEADER_BYTES: [u64; 2] = [1 << 9, 1 << 20];
 /// Any page may decompress to this many bytes: writers close pages at 1 MiB.
 const USUAL_BYTES: usize = 8 << 20;
 /// A larger page may decompress to this many times its compressed size.
-const MAX_RATIO: usize = 256;
+const MAX_COMPRESSION_RATIO: usize = 256;
 /// Limits for the values that the pages of a few rows may announce: in any file, per byte of the file, and in all. A
 /// page of equal values takes a few bytes for any number of them, but a file also has columns with different values.
 /// Each value takes up to 12 bytes of memory.
 const USUAL_VALUES: u64 = 16 << 20;
 const MAX_VALUES_PER_BYTE: u64 = 64;
-const MOST_VALUES: u64 = 64 << 20;
+const MAX_VALUES: u64 = 64 << 20;
 
 /// The byte range of a column in its file; `None` if the numbers are impossible.
 pub(super) fn column_place(chunk: &ColumnChunkMetaData) -> Option<Range<u64>> {
@@ -53,14 +53,14 @@ struct PageHeader {
     /// Fields 1 to 6 of this kind of header in `parquet.thrift`.
     numbers: [i64; 6],
     /// Whether the values of a page in the layout of version 2 are compressed; true for other pages.
-    folded: bool,
+    has_compressed_values: bool,
 }
 
 impl PageHeader {
     /// Reads a header; also returns its length.
     fn read(bytes: &[u8]) -> Result<(Self, u64), String> {
         let mut thrift = ThriftReader::new(bytes);
-        let mut header = Self { kind: -1, stored: 0, numbers: [-1; 6], folded: true };
+        let mut header = Self { kind: -1, stored: 0, numbers: [-1; 6], has_compressed_values: true };
         let mut number = 0;
         while let Some(kind) = thrift.next_field(&mut number)? {
             // Fields of `PageHeader`: its kind, its compressed size, and three that hold the numbers of one kind each.
@@ -87,7 +87,7 @@ impl PageHeader {
                         *place = value;
                     }
                 }
-                (7, thrift::KIND_TRUE | thrift::KIND_FALSE) => self.folded = kind == thrift::KIND_TRUE,
+                (7, thrift::KIND_TRUE | thrift::KIND_FALSE) => self.has_compressed_values = kind == thrift::KIND_TRUE,
                 _ => thrift.skip_value(kind)?,
             }
         }
@@ -141,7 +141,7 @@ impl ColumnPages {
     pub(super) fn new(file: File, chunk: &ColumnChunkMetaData, announced: Arc<AtomicU64>) -> Result<Self, String> {
         let place = column_place(chunk).ok_or("has no valid place in the file")?;
         let length = file.metadata().map_err(|error| error.to_string())?.len();
-        let max_announced = length.saturating_mul(MAX_VALUES_PER_BYTE).clamp(USUAL_VALUES, MOST_VALUES);
+        let max_announced = length.saturating_mul(MAX_VALUES_PER_BYTE).clamp(USUAL_VALUES, MAX_VALUES);
         Ok(Self { file, place, header: None, codec: chunk.compression_codec(), announced, max_announced })
     }
 
@@ -221,7 +221,8 @@ impl ColumnPages {
         let levels = usize::try_from(u64::from(def_levels_byte_len) + u64::from(rep_levels_byte_len));
         let levels = levels.ok().filter(|levels| *levels <= stored.len()).ok_or("levels are longer than their page")?;
         Ok(Page::DataPageV2 {
-            buf: if header.folded { decompress_page(self.codec, stored, levels)? } else { stored }.into(),
+            buf: if header.has_compressed_values { decompress_page(self.codec, stored, levels)? } else { stored }
+                .into(),
             num_values,
             encoding: header.encoding_at(4)?,
             num_nulls: header.count_at(2)?,
@@ -276,7 +277,7 @@ fn decompress_page(codec: CompressionCodec, stored: Vec<u8>, plain_length: usize
         return Ok(stored);
     }
     let (plain, compressed) = stored.split_at_checked(plain_length).ok_or("levels are longer than their page")?;
-    let max_bytes = USUAL_BYTES.max(compressed.len().saturating_mul(MAX_RATIO));
+    let max_bytes = USUAL_BYTES.max(compressed.len().saturating_mul(MAX_COMPRESSION_RATIO));
     let too_long = || format!("{} bytes decompress to more than {max_bytes}", compressed.len());
     let read_limited = |from: &mut dyn Read| {
         let mut unpacked = plain.to_vec();
