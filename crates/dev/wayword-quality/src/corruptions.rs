@@ -16,7 +16,7 @@ use wayword_run::{
     output::CommandOutput,
     pipeline::path_panoramas,
     platforms::{self, RememberingPlatform},
-    run_folder::{file, settings_of},
+    run_folder::{file, read_run_settings},
     styles,
 };
 
@@ -68,7 +68,7 @@ fn count_caught(all: &[(&LabelledRun, &InstructionRecord)], count: usize, seed: 
         while counts.entry(kind).or_default().1 < count / InstructionCorruption::ALL.len() && tries < 100 * count {
             tries += 1;
             let Some((run, record)) = all.choose(&mut rng) else { break };
-            let Some((evidence, style, others)) = run.needed_for(record) else { continue };
+            let Some((evidence, style, others)) = run.inputs_for(record) else { continue };
             let Some(text) = corrupt_instruction(kind, record, evidence, others, style, &mut rng) else { continue };
             let verdict =
                 check_text(&text, CheckSubject::closed_world(evidence, style, record.path.target.as_ref())).verdict();
@@ -95,7 +95,7 @@ fn catch_table(counts: &CatchCounts) -> String {
 
 /// Reads a run, with evidence from labels for the paths of all records that passed.
 fn open_run(folder: &Path, output: &CommandOutput) -> Result<LabelledRun, CommandError> {
-    let settings = settings_of(folder)?;
+    let settings = read_run_settings(folder)?;
     let platform = platforms::open_platform(&settings)?;
     let styles = styles::find_styles(&settings.style)?.into_iter().map(|measured| measured.style).collect();
     let mut records = jsonl::read_records(&folder.join(file::INSTRUCTIONS))?;
@@ -128,7 +128,7 @@ fn label_evidence(platform: &dyn Platform, path: &wayword_core::Path) -> Result<
 
 impl LabelledRun {
     /// The evidence and the style of a record, and the names of the things in its scene.
-    fn needed_for(&self, record: &InstructionRecord) -> Option<(&Evidence, &InstructionStyle, &BTreeSet<String>)> {
+    fn inputs_for(&self, record: &InstructionRecord) -> Option<(&Evidence, &InstructionStyle, &BTreeSet<String>)> {
         let style = self.styles.iter().find(|style| style.name == record.instruction.style)?;
         Some((self.evidence.get(&record.path.id)?, style, self.names.get(&record.path.scene)?))
     }
@@ -184,7 +184,7 @@ mod tests {
             frame("hallway", Some(("lamp", -10.0))),
             frame("kitchen", None),
         ];
-        Evidence { frames, source: EvidenceSource::Labels, ..Evidence::of_path_alone(&test_path("p")) }
+        Evidence { frames, source: EvidenceSource::Labels, ..Evidence::for_path_alone(&test_path("p")) }
     }
 
     fn counts_of(evidence: Evidence) -> CatchCounts {
@@ -208,7 +208,7 @@ mod tests {
     /// storeys follow from the path, and a copied reference from the text.
     #[test]
     fn with_the_path_alone_wrong_objects_and_rooms_are_not_caught() {
-        let counts = counts_of(Evidence::of_path_alone(&test_path("p")));
+        let counts = counts_of(Evidence::for_path_alone(&test_path("p")));
         let expected = [
             (InstructionCorruption::TurnFlipped, (4, 4)),
             (InstructionCorruption::LandmarkAbsent, (0, 4)),
@@ -226,7 +226,7 @@ mod tests {
 
     #[test]
     fn missed_corruptions_are_listed_with_their_original_text() {
-        let run = run(Evidence::of_path_alone(&test_path("p")));
+        let run = run(Evidence::for_path_alone(&test_path("p")));
         let missed = count_caught(&[(&run, &run.records[0])], 40, 0).1;
         assert_eq!(missed.len(), 8);
         assert!(

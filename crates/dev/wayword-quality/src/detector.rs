@@ -161,7 +161,7 @@ fn detect_evidence<'a>(
     lookout: &DetectorLookout,
 ) -> Result<Evidence, CommandError> {
     let seen = seek_claims(world, path, &names.cloned().collect(), lookout.to_seeker())?;
-    Ok(Evidence::from_detector(path, &seen).unwrap_or_else(|| Evidence::of_path_alone(path)))
+    Ok(Evidence::from_detector(path, &seen).unwrap_or_else(|| Evidence::for_path_alone(path)))
 }
 
 /// The verdict of the checks on a text that names one landmark.
@@ -194,7 +194,7 @@ fn hallucination_lines(
     ];
     for (name, lookout) in [("without", None), ("with", Some(played_lookout(flags, Some(figures))))] {
         let mut named = NamedObjectCounts::default();
-        for made in stage.make_with(&job, lookout)?.0 {
+        for made in stage.make_items_with_detector(&job, lookout)?.0 {
             named.count_item(&made?, &stage.world)?;
         }
         lines.push(format!(

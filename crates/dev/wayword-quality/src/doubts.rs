@@ -88,7 +88,7 @@ fn report_lines(judged: &[TextDoubtSites], seed: u64) -> Vec<String> {
     let mut lines =
         vec![aligned_table(&rows), format!("{} texts; intervals of 95 %, clustered by building", judged.len())];
     for grade in DoubtGrade::ALL {
-        let original = share(&|text| Some(text.sites.iter().any(|site| at_least(site, grade))));
+        let original = share(&|text| Some(text.sites.iter().any(|site| has_grade(site, grade))));
         let flipped = share(&|text| Some(text.flipped? >= Some(grade)));
         let name = grade.name();
         lines.push(format!(
@@ -99,7 +99,7 @@ fn report_lines(judged: &[TextDoubtSites], seed: u64) -> Vec<String> {
 }
 
 /// Whether the default bounds give the words of a site this grade or a worse one.
-fn at_least(site: &DoubtSite, grade: DoubtGrade) -> bool {
+fn has_grade(site: &DoubtSite, grade: DoubtGrade) -> bool {
     DoubtBounds::default().grade_gain(site.source, site.best_gain()) >= Some(grade)
 }
 
@@ -116,7 +116,7 @@ fn source_row(judged: &[TextDoubtSites], source: DoubtSource) -> Vec<String> {
     gains.sort_by(|a, b| b.total_cmp(a));
     let at = |share: f64| gains.get((share * gains.len() as f64) as usize).map(|gain| format!("{gain:.2}"));
     let doubted = |grade: DoubtGrade| {
-        let count = of_source().filter(|site| at_least(site, grade)).count();
+        let count = of_source().filter(|site| has_grade(site, grade)).count();
         format!("{:.1} %", 100.0 * count as f64 / gains.len().max(1) as f64)
     };
     let named = [source.name().to_owned(), gains.len().to_string()].into_iter();

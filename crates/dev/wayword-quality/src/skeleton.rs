@@ -24,7 +24,7 @@ fn skeleton_lines(instructions: &[Instruction], show: usize) -> Vec<String> {
     let mut styles: BTreeMap<&str, BTreeMap<String, usize>> = BTreeMap::new();
     for instruction in instructions {
         let skeletons = styles.entry(&instruction.style).or_default();
-        for skeleton in skeletons_of(instruction) {
+        for skeleton in mask_sentences(instruction) {
             *skeletons.entry(skeleton).or_default() += 1;
         }
     }
@@ -45,7 +45,7 @@ fn skeleton_lines(instructions: &[Instruction], show: usize) -> Vec<String> {
 }
 
 /// The skeletons of an instruction's sentences. Mentions are masked from the end, so that earlier byte ranges stay valid.
-fn skeletons_of(instruction: &Instruction) -> Vec<String> {
+fn mask_sentences(instruction: &Instruction) -> Vec<String> {
     let mut masked = instruction.text.clone();
     let mut mentions = instruction.mentions.clone();
     mentions.sort_by_key(|mention| std::cmp::Reverse(mention.span));

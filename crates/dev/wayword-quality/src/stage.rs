@@ -124,11 +124,11 @@ impl MeasurementStage {
         &self,
         job: &RunJob,
     ) -> Result<(Vec<Result<MadeItem, CommandError>>, CallSpending), CommandError> {
-        self.make_with(job, None)
+        self.make_items_with_detector(job, None)
     }
 
     /// Makes every item of a job, with a detector that looks along the paths, and returns what was spent.
-    pub(super) fn make_with(
+    pub(super) fn make_items_with_detector(
         &self,
         job: &RunJob,
         lookout: Option<DetectorLookout>,

@@ -147,7 +147,7 @@ fn try_settings(
         }
         a
     };
-    let sum_episode = |episode: &Episode| of_episode(platform, &demands, grounder, settings, episode);
+    let sum_episode = |episode: &Episode| score_episode(platform, &demands, grounder, settings, episode);
     let sums = episodes.par_iter().map(sum_episode).try_reduce(zeros, |a, b| Ok(add(a, b)))?;
     let mut tried: Vec<SweptSetting> =
         settings.iter().zip(sums).map(|(parameters, sums)| SweptSetting { parameters: *parameters, sums }).collect();
@@ -156,7 +156,7 @@ fn try_settings(
 }
 
 /// The figures of the walk by the first instruction of an item, for each setting.
-fn of_episode(
+fn score_episode(
     platform: &dyn Platform,
     demands: &PlatformDemands<'_>,
     grounder: &dyn PhraseGrounder,

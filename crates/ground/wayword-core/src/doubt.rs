@@ -130,7 +130,7 @@ impl TextDoubt {
 /// The doubts of a text, in its order and without overlaps. Of two that overlap, the stronger one stays and takes over
 /// the alternatives of the other. Doubts that lie outside the text, or begin or end within a character, are left out.
 #[must_use]
-pub fn apart_in(text: &str, doubts: Vec<TextDoubt>) -> Vec<TextDoubt> {
+pub fn separate_doubts(text: &str, doubts: Vec<TextDoubt>) -> Vec<TextDoubt> {
     let trimmed = doubts.into_iter().filter_map(|doubt| trim_doubt(text, doubt));
     let mut doubts: Vec<TextDoubt> = trimmed.collect();
     doubts.sort_by(|a, b| {
@@ -240,7 +240,7 @@ mod tests {
             doubt(turn, DoubtGrade::Uncertain, &[(Some("Turn right"), 1.0), (Some("turn LEFT"), 9.0)]),
             doubt(turn, DoubtGrade::Likely, &[(None, 3.0)]),
         ];
-        let apart = apart_in(TEXT, doubts);
+        let apart = separate_doubts(TEXT, doubts);
         assert_eq!(told(&apart), [(turn, vec![None, Some("Turn right")])]);
         assert_eq!(apart[0].grade, DoubtGrade::Likely);
     }
@@ -251,13 +251,13 @@ mod tests {
             doubt([0, 19], DoubtGrade::Likely, &[(None, 5.0)]),
             doubt([14, 18], DoubtGrade::Uncertain, &[(Some("right"), 1.0), (None, 2.0)]),
         ];
-        assert_eq!(told(&apart_in(TEXT, doubts)), [([0, 18], vec![None, Some("Walk on. Turn right")])]);
+        assert_eq!(told(&separate_doubts(TEXT, doubts)), [([0, 18], vec![None, Some("Walk on. Turn right")])]);
     }
 
     #[test]
     fn marks_and_blanks_around_words_are_not_doubted() {
         let doubts = vec![doubt([7, 19], DoubtGrade::Uncertain, &[]), doubt([7, 9], DoubtGrade::Uncertain, &[])];
-        assert_eq!(told(&apart_in(TEXT, doubts)), [([9, 18], vec![])]);
+        assert_eq!(told(&separate_doubts(TEXT, doubts)), [([9, 18], vec![])]);
     }
 
     #[test]
@@ -275,7 +275,7 @@ mod tests {
                 .collect();
             let raw: String = split_at_doubts(text, &doubts, |doubt| doubt.span).iter().map(|part| part.0).collect();
             assert_eq!(raw, *text, "doubts of a file may be anything");
-            let apart = apart_in(text, doubts);
+            let apart = separate_doubts(text, doubts);
             for doubt in &apart {
                 assert!(!text[doubt.span[0]..doubt.span[1]].trim().is_empty());
                 assert!(doubt.alternatives.len() <= MAX_ALTERNATIVES);

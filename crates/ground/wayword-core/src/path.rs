@@ -186,7 +186,7 @@ impl ObjectRelation {
 impl ObjectDistinction {
     /// Whether it distinguishes the room, and not the object in the room.
     #[must_use]
-    pub fn is_of_room(&self) -> bool {
+    pub fn is_about_room(&self) -> bool {
         matches!(self, Self::Level { .. } | Self::RoomBy { .. } | Self::RoomWith { .. })
     }
 

@@ -101,7 +101,7 @@ impl Episode {
     /// path's frames (a camera's height over the floor: about 1.5 m in Matterport3D). A path with unknown motion has
     /// none.
     #[must_use]
-    pub fn on_floor_of(mut self, path: &Path, eye_height_m: f64) -> Self {
+    pub fn with_floor_positions(mut self, path: &Path, eye_height_m: f64) -> Self {
         let frames = path.frames.iter().filter(|_| path.motion.is_known());
         self.floor_positions = frames.map(|frame| frame.pose.position - DVec3::Z * eye_height_m).collect();
         self

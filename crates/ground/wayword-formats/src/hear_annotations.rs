@@ -92,7 +92,7 @@ fn labelled_text(mut item: DatasetItem<'_>, name: String) -> Result<LabelledText
     };
     let corrections = take_corrections(&mut item)?;
     let spans = labels.into_iter().map(|(key, label)| {
-        let corrections = corrections.get(&key).map(|words| told_instead(&item, &key, words)).transpose()?;
+        let corrections = corrections.get(&key).map(|words| split_corrections(&item, &key, words)).transpose()?;
         labelled_span(&item, &tokens, (key, &label), corrections.unwrap_or_default())
     });
     let spans = spans.collect::<Result<Vec<_>, _>>()?;
@@ -143,7 +143,11 @@ fn take_corrections(item: &mut DatasetItem<'_>) -> Result<Map<String, Value>, Fo
 }
 
 /// The alternatives of one correction, which are separated by slashes; `None` for `REMOVE`.
-fn told_instead(item: &DatasetItem<'_>, key: &str, correction: &Value) -> Result<Vec<Option<String>>, FormatError> {
+fn split_corrections(
+    item: &DatasetItem<'_>,
+    key: &str,
+    correction: &Value,
+) -> Result<Vec<Option<String>>, FormatError> {
     let Value::String(alternatives) = correction else {
         let field = format!("id2gold_alternative.{key:.40}");
         return Err(item.expected_kind(&field, "a string", correction, "give words, or REMOVE"));

@@ -45,11 +45,11 @@ pub(crate) fn open_input(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
     // The file may grow while it is read, and gzip may expand to a thousand times its size.
     let input: Box<dyn Read> = if is_gzip { Box::new(MultiGzDecoder::new(plain)) } else { Box::new(plain) };
     let input = BufReader::with_capacity(BUFFER_BYTES, BoundedReader { inner: input, left: limits::MAX_FILE_BYTES });
-    without_mark(file, input)
+    without_byte_order_mark(file, input)
 }
 
 /// The input without the byte order mark of UTF-8, its first three bytes where it has one. UTF-16 is refused.
-fn without_mark(file: &Path, mut input: impl BufRead + 'static) -> Result<Box<dyn BufRead>, FormatError> {
+fn without_byte_order_mark(file: &Path, mut input: impl BufRead + 'static) -> Result<Box<dyn BufRead>, FormatError> {
     let mut start = Vec::new();
     input.by_ref().take(3).read_to_end(&mut start).map_err(|source| FormatError::from_io(file, "read", source))?;
     match start.as_slice() {

@@ -46,7 +46,7 @@ fn take_text_fields(item: &mut DatasetItem<'_>, episode: &mut Episode) -> Result
             "annotator_id" => drop(item.checked_name(field, &value)?),
             "edit_distance" => drop(item.checked_number(field, &value)?),
             "language" => episode.languages = vec![item.checked_text(field, &value)?.to_owned()],
-            _ => timed_words(item, field, &value)?,
+            _ => check_timed_words(item, field, &value)?,
         }
         // Timed words take ten times as much memory as JSON values as they do as text.
         let value = if field == "timed_instruction" { value.to_string().into() } else { value };
@@ -56,7 +56,7 @@ fn take_text_fields(item: &mut DatasetItem<'_>, episode: &mut Episode) -> Result
 }
 
 /// Checks that every entry of `timed_instruction` has a word.
-fn timed_words(item: &DatasetItem<'_>, field: &str, value: &Value) -> Result<(), FormatError> {
+fn check_timed_words(item: &DatasetItem<'_>, field: &str, value: &Value) -> Result<(), FormatError> {
     for (index, timed) in item.checked_list(field, value, limits::MAX_INSTRUCTION_BYTES)?.iter().enumerate() {
         let word_field = format!("{field}[{index}].word");
         let Some(word) = timed.get("word") else {

@@ -84,7 +84,7 @@ fn take_episode(item: &mut DatasetItem<'_>, tokens: &mut BTreeMap<String, Vec<u6
     let trajectory = item.take_field("trajectory_id")?;
     let scene_file = item.take_field("scene_id")?;
     let mut episode =
-        Episode::new(id_text, item.checked_name("trajectory_id", &trajectory)?, scene_of(item, &scene_file)?);
+        Episode::new(id_text, item.checked_name("trajectory_id", &trajectory)?, scene_from_mesh(item, &scene_file)?);
     episode.remember_spelling("episode_id", id);
     episode.remember_spelling("trajectory_id", trajectory);
     episode.remember_spelling("scene_id", scene_file);
@@ -100,7 +100,7 @@ fn take_episode(item: &mut DatasetItem<'_>, tokens: &mut BTreeMap<String, Vec<u6
 }
 
 /// The scene of a mesh file: the file's name without its ending.
-fn scene_of(item: &DatasetItem<'_>, value: &Value) -> Result<SceneId, FormatError> {
+fn scene_from_mesh(item: &DatasetItem<'_>, value: &Value) -> Result<SceneId, FormatError> {
     const HINT: &str = "write it as mp3d/SCAN/SCAN.glb";
     let text = item.checked_text("scene_id", value)?;
     let outside = text.starts_with('/') || text.split('/').any(|part| part == "..");

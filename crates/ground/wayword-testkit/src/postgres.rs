@@ -39,14 +39,14 @@ impl PostgresServer {
         let programs = find_programs()?;
         // The path of a socket must be short.
         let folder = tempfile::Builder::new().prefix("pg").tempdir().expect("a temporary folder");
-        let server = Self { programs, as_user: other_user(), folder };
+        let server = Self { programs, as_user: unprivileged_user(), folder };
         if let Some(user) = &server.as_user {
             run_or_panic(Command::new("chown").arg(user).arg(server.folder.path()));
         }
         let data = server.data_folder();
         let options = ["--encoding=UTF8", "--locale=C", "--auth=trust", "--no-sync", "-U", SERVER_USER, "-D"];
         run_or_panic(server.program_command("initdb").args(options).arg(&data));
-        server.go_on();
+        server.start_again();
         Some(server)
     }
 
@@ -74,18 +74,18 @@ impl PostgresServer {
         run_or_panic(
             self.program_command("createdb").args(["-U", SERVER_USER, "-h"]).arg(self.folder.path()).arg(&name),
         );
-        self.url_of(SERVER_USER, &name)
+        self.database_url(SERVER_USER, &name)
     }
 
     /// The URL of the database `postgres`, which every server has.
     #[must_use]
     pub fn default_url(&self) -> String {
-        self.url_of(SERVER_USER, "postgres")
+        self.database_url(SERVER_USER, "postgres")
     }
 
     /// The URL with which a client connects to a database as a role.
     #[must_use]
-    pub fn url_of(&self, role: &str, database: &str) -> String {
+    pub fn database_url(&self, role: &str, database: &str) -> String {
         format!("postgresql://{role}@/{database}?host={}", self.folder.path().display())
     }
 
@@ -95,7 +95,7 @@ impl PostgresServer {
     /// When it cannot be started.
     pub fn restart(&self) {
         self.stop();
-        self.go_on();
+        self.start_again();
     }
 
     /// Stops the server as a crash would.
@@ -109,7 +109,7 @@ impl PostgresServer {
     ///
     /// # Panics
     /// When it cannot be started.
-    pub fn go_on(&self) {
+    pub fn start_again(&self) {
         let folder = self.folder.path().display();
         let options = format!("-c listen_addresses='' -c unix_socket_directories='{folder}' -c max_connections=200");
         let mut start = self.program_command("pg_ctl");
@@ -169,7 +169,7 @@ fn folder_version(folder: &Path) -> u32 {
 }
 
 /// The user that the server has to run as; `None` unless this program runs as root.
-fn other_user() -> Option<String> {
+fn unprivileged_user() -> Option<String> {
     let id = |args: &[&str]| Command::new("id").args(args).output().ok().filter(|output| output.status.success());
     let is_root = id(&["-u"]).is_some_and(|output| output.stdout.trim_ascii() == b"0");
     let other = if id(&["-u", SERVER_USER]).is_some() { SERVER_USER } else { "nobody" };

@@ -31,11 +31,11 @@ pub(crate) fn box_file(index: usize) -> Value {
 
 /// The views in which an object is visible, with its box in each.
 fn boxes_by_view(eye: DVec3, object: &TestHouseObject) -> Vec<(usize, [i64; 4])> {
-    (0..36).filter_map(|view| Some((view, box_in(view, eye, object)?))).collect()
+    (0..36).filter_map(|view| Some((view, project_box(view, eye, object)?))).collect()
 }
 
 /// The object's box in a view (left, top, width, height; pixels), cut at the picture's edges; `None` where it is not in the view.
-fn box_in(view: usize, eye: DVec3, object: &TestHouseObject) -> Option<[i64; 4]> {
+fn project_box(view: usize, eye: DVec3, object: &TestHouseObject) -> Option<[i64; 4]> {
     let heading = FRAC_PI_6 * (view % 12) as f64;
     let elevation = FRAC_PI_6 * ((view / 12) as f64 - 1.0);
     let forward = DVec3::new(

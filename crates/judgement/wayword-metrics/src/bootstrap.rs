@@ -48,13 +48,13 @@ pub fn clustered_interval<C: Ord>(
 ) -> Option<MeanEstimate> {
     let mut rng = seeded_rng(seed, &["bootstrap"]);
     let draw = move |clusters: usize| (0..clusters).map(|_| rng.random_range(0..clusters)).collect();
-    clustered_interval_of(values, resamples.clamp(1, MAX_RESAMPLES), level, draw)
+    clustered_interval_from_draws(values, resamples.clamp(1, MAX_RESAMPLES), level, draw)
 }
 
 /// As [`clustered_interval`], but the caller draws the resamples: `draw` gets the number of clusters and returns the indices of
 /// the drawn ones, which count clusters in their order. An index beyond the last cluster is ignored.
 #[must_use]
-pub fn clustered_interval_of<C: Ord>(
+pub fn clustered_interval_from_draws<C: Ord>(
     values: &[(C, f64)],
     resamples: usize,
     level: f64,
@@ -86,7 +86,7 @@ pub fn clustered_interval_of<C: Ord>(
 ///
 /// `figures` gets the indices of the drawn clusters, some of them repeatedly, and computes all figures of that draw. A value that is
 /// not finite is left out of its figure's interval; the interval is NaN if no draw gives a finite value.
-pub(crate) fn interval_of<const N: usize>(
+pub(crate) fn resampled_intervals<const N: usize>(
     clusters: usize,
     drawing: &ResamplingOptions,
     mut figures: impl FnMut(&[usize]) -> [f64; N],

@@ -23,7 +23,9 @@ mod similarity;
 mod study;
 mod trajectory;
 
-pub use bootstrap::{MeanEstimate, ResamplingOptions, clustered_interval, clustered_interval_of, percentile_interval};
+pub use bootstrap::{
+    MeanEstimate, ResamplingOptions, clustered_interval, clustered_interval_from_draws, percentile_interval,
+};
 pub use correlation::{kendall_tau_b, pearson_correlation, spearman_correlation};
 pub use hashed_words::HashedWordEncoder;
 pub use latex::escape_latex;

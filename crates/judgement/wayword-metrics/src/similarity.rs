@@ -64,7 +64,7 @@ pub fn compare_sets(
     SetSimilarity {
         figure: estimate(&figures),
         same_item: estimate(&same),
-        random_pairs: estimate(&at_random(&b_items, drawing.seed)),
+        random_pairs: estimate(&random_pair_cosines(&b_items, drawing.seed)),
         only_in_a: in_a.difference(&in_b).count(),
         only_in_b: in_b.difference(&in_a).count(),
         single_in_b: b_items.len() - same.len(),
@@ -83,7 +83,7 @@ fn mean_cosine_within(item: &ItemVectors<'_>) -> Option<f64> {
 }
 
 /// The mean cosine of each item with items of other paths, drawn with replacement; with the path of the item.
-fn at_random<'a>(items: &[(&str, &'a ItemVectors<'_>)], seed: u64) -> Vec<(&'a str, f64)> {
+fn random_pair_cosines<'a>(items: &[(&str, &'a ItemVectors<'_>)], seed: u64) -> Vec<(&'a str, f64)> {
     let mut paths: BTreeMap<&str, Vec<&ItemVectors<'_>>> = BTreeMap::new();
     for (_, item) in items {
         paths.entry(&item.cluster).or_default().push(item);

@@ -47,7 +47,7 @@ impl TextFacts {
         rooms.dedup();
         let (mut turns, mut floors) = (Vec::new(), Vec::new());
         for event in read_instruction(text, &BTreeSet::new()).into_claims().events {
-            turns.extend(turn_told(&event.what));
+            turns.extend(implied_turn(&event.what));
             match event.what {
                 EventContent::Climb(climb) | EventContent::Storey(climb) => floors.extend(FloorFact::from_climb(climb)),
                 EventContent::Floor(floor) => floors.push(FloorFact::Storey(floor.number.unwrap_or(0))),
@@ -59,7 +59,7 @@ impl TextFacts {
 }
 
 /// The turn that an event of the text implies: a turn itself, or an opening on a side ("the door on the left").
-pub(crate) fn turn_told(what: &EventContent) -> Option<Side> {
+pub(crate) fn implied_turn(what: &EventContent) -> Option<Side> {
     match what {
         EventContent::Turn(side) => Some(*side),
         EventContent::Place(place) => place.side.filter(|_| goes_through(&place.name)),

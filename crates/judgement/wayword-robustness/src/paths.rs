@@ -37,7 +37,7 @@ pub fn reverse_path(path: &Path) -> ChangedPath {
 /// frame, stays as it is.
 #[must_use]
 pub fn space_frames(path: &Path, spacing_m: f64) -> ChangedPath {
-    let at_m = along_m(path);
+    let at_m = frame_positions_m(path);
     let length_m = at_m.last().copied().unwrap_or(0.0);
     if !path.motion.is_known() || length_m <= SAME_POSITION_M || !spacing_m.is_finite() {
         return unchanged_path(path);
@@ -53,7 +53,7 @@ pub fn space_frames(path: &Path, spacing_m: f64) -> ChangedPath {
 /// that have no views between frames.
 #[must_use]
 pub fn thin_frames(path: &Path, spacing_m: f64) -> ChangedPath {
-    let at_m = along_m(path);
+    let at_m = frame_positions_m(path);
     let last = path.frames.len().saturating_sub(1);
     let mut kept: Vec<usize> = Vec::new();
     for frame in 0..path.frames.len() {
@@ -62,7 +62,7 @@ pub fn thin_frames(path: &Path, spacing_m: f64) -> ChangedPath {
             kept.push(frame);
         }
     }
-    without_others(path, kept)
+    keep_frames(path, kept)
 }
 
 /// Drops each frame between the first and the last with a probability of `percent` per cent. The draw of a frame depends on the seed
@@ -74,12 +74,12 @@ pub fn drop_frames(path: &Path, percent: f64, seed: u64) -> ChangedPath {
         let draw = || draw_uniform(seed, &["dropped frames", &path.id, &frame.to_string()]);
         *frame == 0 || *frame == last || draw() >= percent / 100.0
     };
-    without_others(path, (0..path.frames.len()).filter(is_kept).collect())
+    keep_frames(path, (0..path.frames.len()).filter(is_kept).collect())
 }
 
 /// Turns the start heading by `turn_deg` degrees, positive to the right. A path of unknown motion stays as it is.
 #[must_use]
-pub fn start_heading(path: &Path, turn_deg: f64) -> ChangedPath {
+pub fn turn_start_heading(path: &Path, turn_deg: f64) -> ChangedPath {
     let mut changed = unchanged_path(path);
     if path.motion.is_known()
         && let Some(first) = changed.path.frames.first_mut()
@@ -107,7 +107,7 @@ fn unchanged_path(path: &Path) -> ChangedPath {
 }
 
 /// Keeps only the given frames of a path.
-fn without_others(path: &Path, kept: Vec<usize>) -> ChangedPath {
+fn keep_frames(path: &Path, kept: Vec<usize>) -> ChangedPath {
     if kept.len() == path.frames.len() {
         return unchanged_path(path);
     }
@@ -139,7 +139,7 @@ fn stop_from_frame(frame: &Frame) -> PathStop {
 }
 
 /// Distance of each frame from the start along the path, metres.
-fn along_m(path: &Path) -> Vec<f64> {
+fn frame_positions_m(path: &Path) -> Vec<f64> {
     let mut at_m = 0.0;
     let mut before = path.frames.first().map(|frame| frame.pose.position);
     let place = |frame: &Frame| {

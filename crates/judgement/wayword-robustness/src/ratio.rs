@@ -68,11 +68,11 @@ pub struct BootstrapOptions {
 /// whole scenes (Efron 1979), in which both anchors vary with the resample; resamples with equal anchors are left out.
 #[must_use]
 pub fn robustness_ratios(paths: &[PathAgreements], drawing: BootstrapOptions) -> Vec<RobustnessRatio> {
-    STATEMENT_KINDS.iter().enumerate().map(|(kind, name)| of_kind(paths, kind, name, drawing)).collect()
+    STATEMENT_KINDS.iter().enumerate().map(|(kind, name)| ratio_of_kind(paths, kind, name, drawing)).collect()
 }
 
 /// R for one kind of statement, an index of [`STATEMENT_KINDS`].
-fn of_kind(paths: &[PathAgreements], kind: usize, name: &str, drawing: BootstrapOptions) -> RobustnessRatio {
+fn ratio_of_kind(paths: &[PathAgreements], kind: usize, name: &str, drawing: BootstrapOptions) -> RobustnessRatio {
     let mut scenes: BTreeMap<&str, AgreementSum> = BTreeMap::new();
     for path in paths {
         if let Some(three) = three_agreements(path, kind) {
@@ -175,7 +175,7 @@ pub fn dose_slope(points: &[(f64, f64)]) -> Option<f64> {
 /// The doses at which R falls below `least`: at most one below the unchanged dose, and one above it. If there is no unchanged dose, the
 /// search goes upwards from the lowest dose. R is interpolated linearly between doses, and is taken as 1 at the unchanged dose.
 #[must_use]
-pub fn falls_at(points: &[(f64, f64)], unchanged: Option<f64>, least: f64) -> Vec<f64> {
+pub fn falling_doses(points: &[(f64, f64)], unchanged: Option<f64>, least: f64) -> Vec<f64> {
     let fall_in_direction = |sign: f64| {
         // `sign` is 1 for rising doses and -1 for falling ones.
         let is_ahead = |dose: f64| unchanged.is_none_or(|unchanged| (dose - unchanged) * sign > 0.0);
@@ -250,11 +250,11 @@ mod tests {
 
     #[test]
     fn the_dose_at_which_it_falls_lies_between_two() {
-        let falls = |points: &[(f64, f64)], unchanged: f64| falls_at(points, Some(unchanged), 0.75);
+        let falls = |points: &[(f64, f64)], unchanged: f64| falling_doses(points, Some(unchanged), 0.75);
         assert_eq!(falls(&[(1.0, 1.0), (3.0, 0.5)], 0.0), [2.0]);
         assert_eq!(falls(&[(60.0, 0.5), (120.0, 0.9)], 90.0), [75.0]);
         assert!(falls(&[(1.0, 0.9)], 0.0).is_empty());
-        assert_eq!(falls_at(&[(3.0, 0.5), (1.0, 1.0)], None, 0.75), [2.0]);
+        assert_eq!(falling_doses(&[(3.0, 0.5), (1.0, 1.0)], None, 0.75), [2.0]);
         assert_eq!(dose_slope(&[(0.0, 1.0), (2.0, 0.5)]), Some(-0.25));
         assert_eq!(dose_slope(&[(1.0, 0.5)]), None);
     }

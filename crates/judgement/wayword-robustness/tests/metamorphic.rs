@@ -28,7 +28,7 @@ use wayword_robustness::{
     },
     worlds::{
         AlteredPlatform, QuarterTurn, ThingAddition, ThingRecolouring, ThingRemoval, WorldAlteration, WorldMirror,
-        can_go,
+        can_be_removed,
     },
 };
 use wayword_synthesis::{
@@ -317,7 +317,7 @@ fn told_things(text: &Instruction) -> BTreeSet<String> {
         .iter()
         .filter(is_thing)
         .map(|mention| name_in(text, mention.span))
-        .filter(|name| can_go(name))
+        .filter(|name| can_be_removed(name))
         .collect()
 }
 

@@ -147,7 +147,7 @@ fn complete_config(config: &mut Config, text: &str) -> Result<(), DatabaseError>
         config.ssl_mode(match asked_mode.as_deref() {
             Some("disable" | "allow") => SslMode::Disable,
             Some(_) => SslMode::Require,
-            None if is_here(config) => SslMode::Disable,
+            None if is_on_this_machine(config) => SslMode::Disable,
             None => SslMode::Require,
         });
     }
@@ -159,7 +159,7 @@ fn complete_config(config: &mut Config, text: &str) -> Result<(), DatabaseError>
 }
 
 /// Whether all hosts of the connection are this machine, so that TLS is not needed.
-fn is_here(config: &Config) -> bool {
+fn is_on_this_machine(config: &Config) -> bool {
     config.get_hosts().iter().all(|host| match host {
         Host::Tcp(name) => ["localhost", "127.0.0.1", "::1"].contains(&name.as_str()),
         #[cfg(unix)]

@@ -94,7 +94,7 @@ impl DatabaseError {
         let is_lost = is_lost(error);
         let server_message =
             error.as_db_error().map(|db_error| format!("{} ({})", db_error.message(), db_error.code().code()));
-        let reason = server_message.unwrap_or_else(|| with_causes(error));
+        let reason = server_message.unwrap_or_else(|| message_with_causes(error));
         Self::Server { database: database.to_owned(), doing, reason, hint: error_hint(error, is_lost), is_lost }
     }
 }
@@ -122,7 +122,7 @@ pub(crate) fn is_lost(error: &postgres::Error) -> bool {
 }
 
 /// The message of an error, and the messages of its causes as far as they add something.
-fn with_causes(error: &postgres::Error) -> String {
+fn message_with_causes(error: &postgres::Error) -> String {
     let mut message = error.to_string();
     let mut cause = std::error::Error::source(error);
     while let Some(next) = cause {

@@ -25,30 +25,30 @@ pub(crate) fn find_password(config: &Config, variable: Option<&str>) -> Result<O
     let named = env::var_os("PGPASSFILE").filter(|path| !path.is_empty()).map(PathBuf::from);
     let usual = || Some(PathBuf::from(env::var_os("HOME")?).join(".pgpass"));
     match named {
-        Some(path) => in_file(config, &path),
-        None => usual().filter(|path| path.exists()).map_or(Ok(None), |path| in_file(config, &path)),
+        Some(path) => find_in_file(config, &path),
+        None => usual().filter(|path| path.exists()).map_or(Ok(None), |path| find_in_file(config, &path)),
     }
 }
 
 /// The password that a file has for a connection. A file that other users may read is refused.
-fn in_file(config: &Config, path: &Path) -> Result<Option<String>, DatabaseError> {
+fn find_in_file(config: &Config, path: &Path) -> Result<Option<String>, DatabaseError> {
     let failed = |problem: String, hint| DatabaseError::File { path: path.to_owned(), problem, hint };
     let metadata = fs::metadata(path).map_err(|error| failed(error.to_string(), "check PGPASSFILE"))?;
     if !metadata.is_file() || metadata.len() > MAX_PASSWORD_FILE_BYTES {
         return Err(failed("this is no password file".to_owned(), "check PGPASSFILE"));
     }
     #[cfg(unix)]
-    if is_open(MetadataExt::mode(&metadata), MetadataExt::uid(&metadata)) {
+    if is_open_to_others(MetadataExt::mode(&metadata), MetadataExt::uid(&metadata)) {
         return Err(failed("others may read this password file".to_owned(), "chmod 600 the file"));
     }
     let text = fs::read_to_string(path).map_err(|error| failed(error.to_string(), "check PGPASSFILE"))?;
-    Ok(text.lines().find_map(|line| password_of(line, &wanted_fields(config))))
+    Ok(text.lines().find_map(|line| password_in_line(line, &wanted_fields(config))))
 }
 
 /// Whether other users may read or write a file of this mode and owner. A file of root may be readable for its group, because
 /// Kubernetes mounts secrets this way: root owns the file, and the worker is the only member of the group.
 #[cfg(unix)]
-fn is_open(mode: u32, owner: u32) -> bool {
+fn is_open_to_others(mode: u32, owner: u32) -> bool {
     // Bits of the mode: 0o077 is any access by group or others; 0o037 lets the group read.
     let not_allowed = if owner == 0 { 0o037 } else { 0o077 };
     mode & not_allowed != 0
@@ -66,7 +66,7 @@ fn wanted_fields(config: &Config) -> [String; 4] {
 }
 
 /// The password of a line, if the line is for the connection with the `wanted` fields. `*` in a line fits every value.
-fn password_of(line: &str, wanted: &[String; 4]) -> Option<String> {
+fn password_in_line(line: &str, wanted: &[String; 4]) -> Option<String> {
     if line.starts_with('#') {
         return None;
     }
@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn the_first_line_that_fits_gives_the_password() {
         let wanted = ["far", "5432", "db", "me"].map(str::to_owned);
-        let of = |line: &str| password_of(line, &wanted);
+        let of = |line: &str| password_in_line(line, &wanted);
         assert_eq!(of("far:5432:db:me:ge:heim").as_deref(), Some("ge:heim"));
         assert_eq!(of("*:*:*:me:a\\:b\\\\").as_deref(), Some("a:b\\"));
         assert_eq!(of("other:5432:db:me:x"), None);
@@ -111,8 +111,10 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn a_group_may_read_roots_file_alone() {
-        assert!(!is_open(0o100_440, 0) && !is_open(0o100_400, 1000));
-        assert!(is_open(0o100_440, 1000) && is_open(0o100_460, 0) && is_open(0o100_444, 0));
+        assert!(!is_open_to_others(0o100_440, 0) && !is_open_to_others(0o100_400, 1000));
+        assert!(
+            is_open_to_others(0o100_440, 1000) && is_open_to_others(0o100_460, 0) && is_open_to_others(0o100_444, 0)
+        );
     }
 
     #[cfg(unix)]
@@ -126,8 +128,8 @@ mod tests {
         let mut config = Config::new();
         config.host("far").dbname("db").user("me");
         set(0o644);
-        assert!(in_file(&config, &path).unwrap_err().to_string().contains("chmod 600"));
+        assert!(find_in_file(&config, &path).unwrap_err().to_string().contains("chmod 600"));
         set(0o600);
-        assert_eq!(in_file(&config, &path).unwrap().as_deref(), Some("geheim"));
+        assert_eq!(find_in_file(&config, &path).unwrap().as_deref(), Some("geheim"));
     }
 }

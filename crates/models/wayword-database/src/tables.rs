@@ -42,13 +42,13 @@ impl SchemaTables {
             "CREATE SCHEMA IF NOT EXISTS {schema};\nCREATE TABLE IF NOT EXISTS {schema}.version (version INTEGER NOT NULL);\n"
         );
         let steps: String = steps.iter().skip(from).copied().collect::<Vec<_>>().join("\n");
-        let version = steps_len(self.steps);
+        let version = newest_version(self.steps);
         format!("{begin}{steps}\nDELETE FROM {schema}.version;\nINSERT INTO {schema}.version VALUES ({version});\n")
     }
 }
 
 /// The version that all steps together make: one for each step.
-fn steps_len(steps: &[&str]) -> i32 {
+fn newest_version(steps: &[&str]) -> i32 {
     i32::try_from(steps.len()).unwrap_or(i32::MAX)
 }
 
@@ -74,7 +74,7 @@ pub fn prepare_tables(pool: &ConnectionPool, tables: &SchemaTables) -> Result<()
     if encoding != "UTF8" {
         return Err(DatabaseError::Encoding { database, encoding });
     }
-    let newest = steps_len(tables.steps);
+    let newest = newest_version(tables.steps);
     let version =
         pool.with_connection("ask for the version of the tables", |connection| read_version(connection, tables))?;
     if version == newest {

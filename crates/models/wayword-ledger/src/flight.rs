@@ -42,7 +42,7 @@ impl CallFlights {
     }
 
     /// Runs `act` while no call is in flight, and keeps new ones from beginning meanwhile. Returns `None` if a call is in flight.
-    pub(crate) fn while_none<T>(&self, act: impl FnOnce() -> T) -> Option<T> {
+    pub(crate) fn run_while_idle<T>(&self, act: impl FnOnce() -> T) -> Option<T> {
         let open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
         open.is_empty().then(act)
     }

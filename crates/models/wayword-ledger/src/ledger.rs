@@ -6,7 +6,7 @@ use crate::{
     LedgerError, RunSpending,
     flight::CallFlights,
     recording,
-    store::{CallStore, ChunkStore, SqliteStore, may_hold, spent_in},
+    store::{CallStore, ChunkStore, SqliteStore, check_file_system, spent_in},
 };
 use std::{
     path::{Path, PathBuf},
@@ -42,7 +42,7 @@ impl Ledger {
     /// # Errors
     /// When the path is on a network file system.
     pub fn check_place(path: &Path) -> Result<(), LedgerError> {
-        may_hold(path)
+        check_file_system(path)
     }
 
     /// A ledger in memory, which ends with the process.
@@ -85,7 +85,7 @@ impl Ledger {
     /// # Errors
     /// When calls are in flight, the file cannot be read and written, or a line was changed.
     pub fn turn_to(&self, file: &Path) -> Result<(), LedgerError> {
-        let turned = self.flights().while_none(|| self.store().turn_to(file));
+        let turned = self.flights().run_while_idle(|| self.store().turn_to(file));
         turned.unwrap_or_else(|| {
             let reason = "it cannot be left for another chunk while calls are in flight";
             Err(LedgerError::Misuse { place: self.store().ledger_location(), reason })

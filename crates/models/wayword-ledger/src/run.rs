@@ -134,7 +134,7 @@ impl LedgerRun {
         send: impl FnOnce(&mut CallAttempts<'_>) -> Result<CallAnswer, E>,
     ) -> Result<CallAnswer, OnceError<E>> {
         let span = CallSpan::begin_call(call);
-        let outcome = self.once_within(&span, call, send);
+        let outcome = self.answer_within_span(&span, call, send);
         match &outcome {
             Ok(_) | Err(OnceError::Call(_)) => {}
             Err(OnceError::Refused(_)) => span.record_error("refused"),
@@ -146,7 +146,7 @@ impl LedgerRun {
 
     /// Does the work of [`LedgerRun::answer_once`] and reports to its span. The loop begins anew after each wait for another thread or
     /// program, and normally finds the answer then.
-    fn once_within<E>(
+    fn answer_within_span<E>(
         &self,
         span: &CallSpan,
         call: &ModelCall,
@@ -163,7 +163,7 @@ impl LedgerRun {
                 return Ok(answer);
             }
             if let Some(recording) = self.ledger.recording() {
-                return Err(not_recorded(recording, call));
+                return Err(not_recorded_error(recording, call));
             }
             let mut claim = match CallClaim::take_claim(self.ledger.store(), &key, ABANDONED_CLAIM_TIMEOUT, || {
                 self.is_stopped()
@@ -291,7 +291,7 @@ impl CallAttempts<'_> {
         }
         let most_usd = valid_amount(most_usd);
         self.run.state.budget.reserve_money(most_usd)?;
-        match self.keep_sent(most_usd) {
+        match self.write_request_down(most_usd) {
             Ok(number) => {
                 self.open = Some(SentRequest { number, most_usd });
                 self.sent += 1;
@@ -306,7 +306,7 @@ impl CallAttempts<'_> {
     }
 
     /// Writes a request down in the ledger, and returns its number there.
-    fn keep_sent(&self, most_usd: Option<f64>) -> Result<i64, RequestRefusedError> {
+    fn write_request_down(&self, most_usd: Option<f64>) -> Result<i64, RequestRefusedError> {
         let RunState { id, limits, .. } = &*self.run.state;
         let request = PendingRequest { run: id, key: self.key, most_usd, at_unix_s: now_unix_s(), limits: *limits };
         self.run.ledger.store().write_request(&request)
@@ -339,7 +339,7 @@ impl CallAttempts<'_> {
     }
 
     /// Sets the kind of failure that the call's span reports if the call fails: one word, without any text from a service.
-    pub fn fails_as(&mut self, kind: &'static str) {
+    pub fn set_failure_kind(&mut self, kind: &'static str) {
         self.failure = kind;
     }
 
@@ -381,7 +381,7 @@ impl CallAttempts<'_> {
 const QUOTED_CHARS: usize = 200;
 
 /// The error of a replay that needs a call which the recording does not have.
-fn not_recorded<E>(recording: &Path, call: &ModelCall) -> OnceError<E> {
+fn not_recorded_error<E>(recording: &Path, call: &ModelCall) -> OnceError<E> {
     let words = call.request.get("messages").and_then(|messages| messages.as_array()?.last()?.get("text")?.as_str());
     OnceError::NotRecorded {
         recording: recording.to_owned(),

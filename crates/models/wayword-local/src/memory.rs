@@ -57,8 +57,8 @@ pub(crate) fn checkpoint_bytes(folder: &Path, precision: WeightPrecision) -> Res
 }
 
 /// The size of the weights of a checkpoint that is one file, at a precision, bytes.
-pub(crate) fn of_file(file: &Path, precision: WeightPrecision) -> Result<u64, LocalError> {
-    Ok(CheckpointWeights::of_file(file, &ModelDevice::cpu(), precision)?.size_bytes())
+pub(crate) fn checkpoint_file_bytes(file: &Path, precision: WeightPrecision) -> Result<u64, LocalError> {
+    Ok(CheckpointWeights::open_file(file, &ModelDevice::cpu(), precision)?.size_bytes())
 }
 
 fn format_gibibytes(bytes: u64) -> String {

@@ -93,7 +93,7 @@ impl LocalModels {
     ///
     /// # Errors
     /// When the files cannot be fetched, or the model does not take pictures.
-    pub fn at_hand(&self, name: &str) -> Result<(), LocalError> {
+    pub fn ensure_model_files(&self, name: &str) -> Result<(), LocalError> {
         for part in &parse_parts(name)? {
             let folder = self.hub.model_folder(part, &NeededFiles::for_any_architecture(part), &*self.progress)?;
             EyeArchitecture::from_folder(&folder.path)?;
@@ -130,7 +130,7 @@ impl LocalModels {
     ///
     /// # Errors
     /// When the files cannot be fetched, or the model does not detect.
-    pub fn detector_at_hand(&self, name: &str) -> Result<(), LocalError> {
+    pub fn ensure_detector_files(&self, name: &str) -> Result<(), LocalError> {
         let part = detector_name(name)?;
         DetectorCheckpoint::find_files(&self.hub, &part, &*self.progress).map(drop)
     }
@@ -193,7 +193,9 @@ impl LocalModels {
             ([Describes], [path]) => (None, describes(path)?),
             ([Answers, Describes], [first, second]) => (answers(first)?, describes(second)?),
             ([Describes, Answers], [first, second]) => (answers(second)?, describes(first)?),
-            _ => return Err(no_name(name, "a name of two parts needs one BLIP that answers and one that describes")),
+            _ => {
+                return Err(name_error(name, "a name of two parts needs one BLIP that answers and one that describes"));
+            }
         };
         Ok(Arc::new(BlipEye { name: name.to_owned(), answers, describes }))
     }
@@ -224,35 +226,35 @@ impl EyeArchitecture {
 
 /// The one or two models of a name: `hf/ORG/NAME`, or two BLIPs as `hf/ORG/ANSWERS+ORG/DESCRIBES`.
 fn parse_parts(name: &str) -> Result<Vec<ModelName>, LocalError> {
-    let rest = name.strip_prefix("hf/").ok_or_else(|| no_name(name, "it does not begin with hf/"))?;
+    let rest = name.strip_prefix("hf/").ok_or_else(|| name_error(name, "it does not begin with hf/"))?;
     let parts = rest.split('+').map(|part| ModelName::parse(&format!("hf/{part}")));
     let parts: Vec<ModelName> = parts.collect::<Result<_, _>>()?;
     if parts.iter().any(ModelName::is_gguf) {
-        return Err(no_name(name, "a GGUF file cannot be used in process"));
+        return Err(name_error(name, "a GGUF file cannot be used in process"));
     }
     if parts.iter().any(ModelName::is_file) {
-        return Err(no_name(name, "a .pth file holds a detector, which neither sees nor writes"));
+        return Err(name_error(name, "a .pth file holds a detector, which neither sees nor writes"));
     }
     if parts.len() > 2 {
-        return Err(no_name(name, "a name has at most two parts: one BLIP that answers and one that describes"));
+        return Err(name_error(name, "a name has at most two parts: one BLIP that answers and one that describes"));
     }
     Ok(parts)
 }
 
 /// The model that a detector's name refers to.
 fn detector_name(name: &str) -> Result<ModelName, LocalError> {
-    let rest = name.strip_prefix("hf/").ok_or_else(|| no_name(name, "it does not begin with hf/"))?;
+    let rest = name.strip_prefix("hf/").ok_or_else(|| name_error(name, "it does not begin with hf/"))?;
     if rest.contains('+') {
-        return Err(no_name(name, "a detector is one model"));
+        return Err(name_error(name, "a detector is one model"));
     }
     let part = ModelName::parse(name)?;
     if part.is_gguf() {
-        return Err(no_name(name, "a GGUF file cannot be used in process"));
+        return Err(name_error(name, "a GGUF file cannot be used in process"));
     }
     Ok(part)
 }
 
-fn no_name(name: &str, problem: &str) -> LocalError {
+fn name_error(name: &str, problem: &str) -> LocalError {
     LocalError::Name { name: name.to_owned(), problem: problem.to_owned() }
 }
 

@@ -20,7 +20,7 @@ use std::{
 use wayword_database::PostgresDatabase;
 use wayword_queue::{
     ChunkBoard, ChunkOutcome, ChunkPlan, ChunkQueue, ChunkRecord, HEARTBEAT_LEASE, HeartbeatThread, ShardBoard,
-    ShardPart, WorkerHeartbeat, chunk_folder, done_of, sync_tree, work_chunks, worker_name,
+    ShardPart, WorkerHeartbeat, chunk_folder, read_done_mark, sync_tree, work_chunks, worker_name,
 };
 use wayword_testkit::PostgresServer;
 
@@ -128,7 +128,8 @@ fn measure(by_queue: bool, items: usize, workers: usize, chunk: usize) {
     let took_s = begun.elapsed().as_secs_f64();
     println!("{all} items in {} chunks by {workers} workers: {took_s:.1} s, {:.0}/s", made.len(), all as f64 / took_s);
     tell_tenths(&made);
-    let marked = (0..plan.chunk_count()).filter(|chunk| done_of(folder.path(), *chunk).unwrap().is_some()).count();
+    let marked =
+        (0..plan.chunk_count()).filter(|chunk| read_done_mark(folder.path(), *chunk).unwrap().is_some()).count();
     assert_eq!(
         (all, made.len(), marked),
         (items, plan.chunk_count(), plan.chunk_count()),

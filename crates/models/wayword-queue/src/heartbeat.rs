@@ -117,7 +117,7 @@ impl HeartbeatThread {
             let every = fresh / BEATS_PER_LEASE;
             thread::Builder::new().name("heartbeat".to_owned()).spawn(move || {
                 while ended.recv_timeout(every) == Err(mpsc::RecvTimeoutError::Timeout) {
-                    if !is_ours(&path, &token) {
+                    if !has_token(&path, &token) {
                         is_lost.store(true, Ordering::SeqCst);
                         return;
                     }
@@ -134,8 +134,8 @@ impl HeartbeatThread {
     ///
     /// # Errors
     /// [`QueueError::TakenOver`].
-    pub fn check_ours(&self) -> Result<(), QueueError> {
-        if self.is_lost.load(Ordering::SeqCst) || !is_ours(&self.path, &self.token) {
+    pub fn check_heartbeat(&self) -> Result<(), QueueError> {
+        if self.is_lost.load(Ordering::SeqCst) || !has_token(&self.path, &self.token) {
             return Err(QueueError::TakenOver(self.path.clone()));
         }
         Ok(())
@@ -148,14 +148,14 @@ impl Drop for HeartbeatThread {
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
-        if is_ours(&self.path, &self.token) {
+        if has_token(&self.path, &self.token) {
             let _ = fs::remove_file(&self.path);
         }
     }
 }
 
 /// Whether a file is still this worker's. A file that cannot be read for a moment counts as this worker's.
-fn is_ours(path: &Path, token: &str) -> bool {
+fn has_token(path: &Path, token: &str) -> bool {
     match from_file::<WorkerHeartbeat>(path) {
         Ok(Some(beat)) => beat.token == token,
         Ok(None) => false,
@@ -174,7 +174,7 @@ pub fn read_heartbeats(folder: &Path) -> Result<Vec<HeartbeatEntry>, QueueError>
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
         Err(source) => return Err(QueueError::Io { path: workers, doing: "list", source }),
     };
-    let now = now_of(&workers)?;
+    let now = file_system_time(&workers)?;
     let mut beats = Vec::new();
     for entry in entries.flatten() {
         let Ok(name) = entry.file_name().into_string() else { continue };
@@ -193,7 +193,7 @@ pub fn read_heartbeats(folder: &Path) -> Result<Vec<HeartbeatEntry>, QueueError>
 }
 
 /// The time by the clock of the file system: that of a file written just now.
-fn now_of(folder: &Path) -> Result<SystemTime, QueueError> {
+fn file_system_time(folder: &Path) -> Result<SystemTime, QueueError> {
     let path = folder.join(format!(".clock-{}-{:?}", std::process::id(), thread::current().id()));
     let failed = || QueueError::for_file(&path, "ask the file system for the time by");
     put_whole(&path, b"now")?;
@@ -229,8 +229,8 @@ mod tests {
         thread::sleep(Duration::from_millis(60));
         let second =
             HeartbeatThread::start(folder.path(), "shard", beat("b"), Duration::from_millis(50), |_| false).unwrap();
-        assert!(matches!(first.check_ours(), Err(QueueError::TakenOver(_))));
+        assert!(matches!(first.check_heartbeat(), Err(QueueError::TakenOver(_))));
         drop(first);
-        assert!(second.check_ours().is_ok(), "the first does not remove the second's file");
+        assert!(second.check_heartbeat().is_ok(), "the first does not remove the second's file");
     }
 }

@@ -34,7 +34,9 @@ pub use board::{ChunkBoard, ChunkClaim, RemainingChunks};
 pub use error::QueueError;
 pub use folder::{put_new, put_whole, sync_tree};
 pub use heartbeat::{HEARTBEAT_LEASE, HeartbeatEntry, HeartbeatThread, WorkerHeartbeat, read_heartbeats, worker_name};
-pub use marks::{ChunkRecord, chunk_folder, dead_of, dead_path, done_of, done_path, failing_chunks, reopen_chunks};
+pub use marks::{
+    ChunkRecord, chunk_folder, dead_path, done_path, failing_chunks, read_dead_mark, read_done_mark, reopen_chunks,
+};
 pub use plan::{ChunkPlan, PLAN_FILE as PLAN, WORKERS_FILE};
 pub use protocol::{ChunkRow, ChunkState, MAX_CHUNK_TRIES};
 #[cfg(feature = "postgres")]

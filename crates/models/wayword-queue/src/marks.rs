@@ -112,7 +112,7 @@ pub(crate) fn from_file<T: serde::de::DeserializeOwned>(path: &Path) -> Result<O
 ///
 /// # Errors
 /// When its mark cannot be read.
-pub fn done_of(folder: &Path, chunk: usize) -> Result<Option<ChunkRecord>, QueueError> {
+pub fn read_done_mark(folder: &Path, chunk: usize) -> Result<Option<ChunkRecord>, QueueError> {
     from_file(&done_path(folder, chunk))
 }
 
@@ -120,7 +120,7 @@ pub fn done_of(folder: &Path, chunk: usize) -> Result<Option<ChunkRecord>, Queue
 ///
 /// # Errors
 /// When its mark cannot be read.
-pub fn dead_of(folder: &Path, chunk: usize) -> Result<Option<String>, QueueError> {
+pub fn read_dead_mark(folder: &Path, chunk: usize) -> Result<Option<String>, QueueError> {
     from_file(&dead_path(folder, chunk))
 }
 
@@ -131,8 +131,9 @@ pub fn dead_of(folder: &Path, chunk: usize) -> Result<Option<String>, QueueError
 pub fn failing_chunks(folder: &Path, plan: &ChunkPlan, reason: &str) -> Result<Vec<usize>, QueueError> {
     let mut failing = Vec::new();
     for chunk in 0..plan.chunk_count() {
-        let failed = done_of(folder, chunk)?.is_some_and(|done| done.failed.keys().any(|why| why.contains(reason)));
-        if failed || dead_of(folder, chunk)?.is_some_and(|why| why.contains(reason)) {
+        let failed =
+            read_done_mark(folder, chunk)?.is_some_and(|done| done.failed.keys().any(|why| why.contains(reason)));
+        if failed || read_dead_mark(folder, chunk)?.is_some_and(|why| why.contains(reason)) {
             failing.push(chunk);
         }
     }

@@ -129,7 +129,7 @@ impl<'a> ShardBoard<'a> {
 
 impl ChunkBoard for ShardBoard<'_> {
     fn take_chunk(&self) -> Result<Option<ChunkClaim>, QueueError> {
-        self.heart.check_ours()?;
+        self.heart.check_heartbeat()?;
         // Each check of a mark is a request to a network file system. So the chunks before the last one are checked again
         // only at the end, because they may have been opened again meanwhile.
         match self.begin_from(self.from.get())? {
@@ -139,7 +139,7 @@ impl ChunkBoard for ShardBoard<'_> {
     }
 
     fn complete_chunk(&self, claimed: ChunkClaim, done: &ChunkRecord) -> Result<bool, QueueError> {
-        self.heart.check_ours()?;
+        self.heart.check_heartbeat()?;
         ChunkRecord { chunk: claimed.chunk, ..done.clone() }.write_mark(self.folder)
     }
 
@@ -168,7 +168,7 @@ fn bytes_in(folder: &Path) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{HEARTBEAT_LEASE, WorkerHeartbeat, dead_of, failing_chunks, reopen_chunks};
+    use crate::{HEARTBEAT_LEASE, WorkerHeartbeat, failing_chunks, read_dead_mark, reopen_chunks};
 
     #[test]
     fn parts_are_read_and_together_they_are_the_whole() {
@@ -196,7 +196,7 @@ mod tests {
             assert_eq!(shard.take_chunk().unwrap().unwrap().chunk, 0);
         }
         assert_eq!(shard.take_chunk().unwrap().unwrap().chunk, 1, "the rest goes on");
-        assert!(dead_of(folder.path(), 0).unwrap().unwrap().contains("3 times"));
+        assert!(read_dead_mark(folder.path(), 0).unwrap().unwrap().contains("3 times"));
         assert_eq!(failing_chunks(folder.path(), &plan, "3 times").unwrap(), [0]);
         reopen_chunks(folder.path(), &[0]).unwrap();
         assert_eq!(shard.take_chunk().unwrap().unwrap().chunk, 1, "what is left comes first");

@@ -102,7 +102,7 @@ impl RequestSize {
     /// An upper bound of the request's tokens, for any tokenizer in use and for large pictures. Words have more than
     /// two characters each; in a script that a tokenizer does not know, each byte is a token. 16 more are for
     /// what a service adds around the messages.
-    pub(crate) fn most_tokens_in(self, tokens_per_picture: u64) -> u64 {
+    pub(crate) fn max_tokens_in(self, tokens_per_picture: u64) -> u64 {
         (self.chars / 2 + self.other_bytes + 16).saturating_add(tokens_per_picture.saturating_mul(self.pictures))
     }
 
@@ -122,7 +122,7 @@ impl PreparedCall<'_> {
         let body = self.wire.body.to_string();
         let most_usd = self
             .price
-            .map(|price| price.cost_usd(self.size.most_tokens_in(price.tokens_per_picture), self.size.max_tokens));
+            .map(|price| price.cost_usd(self.size.max_tokens_in(price.tokens_per_picture), self.size.max_tokens));
         let mut empty = 0;
         let mut attempt = 0;
         loop {
@@ -151,7 +151,7 @@ impl PreparedCall<'_> {
                     return Err(CallError::Refused(error.into()));
                 }
             };
-            let retry = self.give_up_or(fault, attempts)?;
+            let retry = self.record_fault(fault, attempts)?;
             if attempt >= self.attempts || empty > MAX_EMPTY_ANSWER_RETRIES {
                 let times = if attempt == 1 { "1 attempt".to_owned() } else { format!("{attempt} attempts") };
                 let reason = format!("{} ({times})", retry.reason);
@@ -169,7 +169,7 @@ impl PreparedCall<'_> {
     }
 
     /// Records a fault in the ledger. Returns it if another attempt makes sense.
-    fn give_up_or(&self, fault: RemoteFault, attempts: &mut CallAttempts<'_>) -> Result<RetryFault, CallError> {
+    fn record_fault(&self, fault: RemoteFault, attempts: &mut CallAttempts<'_>) -> Result<RetryFault, CallError> {
         match fault {
             RemoteFault::Retry(retry) => {
                 attempts.mark_failed(&retry.reason, retry.maybe_paid);
@@ -230,9 +230,12 @@ impl PreparedCall<'_> {
                 ));
                 self.read_response(&received)
             }
-            Err(error) => {
-                Err(faults::of_transport(&error, None, endpoint.provider.base_url.as_str(), endpoint.fault_context()))
-            }
+            Err(error) => Err(faults::fault_from_transport(
+                &error,
+                None,
+                endpoint.provider.base_url.as_str(),
+                endpoint.fault_context(),
+            )),
         };
         permit.end_with(match &reply {
             Ok(reply) => RequestOutcome::Answered { tokens: self.count_tokens(reply).0 + self.count_tokens(reply).1 },
@@ -248,14 +251,14 @@ impl PreparedCall<'_> {
     fn read_response(&self, received: &HttpResponse) -> Result<DialectReply, RemoteFault> {
         let (endpoint, status) = (self.endpoint, received.status);
         let fault = |body: &[u8]| {
-            faults::of_response(status, &received.headers, body, SystemTime::now(), endpoint.fault_context())
+            faults::fault_from_response(status, &received.headers, body, SystemTime::now(), endpoint.fault_context())
         };
         let body = match &received.body {
             Ok(body) => body,
             // The status is enough, even if the body was lost.
             Err(_) if !(200..300).contains(&status) => return Err(fault(&[])),
             Err(error) => {
-                return Err(faults::of_transport(
+                return Err(faults::fault_from_transport(
                     error,
                     Some(status),
                     endpoint.provider.base_url.as_str(),
@@ -271,7 +274,7 @@ impl PreparedCall<'_> {
         if value.get("error").is_some_and(|error| !error.is_null()) {
             return Err(fault(body));
         }
-        endpoint.provider.dialect.read_reply(&value).map_err(|missing| match faults::error_inside(&value) {
+        endpoint.provider.dialect.read_reply(&value).map_err(|missing| match faults::reports_error(&value) {
             true => fault(body),
             false => RemoteFault::retry_without_wait(format!("the answer has no {}", missing.0), true),
         })

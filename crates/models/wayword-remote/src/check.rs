@@ -77,11 +77,11 @@ impl ModelServices {
             return findings;
         }
         check_price(&model, &mut findings);
-        let answering = ServiceFinding::of_speaking(model.as_ref());
+        let answering = ServiceFinding::check_answering(model.as_ref());
         let answers = answering.level == CheckLevel::Ok;
         findings.push(answering);
         if answers && is_to_see {
-            findings.extend(ServiceFinding::of_seeing(model.as_ref()));
+            findings.extend(ServiceFinding::check_seeing(model.as_ref()));
         }
         findings
     }
@@ -115,7 +115,7 @@ fn check_service(model: &RemoteModel, findings: &mut Vec<ServiceFinding>) -> boo
     let received = match endpoint.request_models() {
         Ok(received) => received,
         Err(error) => {
-            let fault = faults::of_transport(&error, None, url, endpoint.fault_context());
+            let fault = faults::fault_from_transport(&error, None, url, endpoint.fault_context());
             let to_do = if provider.local {
                 format!("start {} or give --base-url", provider.name)
             } else {
@@ -127,8 +127,13 @@ fn check_service(model: &RemoteModel, findings: &mut Vec<ServiceFinding>) -> boo
     };
     let body = received.body.unwrap_or_default();
     if !(200..300).contains(&received.status) {
-        let fault =
-            faults::of_response(received.status, &received.headers, &body, SystemTime::now(), endpoint.fault_context());
+        let fault = faults::fault_from_response(
+            received.status,
+            &received.headers,
+            &body,
+            SystemTime::now(),
+            endpoint.fault_context(),
+        );
         return match fault {
             faults::RemoteFault::Stop { reason, hint } => {
                 findings.push(ServiceFinding::problem(reason, hint));
@@ -145,7 +150,7 @@ fn check_service(model: &RemoteModel, findings: &mut Vec<ServiceFinding>) -> boo
     findings.push(ServiceFinding::ok(format!("{url} answers")));
     let listed = serde_json::from_slice(&body).unwrap_or_default();
     match provider.dialect.listed_models(&listed) {
-        Some(models) if models.iter().any(|known| is_same(known, model.model_name())) => {
+        Some(models) if models.iter().any(|known| is_listed_as(known, model.model_name())) => {
             findings.push(ServiceFinding::ok(format!("{} has {}", provider.name, model.model_name())));
         }
         Some(models) => {
@@ -167,7 +172,7 @@ fn check_service(model: &RemoteModel, findings: &mut Vec<ServiceFinding>) -> boo
 }
 
 /// Whether a model in a service's list is the named one. Ollama's `:latest` may be left out.
-fn is_same(listed: &str, named: &str) -> bool {
+fn is_listed_as(listed: &str, named: &str) -> bool {
     listed == named.trim_start_matches("models/") || listed.strip_suffix(":latest") == Some(named)
 }
 
@@ -204,7 +209,7 @@ fn check_price(model: &RemoteModel, findings: &mut Vec<ServiceFinding>) {
 fn ask_once(model: &dyn LanguageModel, message: ChatMessage) -> Result<String, String> {
     let sampling = SamplingOptions { temperature: 0.0, max_tokens: MAX_TOKENS, seed: 0 };
     let request =
-        ModelRequest { messages: vec![message], sampling, replicate: by_the_clock(), schema: None, tools: &[] };
+        ModelRequest { messages: vec![message], sampling, replicate: clock_replicate(), schema: None, tools: &[] };
     let mut replies = model.complete_requests(&[request]);
     replies
         .pop()
@@ -213,7 +218,7 @@ fn ask_once(model: &dyn LanguageModel, message: ChatMessage) -> Result<String, S
 
 /// A replicate number that differs between checks, so that no check is answered from the ledger: an old answer does not
 /// show that the service works now.
-fn by_the_clock() -> u32 {
+fn clock_replicate() -> u32 {
     let ms = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis());
     u32::try_from(ms & u128::from(u32::MAX)).unwrap_or_default()
 }
@@ -221,7 +226,7 @@ fn by_the_clock() -> u32 {
 impl ServiceFinding {
     /// Asks any model for a word, wherever it runs.
     #[must_use]
-    pub fn of_speaking(model: &dyn LanguageModel) -> Self {
+    pub fn check_answering(model: &dyn LanguageModel) -> Self {
         match ask_once(model, ChatMessage::from_user("Answer with the one word: ready")) {
             Ok(_) => Self::ok(format!("{} answers", model.name())),
             Err(error) => {
@@ -232,7 +237,7 @@ impl ServiceFinding {
     }
 
     /// Asks any model for the colour of a red square, wherever it runs.
-    pub fn of_seeing(model: &dyn LanguageModel) -> Option<Self> {
+    pub fn check_seeing(model: &dyn LanguageModel) -> Option<Self> {
         let pixels = [220, 20, 20].repeat((SQUARE_PX * SQUARE_PX) as usize);
         let square = Image::new(SQUARE_PX, SQUARE_PX, pixels).ok()?;
         let text = "Which colour is this picture? Answer with one word.".to_owned();

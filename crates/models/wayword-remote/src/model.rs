@@ -69,7 +69,7 @@ impl RemoteModel {
                 size: request_size(request),
                 attempts: self.attempts,
             };
-            prepared.make_call(attempts).inspect_err(|error| attempts.fails_as(error.kind_name()))
+            prepared.make_call(attempts).inspect_err(|error| attempts.set_failure_kind(error.kind_name()))
         });
         answer.map(reply_from_answer).map_err(|error| self.model_error(error))
     }
@@ -250,7 +250,7 @@ mod tests {
                 schema: None,
                 tools: &[],
             });
-            assert!(size.most_tokens_in(0) >= bytes, "{size:?}");
+            assert!(size.max_tokens_in(0) >= bytes, "{size:?}");
         }
     }
 }

@@ -24,7 +24,7 @@ impl ModelServices {
         if let Err(closed) = endpoint.find_secret() {
             return Err(ConfigError::NotReady { problem: closed.reason, hint: closed.hint });
         }
-        if self.is_reached_directly(endpoint) { lets_in(endpoint) } else { Ok(()) }
+        if self.is_reached_directly(endpoint) { check_connection(endpoint) } else { Ok(()) }
     }
 
     /// Refuses a model that is to be shown pictures, if its provider takes none. Makes no connection.
@@ -88,7 +88,7 @@ fn describes_sight(model: &RemoteModel) -> Option<bool> {
 }
 
 /// Refuses a provider if no server accepts a connection at its address.
-fn lets_in(endpoint: &ProviderEndpoint) -> Result<(), ConfigError> {
+fn check_connection(endpoint: &ProviderEndpoint) -> Result<(), ConfigError> {
     let provider = &endpoint.provider;
     let (name, url) = (&provider.name, provider.base_url.as_str());
     let not_ready = |problem: String, hint: String| Err(ConfigError::NotReady { problem, hint });

@@ -72,7 +72,7 @@ impl ModelServices {
             if price.is_none() {
                 return Err(ConfigError::NoPrice(name.to_owned()));
             }
-            if changes_the_limit(&endpoint.provider) {
+            if changes_token_limit(&endpoint.provider) {
                 return Err(ConfigError::Setting {
                     setting: format!("omit or extra of [providers.{provider}]"),
                     problem: "must not change the token limit if there is a limit on money, because that one depends on it",
@@ -134,7 +134,7 @@ impl fmt::Debug for ModelServices {
 }
 
 /// Whether settings remove the token limit from a request, replace it, or ask for several answers at once.
-fn changes_the_limit(provider: &RemoteProvider) -> bool {
+fn changes_token_limit(provider: &RemoteProvider) -> bool {
     // Fields of a request's body that do so in one of the dialects.
     const IN_BODY: [&str; 8] = [
         "max_tokens",

@@ -19,7 +19,7 @@ pub fn read_episodes(file: &Path, platform: &dyn Platform) -> Result<Vec<Episode
                 records.iter().map(|record| (record.path.id.as_str(), &record.path)).collect();
             for episode in episodes.iter_mut().filter(|episode| episode.viewpoints.is_empty()) {
                 if let Some(path) = paths.get(episode.id.as_str()).filter(|path| path.motion.is_known()) {
-                    episode.viewpoints = nearest_along(platform, path)?;
+                    episode.viewpoints = viewpoints_along_path(platform, path)?;
                 }
             }
             episodes
@@ -49,7 +49,7 @@ pub fn path_name(scene: &SceneId, path_id: &str) -> String {
 ///
 /// # Errors
 /// When its scene is unknown.
-pub(crate) fn nearest_along(
+pub(crate) fn viewpoints_along_path(
     platform: &dyn Platform,
     path: &wayword_core::Path,
 ) -> Result<Vec<ViewpointId>, CommandError> {

@@ -25,14 +25,14 @@ pub(crate) struct ItemTexts {
 /// Reads a set: a run folder, or a file of any format, with `#STYLE` at the end to take one style.
 pub(crate) fn read_text_set(name: &str, style: Option<&str>, by: TextPairing) -> Result<TextSet, CommandError> {
     let (_, own_style) = split_style(name);
-    let path = file_of(name);
+    let path = text_set_file(name);
     let texts = if wayword_formats::detect_format(&path)? == DatasetFormat::Wayword {
-        of_records(&path, own_style.or(style))?
+        texts_from_records(&path, own_style.or(style))?
     } else if let Some(style) = own_style {
         let problem = format!("{}: texts of this format have no style, so none has style {style}", path.display());
         return Err(CommandError::usage(problem, "leave out the # and what follows"));
     } else {
-        of_episodes(&path)?
+        texts_from_episodes(&path)?
     };
     let mut items = TextSet::new();
     for SingleText { item, path, text } in texts {
@@ -43,13 +43,13 @@ pub(crate) fn read_text_set(name: &str, style: Option<&str>, by: TextPairing) ->
 }
 
 /// The file of a set: the instructions in a run folder, or the file itself.
-pub(crate) fn file_of(name: &str) -> PathBuf {
+pub(crate) fn text_set_file(name: &str) -> PathBuf {
     let (path, _) = split_style(name);
     if path.is_dir() { path.join(file::INSTRUCTIONS) } else { path }
 }
 
 /// The run folder of a set, if its name is one.
-pub(crate) fn run_of(name: &str) -> Option<PathBuf> {
+pub(crate) fn text_set_run(name: &str) -> Option<PathBuf> {
     Some(split_style(name).0).filter(|path| path.is_dir())
 }
 
@@ -68,7 +68,7 @@ struct SingleText {
     text: String,
 }
 
-fn of_episodes(file: &Path) -> Result<Vec<SingleText>, CommandError> {
+fn texts_from_episodes(file: &Path) -> Result<Vec<SingleText>, CommandError> {
     let mut all = Vec::new();
     for episode in wayword_formats::read_any_format(file)? {
         let path = episodes::episode_path_name(&episode);
@@ -78,7 +78,7 @@ fn of_episodes(file: &Path) -> Result<Vec<SingleText>, CommandError> {
     Ok(all)
 }
 
-fn of_records(file: &Path, style: Option<&str>) -> Result<Vec<SingleText>, CommandError> {
+fn texts_from_records(file: &Path, style: Option<&str>) -> Result<Vec<SingleText>, CommandError> {
     let mut records = jsonl::read_records(file)?;
     let styles: BTreeSet<String> = records.iter().map(|record| record.instruction.style.clone()).collect();
     let all = styles.iter().cloned().collect::<Vec<_>>().join(", ");
@@ -93,10 +93,10 @@ fn of_records(file: &Path, style: Option<&str>) -> Result<Vec<SingleText>, Comma
         return Err(CommandError::usage(problem, format!("it has these styles: {all}")));
     }
     records.retain(|record| style.is_none_or(|style| record.instruction.style == style));
-    Ok(records.into_iter().map(of_record).collect())
+    Ok(records.into_iter().map(text_from_record).collect())
 }
 
-fn of_record(record: InstructionRecord) -> SingleText {
+fn text_from_record(record: InstructionRecord) -> SingleText {
     let path = episodes::path_name(&record.path.scene, &record.path_id());
     SingleText { item: record.path.id, path, text: record.instruction.text }
 }

@@ -47,11 +47,11 @@ impl WalkingScenes {
                     off_graph: true,
                     ..HabitatOptions::default()
                 };
-                let data = settings.data.as_deref().ok_or_else(|| platforms::no_data("habitat"))?;
+                let data = settings.data.as_deref().ok_or_else(|| platforms::missing_data_error("habitat"))?;
                 WalkingPlatform::Habitat(Box::new(HabitatPlatform::open(
                     &stores::local_data(data)?,
                     options,
-                    Arc::new(wayword_run::output::pass_on),
+                    Arc::new(wayword_run::output::print_foreign_line),
                 )?))
             }
             other => {

@@ -3,7 +3,7 @@
 
 use crate::follow::{FollowedPath, read_followable};
 use wayword_checks::{CheckWorld, TextFindings};
-use wayword_core::{TextAmbiguity, TextDoubt, doubt::apart_in};
+use wayword_core::{TextAmbiguity, TextDoubt, doubt::separate_doubts};
 use wayword_follower::{
     FeatureWeights,
     doubt::{DoubtBounds, find_doubts as by_changes, from_checks, is_too_long},
@@ -43,5 +43,5 @@ pub(crate) fn find_doubts(
         }
         Err(why) => (by_checks(), Some(why)),
     };
-    TextDoubts { doubts: apart_in(text, doubts), unfollowed }
+    TextDoubts { doubts: separate_doubts(text, doubts), unfollowed }
 }

@@ -182,7 +182,7 @@ impl CommandError {
     }
 
     /// Whether the disk is full or gone.
-    fn is_of_the_disk(&self) -> bool {
+    fn is_disk_failure(&self) -> bool {
         let is_full = |error: &io::Error| matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded);
         match self {
             Self::Io { source, .. } => is_full(source) || is_lost_disk(source),
@@ -190,7 +190,7 @@ impl CommandError {
             Self::Queue(error) => error.is_lost(),
             #[cfg(feature = "queue")]
             Self::Database(error) => error.is_lost(),
-            error => matches!(error.of_model(), Some(ModelError::Stopped { is_lost: true, .. })),
+            error => matches!(error.model_error(), Some(ModelError::Stopped { is_lost: true, .. })),
         }
     }
 
@@ -202,11 +202,11 @@ impl CommandError {
 
     /// Whether the provider of a model accepts no more requests.
     pub(crate) fn ends_sending(&self) -> bool {
-        self.of_model().is_some_and(ModelError::ends_run)
+        self.model_error().is_some_and(ModelError::ends_run)
     }
 
     /// The error of a model, if it is one.
-    fn of_model(&self) -> Option<&ModelError> {
+    fn model_error(&self) -> Option<&ModelError> {
         match self {
             Self::Model(error) | Self::Observe(ObserveError::Model(error)) | Self::Walk(WalkError::Model(error)) => {
                 Some(error)
@@ -224,7 +224,7 @@ impl CommandError {
             Self::Queue(QueueError::Busy { .. } | QueueError::TakenOver(_)) => Exit::Busy,
             Self::Interrupted => Exit::Interrupted,
             Self::Queue(error) if error.is_refused() => Exit::Stopped,
-            error if error.is_of_the_disk() => Exit::Lost,
+            error if error.is_disk_failure() => Exit::Lost,
             error => match error.item_failure() {
                 Some(FailureKind::Lost) => Exit::Lost,
                 None if error.ends_sending() => Exit::Stopped,

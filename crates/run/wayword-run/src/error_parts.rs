@@ -62,7 +62,7 @@ impl ErrorParts {
                 let text = error.to_string();
                 let (what, hint) =
                     text.split_once(HINT_PREFIX).map_or((&*text, None), |(what, hint)| (what, Some(hint)));
-                let place = file_of(error).map(|file| file.display().to_string());
+                let place = error_file(error).map(|file| file.display().to_string());
                 Self { kind, what: what.to_owned(), place, hint: hint.map(str::to_owned) }
             }
         }
@@ -70,7 +70,7 @@ impl ErrorParts {
 }
 
 /// The file or folder that an error is about.
-fn file_of(error: &CommandError) -> Option<&Path> {
+fn error_file(error: &CommandError) -> Option<&Path> {
     match error {
         CommandError::Io { path, .. } => Some(path),
         CommandError::Busy(folder) | CommandError::BusyElsewhere { folder, .. } => Some(folder),

@@ -7,13 +7,13 @@ use std::{
     collections::BTreeSet,
     sync::{Arc, LazyLock},
 };
-use wayword_checks::{CheckWorld, Evidence, FrameEvidence, TextFindings, TurnJudge, objects_meant};
+use wayword_checks::{CheckWorld, Evidence, FrameEvidence, TextFindings, TurnJudge, count_objects_meant};
 use wayword_core::{
     CheckFinding, CheckKind, Frame, Path, Platform, RecentCache, SceneId, TextAmbiguity, Verdict, ViewpointSurvey,
 };
 use wayword_follower::{
     FeatureWeights, Guide, KnownBuilding, PathPlace, WalkPrior,
-    route::{GainThresholds, KnownWalk, RouteVerdict, UnfollowedReason, judge_route, judge_steps, leads_there},
+    route::{GainThresholds, KnownWalk, RouteVerdict, UnfollowedReason, goal_probability, judge_route, judge_steps},
 };
 use wayword_language::{
     Language,
@@ -175,7 +175,7 @@ impl<'a> FollowedPath<'a> {
     /// How likely a text leads to the end of the path, for the choice between texts; `None` where it cannot be followed.
     pub(crate) fn leads_there(&self, text: &str) -> Option<f64> {
         let guide = read_guide(text, None).ok()?;
-        leads_there(&guide, self.known_path(), self.walk_prior(), &CHOICE_WEIGHTS).ok()
+        goal_probability(&guide, self.known_path(), self.walk_prior(), &CHOICE_WEIGHTS).ok()
     }
 
     /// The prior over other walks; `None` if the path alone is known.
@@ -197,7 +197,9 @@ impl<'a> FollowedPath<'a> {
         let known = self.known_path();
         let routed = judge_route(guide, known, self.walk_prior(), FeatureWeights::fitted(), GainThresholds::default());
         let apart = |route: &RouteVerdict| match route.ends.split_first() {
-            Some((own, others)) if !others.is_empty() => known.building.told_apart_by(*own, others).map(str::to_owned),
+            Some((own, others)) if !others.is_empty() => {
+                known.building.distinguishing_name(*own, others).map(str::to_owned)
+            }
             _ => None,
         };
         if let Err(why @ (UnfollowedReason::TooManySteps | UnfollowedReason::TooFewSteps)) = routed {
@@ -254,7 +256,7 @@ impl FollowerFindings {
         let unfollowed = self.findings.iter().find(|finding| finding.check == CheckKind::Route && self.ends.is_none());
         TextAmbiguity {
             ends: self.ends.as_ref().map(|ends| ends.count),
-            objects: objects_meant(text, evidence),
+            objects: count_objects_meant(text, evidence),
             told_apart_by: self.ends.as_ref().and_then(|ends| ends.told_apart_by.clone()),
             unverified: unfollowed.map(|finding| finding.reason.clone()),
         }

@@ -51,7 +51,7 @@ pub struct GracefulEnding(());
 /// Makes the command finish its items after an interrupt, until the returned value is dropped: the interrupt stops the
 /// sending of `calls`, and the command calls [`check_interrupt`] between two items. A second interrupt ends the
 /// process.
-pub fn finish_first(calls: Option<&ModelCalls>) -> GracefulEnding {
+pub fn finish_items_first(calls: Option<&ModelCalls>) -> GracefulEnding {
     let stop: Box<dyn Fn() + Send> = match calls.map(ModelCalls::sending_stopper) {
         Some(ending) => Box::new(ending),
         None => Box::new(|| ()),
@@ -73,7 +73,7 @@ pub(crate) fn remove_on_exit(mark: &Path) {
 
 /// Whether the user or a scheduler has interrupted.
 #[must_use]
-pub fn is_asked() -> bool {
+pub fn is_interrupted() -> bool {
     INTERRUPT_ASKED.load(Ordering::Relaxed)
 }
 
@@ -82,7 +82,7 @@ pub fn is_asked() -> bool {
 /// # Errors
 /// [`CommandError::Interrupted`].
 pub fn check_interrupt() -> Result<(), CommandError> {
-    if is_asked() { Err(CommandError::Interrupted) } else { Ok(()) }
+    if is_interrupted() { Err(CommandError::Interrupted) } else { Ok(()) }
 }
 
 /// Interrupts the running command as a first Ctrl-C does: it comes to its end. For a program that this one runs in.

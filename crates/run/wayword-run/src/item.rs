@@ -4,7 +4,7 @@ use crate::{error::CommandError, settings::RunSettings};
 use std::{collections::BTreeSet, path::Path as FilePath, sync::Arc};
 use wayword_core::{ObjectId, Path, Platform, PlatformError, SceneId, ViewpointId, seed};
 use wayword_formats::Episode;
-use wayword_world::path_of;
+use wayword_world::path_for_episode;
 
 /// A path to write instructions for.
 #[derive(Debug, Clone)]
@@ -169,7 +169,7 @@ impl RunItem {
     /// When an episode does not fit its scene, or no scene has a random path of the length asked for.
     pub fn find_path(&self, settings: &RunSettings, platform: &dyn Platform) -> Result<Path, PlatformError> {
         match self {
-            Self::Episode(episode) => path_of(
+            Self::Episode(episode) => path_for_episode(
                 platform,
                 self.id(),
                 &episode.scene,

@@ -76,7 +76,7 @@ impl DetectorLookout {
     }
 
     /// Adds to the number of views that it has looked at.
-    pub(crate) fn has_looked_at(&self, views: usize) {
+    pub(crate) fn add_views(&self, views: usize) {
         self.views.fetch_add(views, Ordering::Relaxed);
     }
 

@@ -12,7 +12,7 @@ pub struct LossCounter(usize);
 
 impl LossCounter {
     /// Counts an item with this failure, or without one. Returns whether the command should end.
-    pub fn are_enough(&mut self, failure: Option<FailureKind>) -> bool {
+    pub fn ends_command(&mut self, failure: Option<FailureKind>) -> bool {
         self.0 = if failure == Some(FailureKind::Lost) { self.0 + 1 } else { 0 };
         self.0 >= MAX_FAILURES_IN_A_ROW
     }
@@ -25,7 +25,7 @@ mod tests {
     #[test]
     fn only_losses_in_a_row_count() {
         let mut losses = LossCounter::default();
-        let mut take = |failure| losses.are_enough(failure);
+        let mut take = |failure| losses.ends_command(failure);
         assert!((1..MAX_FAILURES_IN_A_ROW).all(|_| !take(Some(FailureKind::Lost))));
         assert!(!take(Some(FailureKind::Broken)) && !take(None));
         assert!((1..MAX_FAILURES_IN_A_ROW).all(|_| !take(Some(FailureKind::Lost))));

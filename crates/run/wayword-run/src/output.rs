@@ -78,7 +78,7 @@ fn tame_json(json: &str) -> String {
 }
 
 /// Prints a line that comes from elsewhere, such as a child process or a platform, on standard error.
-pub fn pass_on(line: &str) {
+pub fn print_foreign_line(line: &str) {
     eprintln!("{}", tame_error(line));
 }
 
@@ -140,12 +140,12 @@ impl CommandOutput {
     /// A progress bar for items that are slow because of calls to models: the message counts the calls, the prefix counts the
     /// finished texts.
     #[must_use]
-    pub fn progress_by_calls(&self, total: usize) -> ProgressBar {
+    pub fn call_progress_bar(&self, total: usize) -> ProgressBar {
         self.make_bar(total as u64, "items {bar:24} {pos}/{len}  {msg}  {prefix}")
     }
 
     /// Prints a line about the progress, if there is no terminal to show a bar on.
-    pub fn in_lines(&self, text: impl Display) {
+    pub fn print_progress_line(&self, text: impl Display) {
         if self.listener.is_none() && !io::stderr().is_terminal() {
             self.say(text);
         }

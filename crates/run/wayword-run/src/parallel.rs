@@ -12,7 +12,7 @@ use wayword_ledger::CallContext;
 
 /// Calls `make` for each item on at most `threads` threads, and returns the results in the order of the items. After a result
 /// for which `ends` is true no further item is begun, so the results of the last items may be missing.
-pub fn at_once<I: Sync, R: Send>(
+pub fn make_in_parallel<I: Sync, R: Send>(
     items: &[I],
     threads: usize,
     make: impl Fn(&I) -> R + Sync,
@@ -60,17 +60,17 @@ mod tests {
             thread::sleep(Duration::from_millis(40 + item * 7919 % 20));
             item * 2
         };
-        let made = at_once(&items, 8, make, |_| false);
+        let made = make_in_parallel(&items, 8, make, |_| false);
         assert_eq!(made, items.iter().map(|item| item * 2).collect::<Vec<_>>());
         assert!(begun.elapsed() < Duration::from_millis(12 * 40), "{:?}", begun.elapsed());
-        assert_eq!(at_once(&items, 1, |item| *item, |_| false), items);
-        assert_eq!(at_once(&[], 8, |item: &u64| *item, |_| false), Vec::<u64>::new());
+        assert_eq!(make_in_parallel(&items, 1, |item| *item, |_| false), items);
+        assert_eq!(make_in_parallel(&[], 8, |item: &u64| *item, |_| false), Vec::<u64>::new());
     }
 
     #[test]
     fn at_once_begins_no_item_after_the_end() {
         let items: Vec<usize> = (0..1000).collect();
-        let made = at_once(&items, 4, |item| *item, |item| *item == 10);
+        let made = make_in_parallel(&items, 4, |item| *item, |item| *item == 10);
         assert!((11..=20).contains(&made.len()), "{}", made.len());
         assert_eq!(made, items[..made.len()]);
     }

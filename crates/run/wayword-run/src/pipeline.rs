@@ -5,7 +5,7 @@ use crate::{
     follow::{FollowedPath, FollowerFindings, KnownScenes, UNKNOWN_MOTION_REASON, ambiguity_rejection},
     item::RunItem,
     lookout::DetectorLookout,
-    parallel::at_once,
+    parallel::make_in_parallel,
     pictures::{self, FrameJpeg},
     platforms::RememberingPlatform,
     run_folder::WorldData,
@@ -18,8 +18,8 @@ use wayword_checks::{Evidence, EvidenceSource, TextFindings, WalkMemory};
 use wayword_core::{Caption, Frame, ModelError, Path, Platform, PlatformError, SceneId, TextAmbiguity, View, ViewGaze};
 use wayword_ledger::CallContext;
 use wayword_synthesis::{
-    detection::{detector_only, seek_along_path},
-    observe::{PlannedView, gazes_around, observe_with, talk_about},
+    detection::{detector_evidence, seek_along_path},
+    observe::{PlannedView, caption_view, gazes_around, observe_path_with},
     offline::{describe_target, list_around_frame},
     repair::{InstructionOrder, TextFollower, WritingOutcome, write_and_repair},
     walk::ObservedWalk,
@@ -112,14 +112,14 @@ pub fn write_item(
     let talk = |views: &[PlannedView]| -> Result<Vec<Caption>, ModelError> {
         // The other views are described although one fails, so the error is always that of the first failing view in order.
         let ends = |caption: &Result<Caption, ModelError>| caption.as_ref().is_err_and(ModelError::ends_run);
-        at_once(views, threads, |planned| talk_about(&planned.view, observers), ends).into_iter().collect()
+        make_in_parallel(views, threads, |planned| caption_view(&planned.view, observers), ends).into_iter().collect()
     };
-    let mut observations = observe_with(&world, &path, settings.frames, observers, &talk)?;
+    let mut observations = observe_path_with(&world, &path, settings.frames, observers, &talk)?;
     if let Some(lookout) = team.lookout() {
         let view_count = CallContext::with_purpose("detect", || {
             seek_along_path(&world, &path, &mut observations, lookout.to_seeker())
         })?;
-        lookout.has_looked_at(view_count);
+        lookout.add_views(view_count);
     }
     let walk = ObservedWalk::new(path, observations);
     let detector = team.lookout().map(DetectorLookout::name);
@@ -162,7 +162,7 @@ pub fn write_item(
         write_texts(team, order, settings.per_path)
     };
     let ends = |texts: &Result<Vec<WritingOutcome>, ModelError>| texts.as_ref().is_err_and(ModelError::ends_run);
-    let outcomes = at_once(styles, threads, write_style, ends).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let outcomes = make_in_parallel(styles, threads, write_style, ends).into_iter().collect::<Result<Vec<_>, _>>()?;
     Ok(WrittenItem { walk, outcomes: outcomes.into_iter().flatten().collect(), ahead })
 }
 
@@ -252,8 +252,10 @@ pub fn item_path(
 /// list of objects, from everything around the path's end.
 fn describe_path_target(path: &mut Path, platform: &dyn Platform, scenes: &KnownScenes) -> Result<(), CommandError> {
     let (Some(target), Some(last)) = (&mut path.target, path.frames.last()) else { return Ok(()) };
-    let seen =
-        list_around_frame(last, &labels_at(platform, &path.scene, last, &ViewGaze::around_heading(last.pose.heading))?);
+    let seen = list_around_frame(
+        last,
+        &look_without_pictures(platform, &path.scene, last, &ViewGaze::around_heading(last.pose.heading))?,
+    );
     if !seen.knows_frame(last) {
         return Ok(());
     }
@@ -267,12 +269,12 @@ fn describe_path_target(path: &mut Path, platform: &dyn Platform, scenes: &Known
 /// # Errors
 /// When a view cannot be had.
 pub fn path_panoramas(platform: &dyn Platform, path: &Path) -> Result<Vec<Vec<View>>, PlatformError> {
-    let views = |frame: &Frame| labels_at(platform, &path.scene, frame, &gazes_around(path, frame));
+    let views = |frame: &Frame| look_without_pictures(platform, &path.scene, frame, &gazes_around(path, frame));
     path.frames.iter().map(views).collect()
 }
 
 /// The views from a frame, for which the platform need not make pictures.
-fn labels_at(
+fn look_without_pictures(
     platform: &dyn Platform,
     scene: &SceneId,
     frame: &Frame,
@@ -301,8 +303,8 @@ fn collect_evidence(
         false => None,
     };
     let without_labels = || match detector.filter(|_| sources.detector && !sources.captions) {
-        Some(detector) => Evidence::from_detector(&walk.path, &detector_only(&walk.observations, detector)),
+        Some(detector) => Evidence::from_detector(&walk.path, &detector_evidence(&walk.observations, detector)),
         None => walk.evidence(),
     };
-    Ok(labels.or_else(without_labels).unwrap_or_else(|| Evidence::of_path_alone(&walk.path)))
+    Ok(labels.or_else(without_labels).unwrap_or_else(|| Evidence::for_path_alone(&walk.path)))
 }

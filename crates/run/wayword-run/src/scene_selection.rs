@@ -36,7 +36,7 @@ pub fn settle_left_out(
         [] => platform.files().candidate_scenes()?,
         names => names.iter().filter_map(|name| SceneId::new(name.as_str()).ok()).collect(),
     };
-    let left_out = left_out(&asked, platform, output)?;
+    let left_out = examine_unusable(&asked, platform, output)?;
     Ok(RunSettings { left_out, ..settings.clone() })
 }
 
@@ -45,7 +45,7 @@ pub fn settle_left_out(
 ///
 /// # Errors
 /// When no scene can be used, or the platform's data is lost.
-pub(crate) fn tell_of_episodes(
+pub(crate) fn report_unusable_scenes(
     settings: &RunSettings,
     items: &[RunItem],
     platform: &dyn Platform,
@@ -56,11 +56,11 @@ pub(crate) fn tell_of_episodes(
     }
     let scenes: BTreeSet<&SceneId> = items.iter().map(RunItem::scene).collect();
     let scenes: Vec<SceneId> = scenes.into_iter().cloned().collect();
-    left_out(&scenes, platform, output).map(drop)
+    examine_unusable(&scenes, platform, output).map(drop)
 }
 
 /// Examines scenes, and reports those that cannot be used.
-fn left_out(
+fn examine_unusable(
     scenes: &[SceneId],
     platform: &dyn Platform,
     output: &CommandOutput,

@@ -3,7 +3,7 @@
 use crate::{error::CommandError, similar::did_you_mean, text_file};
 use std::path::Path;
 use wayword_core::{InstructionStyle, StyleConstraints};
-use wayword_synthesis::style::{StyleProfile, built_in, built_in_names, hash_style, parse_with, validate_style};
+use wayword_synthesis::style::{StyleProfile, built_in, built_in_names, hash_style, parse_style_with, validate_style};
 
 /// A style with the measures of its reference texts.
 #[derive(Debug, Clone)]
@@ -59,7 +59,7 @@ fn find_one(name: &str) -> Result<InstructionStyle, CommandError> {
     let more = dataset.map(dataset_texts).transpose()?;
     if is_toml(name) {
         let text = text_file::read_text_file(Path::new(name), "read the style")?;
-        return Ok(parse_with(name, &text, more.unwrap_or_default())?);
+        return Ok(parse_style_with(name, &text, more.unwrap_or_default())?);
     }
     let Some(references) = more else { return Ok(built_in(name)?) };
     let constraints = built_in(name).map_or_else(|_| StyleConstraints::default(), |style| style.constraints);

@@ -51,14 +51,14 @@ impl RoleTeam {
         calls: Option<&ModelCalls>,
         platform: &dyn Platform,
     ) -> Result<Self, CommandError> {
-        Self::of_sample(settings, calls, platform, 0)
+        Self::for_sample(settings, calls, platform, 0)
     }
 
     /// As [`Self::new`], with another sample of the answers of each model: 0 is the first sample. Studies of randomness use it.
     ///
     /// # Errors
     /// As for [`Self::new`].
-    pub fn of_sample(
+    pub fn for_sample(
         settings: &RunSettings,
         calls: Option<&ModelCalls>,
         platform: &dyn Platform,

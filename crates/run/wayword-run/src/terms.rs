@@ -12,7 +12,7 @@ const OWN_PLATFORMS: [&str; 1] = ["house"];
 const TERMS_DOCUMENT: &str = "docs/DATA.md";
 
 /// Whether the scenes of a platform belong to other people, so that their terms apply.
-pub fn are_somebodys(platform: &str) -> bool {
+pub fn belong_to_others(platform: &str) -> bool {
     !OWN_PLATFORMS.contains(&platform)
 }
 
@@ -37,7 +37,7 @@ pub fn scene_terms(platform: &str) -> &'static str {
 /// With `problem`, if the right is needed and was not confirmed; `to` is the verb for the hint, such as "publish".
 #[cfg(any(feature = "parquet", feature = "study"))]
 pub fn check_right(platform: &str, has_the_right: bool, problem: String, to: &str) -> Result<(), CommandError> {
-    if !are_somebodys(platform) || has_the_right {
+    if !belong_to_others(platform) || has_the_right {
         return Ok(());
     }
     Err(CommandError::usage(
@@ -48,7 +48,7 @@ pub fn check_right(platform: &str, has_the_right: bool, problem: String, to: &st
 
 /// Prints one line for each platform with scenes of other people.
 pub fn print_terms<'p>(platforms: impl Iterator<Item = &'p str>, output: &CommandOutput) {
-    for platform in platforms.filter(|platform| are_somebodys(platform)).collect::<BTreeSet<_>>() {
+    for platform in platforms.filter(|platform| belong_to_others(platform)).collect::<BTreeSet<_>>() {
         output.say(format_args!(
             "terms of the scenes of platform {platform}: {} ({TERMS_DOCUMENT})",
             scene_terms(platform)

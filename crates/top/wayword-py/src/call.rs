@@ -3,7 +3,7 @@
 //! A command runs in its own thread, with the interpreter released, so that Python can go on. The calling thread looks every 50 ms
 //! for Ctrl-C and passes messages and progress to Python.
 
-use crate::raise::{exception_for, raised_of};
+use crate::raise::{exception_for, exception_of_kind};
 use clap::Parser;
 use pyo3::prelude::*;
 use std::{
@@ -69,7 +69,7 @@ pub(crate) fn call(py: Python<'_>, arguments: Vec<OsString>, hears: Py<PyAny>) -
     let name = arguments.first().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let typed = std::iter::once(OsString::from("wayword")).chain(arguments);
     let cli = WaywordCli::try_parse_from(typed)
-        .map_err(|error| raised_of(py, "input", in_parts(&name, &error.to_string())))?;
+        .map_err(|error| exception_of_kind(py, "input", parser_error_parts(&name, &error.to_string())))?;
     let heard = Arc::new(CommandListener::default());
     let output = CommandOutput::heard_by(Arc::clone(&heard) as Arc<dyn CommandOutputListener>);
     let exit = run_in_turn(py, &heard, &hears, || commands::run_command(cli.command, &output))?
@@ -79,7 +79,7 @@ pub(crate) fn call(py: Python<'_>, arguments: Vec<OsString>, hears: Py<PyAny>) -
 
 /// An error of the command line's parser as problem, place and hint. The usage is cut off, because Python's users type
 /// no command line.
-fn in_parts(command: &str, message: &str) -> (String, Option<String>, Option<String>) {
+fn parser_error_parts(command: &str, message: &str) -> (String, Option<String>, Option<String>) {
     let message = message.trim_start_matches("error: ");
     let what = ["\n\nUsage:", "\n\nFor more"].iter().fold(message, |text, end| text.split(end).next().unwrap_or(text));
     (what.trim().to_owned(), None, Some(format!("arguments are the flags of `wayword {command} --help`")))
@@ -88,7 +88,7 @@ fn in_parts(command: &str, message: &str) -> (String, Option<String>, Option<Str
 /// Sets the program that guards the children of this process, with its arguments. It starts the interpreter with this module.
 #[pyfunction]
 pub(crate) fn guarded_by(program: PathBuf, arguments: Vec<OsString>) {
-    process::this_program_is(process::GuardProgram { program, arguments });
+    process::set_this_program(process::GuardProgram { program, arguments });
 }
 
 /// Collects the messages, the progress and the result of a command.
@@ -230,8 +230,8 @@ fn in_thread<T: Send>(
     match (done, raised) {
         (_, Some(error)) => Err(error),
         (Some(Ok(result)), None) => Ok(result),
-        (Some(Err(panic)), None) => Err(raised_of(py, "internal", (panic_text(&*panic), None, None))),
-        (None, None) => Err(raised_of(py, "internal", ("no thread can be started".to_owned(), None, None))),
+        (Some(Err(panic)), None) => Err(exception_of_kind(py, "internal", (panic_text(&*panic), None, None))),
+        (None, None) => Err(exception_of_kind(py, "internal", ("no thread can be started".to_owned(), None, None))),
     }
 }
 
@@ -249,8 +249,8 @@ pub(crate) fn finish(py: Python<'_>) {
 /// The settings of a run folder, as JSON.
 #[pyfunction]
 pub(crate) fn settings(py: Python<'_>, folder: PathBuf) -> PyResult<String> {
-    let settings = wayword_run::run_folder::settings_of(&folder).map_err(|error| exception_for(py, error))?;
-    serde_json::to_string(&settings).map_err(|error| raised_of(py, "internal", (error.to_string(), None, None)))
+    let settings = wayword_run::run_folder::read_run_settings(&folder).map_err(|error| exception_for(py, error))?;
+    serde_json::to_string(&settings).map_err(|error| exception_of_kind(py, "internal", (error.to_string(), None, None)))
 }
 
 /// The message of a panic.

@@ -2,7 +2,7 @@
 
 use crate::{
     call::run_patiently,
-    raise::{exception_for, raised_of},
+    raise::{exception_for, exception_of_kind},
 };
 use pyo3::prelude::*;
 use std::{collections::BTreeMap, path::PathBuf};
@@ -76,5 +76,5 @@ impl Map {
 
 /// A value from Python, or the exception for an invalid one.
 fn value_from_python<T, E: ToString>(py: Python<'_>, made: Result<T, E>) -> PyResult<T> {
-    made.map_err(|error| raised_of(py, "input", (error.to_string(), None, None)))
+    made.map_err(|error| exception_of_kind(py, "input", (error.to_string(), None, None)))
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     call::run_patiently,
-    raise::{exception_for, raised_of},
+    raise::{exception_for, exception_of_kind},
 };
 use pyo3::{
     exceptions::{PyLookupError, PyTypeError, PyValueError},
@@ -92,7 +92,7 @@ fn problems_error(py: Python<'_>, problems: &TrajectoryProblems) -> PyErr {
 /// The exception for a trajectory that cannot be read.
 fn unread_error(py: Python<'_>, at: usize, what: &str) -> PyErr {
     let hint = "give {\"instr_id\": ..., \"trajectory\": [...]}, and \"predObjId\" where an object is named";
-    raised_of(py, "submission", (what.to_owned(), Some(format!("trajectory {at}")), Some(hint.to_owned())))
+    exception_of_kind(py, "submission", (what.to_owned(), Some(format!("trajectory {at}")), Some(hint.to_owned())))
 }
 
 /// Hands on the name, the trajectory and the object of each entry.
@@ -298,5 +298,5 @@ impl Scores {
 
 /// A figure or a rule by its name in files.
 fn parse_name<T: serde::de::DeserializeOwned>(py: Python<'_>, name: &str) -> PyResult<T> {
-    serde_json::from_value(name.into()).map_err(|error| raised_of(py, "input", (error.to_string(), None, None)))
+    serde_json::from_value(name.into()).map_err(|error| exception_of_kind(py, "input", (error.to_string(), None, None)))
 }

@@ -6,11 +6,11 @@ use wayword_run::{error::CommandError, error_parts::ErrorParts};
 /// The exception of an error.
 pub(crate) fn exception_for(py: Python<'_>, error: CommandError) -> PyErr {
     let ErrorParts { kind, what, place, hint } = ErrorParts::from_error(&error);
-    raised_of(py, kind, (what, place, hint))
+    exception_of_kind(py, kind, (what, place, hint))
 }
 
 /// The exception of a kind, with the problem, its place, and a hint.
-pub(crate) fn raised_of(py: Python<'_>, kind: &str, parts: (String, Option<String>, Option<String>)) -> PyErr {
+pub(crate) fn exception_of_kind(py: Python<'_>, kind: &str, parts: (String, Option<String>, Option<String>)) -> PyErr {
     let (what, place, hint) = parts;
     let exception = py
         .import("wayword.errors")

@@ -1,10 +1,10 @@
 //! Worlds that are Python objects: registers one under a name, so that commands can use it as a platform.
 
-use crate::raise::raised_of;
+use crate::raise::exception_of_kind;
 use pyo3::{prelude::*, types::PyBytes};
 use std::path::PathBuf;
 use wayword_platforms::process::{InsideWorld, ProcessOptions};
-use wayword_run::platforms::{forget_inside, put_inside};
+use wayword_run::platforms::{register_world, unregister_world};
 
 /// Registers a world under a name. `answer` takes a request and returns an answer, each a line of JSON as bytes. Returns the
 /// value that `data` has for this world.
@@ -28,12 +28,12 @@ pub(crate) fn put_world(
         answered.unwrap_or_default()
     });
     let options = ProcessOptions::for_inside_world(name, inside).with_sizes(width_px, height_px, spacing_m);
-    let refused = |reason| raised_of(py, "platform", (reason, Some(name.to_owned()), None));
-    Ok(put_inside(name, options.map_err(refused)?))
+    let refused = |reason| exception_of_kind(py, "platform", (reason, Some(name.to_owned()), None));
+    Ok(register_world(name, options.map_err(refused)?))
 }
 
 /// Forgets a world.
 #[pyfunction]
 pub(crate) fn forget_world(data: PathBuf) {
-    forget_inside(&data);
+    unregister_world(&data);
 }

@@ -54,7 +54,7 @@ pub fn main(arguments: Vec<OsString>) -> u8 {
             output.print_error(&error);
             match error.exit_code() {
                 // After an interrupt, a call that was not sent or a simulator that was ended looks like a failure.
-                Exit::Stopped | Exit::Lost if interrupt::is_asked() => Exit::Interrupted as u8,
+                Exit::Stopped | Exit::Lost if interrupt::is_interrupted() => Exit::Interrupted as u8,
                 exit => exit as u8,
             }
         }

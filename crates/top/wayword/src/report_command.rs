@@ -44,7 +44,7 @@ pub(crate) fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Ex
     expect_run(&args.run)?;
     let out = args.out.clone().unwrap_or_else(|| args.run.join(file::REPORT));
     if compare::is_comparison(&args.run) {
-        let written = compare::write_of_folder(&args.run, &out, args.items.unwrap_or(MAX_REPORT_WALKS))?;
+        let written = compare::write_page_from_folder(&args.run, &out, args.items.unwrap_or(MAX_REPORT_WALKS))?;
         output.print_result(&written, &written);
         return Ok(Exit::Done);
     }

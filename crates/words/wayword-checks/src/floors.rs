@@ -1,6 +1,6 @@
 //! Checks storeys and stairs: climbs that the path does not make, and storeys that it does not pass.
 
-use super::{new_finding, or_pass};
+use super::{findings_or_pass, new_finding};
 use crate::evidence::Evidence;
 use wayword_core::{CheckFinding, CheckKind, ClimbDirection, PathMotion, Verdict};
 use wayword_language::reading::{EventContent, StoreyMention, TextEvent, TextReading};
@@ -24,7 +24,7 @@ pub(super) fn check_floors(reading: &TextReading, evidence: &Evidence) -> Vec<Ch
         let reason = if verdict == Verdict::Fail { wrong } else { unknown() };
         (verdict != Verdict::Pass).then(|| new_finding(CheckKind::Floors, verdict, reason, Some(event.span)))
     });
-    or_pass(CheckKind::Floors, stairs.chain(wrong_floors(reading, evidence)).collect())
+    findings_or_pass(CheckKind::Floors, stairs.chain(wrong_floors(reading, evidence)).collect())
 }
 
 /// The first storey of a text that is wrong or cannot be checked.

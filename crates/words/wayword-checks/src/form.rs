@@ -1,6 +1,6 @@
 //! Checks the numbers of sentences and words that the style demands.
 
-use super::{new_finding, or_pass};
+use super::{findings_or_pass, new_finding};
 use wayword_core::{CheckFinding, CheckKind, StyleConstraints, Verdict};
 use wayword_language::text::{sentence_count, word_count};
 
@@ -22,7 +22,7 @@ pub(super) fn check_form(text: &str, constraints: &StyleConstraints) -> Vec<Chec
     if let Some(limit) = constraints.fewer_words_than.filter(|limit| words >= *limit) {
         fail(format!("{} where the style asks for fewer than {limit}", counted(words, "word")));
     }
-    or_pass(CheckKind::Form, wrong)
+    findings_or_pass(CheckKind::Form, wrong)
 }
 
 #[cfg(test)]

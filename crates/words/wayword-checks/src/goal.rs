@@ -26,7 +26,7 @@ pub(super) fn check_goal(reading: &TextReading, evidence: &Evidence, object: Opt
     let wrong = |(at, place): (usize, &PlaceMention)| {
         let (verdict, reason) = match (place.is_room, place.is_thing) {
             (true, false) if place.link != PlaceLink::Beside => wrong_room(&place.name, near),
-            (false, true) => too_far(&place.name, &evidence.frames[last], reading)
+            (false, true) => find_distant_stop(&place.name, &evidence.frames[last], reading)
                 .or_else(|| wrong_thing(&place.name, near, evidence.source)),
             // A name that may mean either, as "stairs".
             _ => None,
@@ -81,7 +81,7 @@ fn wrong_room(name: &str, near: &[FrameEvidence]) -> Option<(Verdict, String)> {
 }
 
 /// The thing at which a text stops, where the nearest of its name is known to be far from the end.
-fn too_far(name: &str, last: &FrameEvidence, reading: &TextReading) -> Option<(Verdict, String)> {
+fn find_distant_stop(name: &str, last: &FrameEvidence, reading: &TextReading) -> Option<(Verdict, String)> {
     let stops = reading.events.iter().any(|event| event.what == EventContent::Stop);
     let class = find_thing(name).map_or(ThingClass::Unknown, |thing| thing.class);
     // A wide thing is near though its centre is far.

@@ -1,7 +1,7 @@
 //! Checks that each landmark of a text is shown by a frame of the path, on the side and in the colour that the text
 //! gives it.
 
-use super::{new_finding, or_pass, sides};
+use super::{findings_or_pass, new_finding, sides};
 use crate::{
     evidence::{Evidence, EvidenceSource},
     memory::frames_at_doors,
@@ -63,7 +63,7 @@ pub(super) fn check_landmarks(
             None,
         ));
     }
-    LandmarkFindings { findings: or_pass(CheckKind::Landmarks, findings), shown: all_shown }
+    LandmarkFindings { findings: findings_or_pass(CheckKind::Landmarks, findings), shown: all_shown }
 }
 
 /// The mistake in where the text puts a place: it is nowhere along the path, or on another side.
@@ -83,7 +83,7 @@ fn wrong_presence(
             _ => (verdict, format!("the program cannot check whether there is {:?}", place.name)),
         });
     }
-    if sides::is_unknown(place, evidence) {
+    if sides::is_side_unknown(place, evidence) {
         let reason = format!("the program cannot check on which side of the walker {:?} is", place.name);
         return Some((Verdict::Unverified, reason));
     }
@@ -200,7 +200,7 @@ fn at_the_end(place: &PlaceMention, evidence: &Evidence) -> ShownFrames {
 /// The verdict where no frame shows a place.
 fn verdict_on_absence(place: &PlaceMention, evidence: &Evidence, made_up: bool) -> Verdict {
     let denied = || match made_up {
-        true => evidence.names_no(&place.name),
+        true => evidence.is_named_nowhere(&place.name),
         false => evidence.denies_thing(&place.name),
     };
     let thing_denied = place.is_thing && denied();

@@ -176,7 +176,7 @@ fn check_against(text: &str, subject: CheckSubject<'_>, from_captions_alone: boo
 /// have invented any turn, side, storey or distance that the text names, while another author may have been at the
 /// place.
 #[must_use]
-pub fn check_own(text: &str, subject: CheckSubject<'_>) -> TextFindings {
+pub fn check_own_text(text: &str, subject: CheckSubject<'_>) -> TextFindings {
     let from_captions_alone = subject.evidence.source == EvidenceSource::Captions && !subject.writer_sees;
     let mut checked = check_against(text, subject, from_captions_alone);
     if subject.evidence.motion.is_known() {
@@ -197,7 +197,7 @@ pub fn check_own(text: &str, subject: CheckSubject<'_>) -> TextFindings {
 /// How many objects at the end of a path the task of a text may mean; 0 where it names none, or none is known there. A
 /// side, a colour or a neighbour ("the lamp by the desk") narrows them down.
 #[must_use]
-pub fn objects_meant(text: &str, evidence: &Evidence) -> usize {
+pub fn count_objects_meant(text: &str, evidence: &Evidence) -> usize {
     let reading = read_instruction(text, &known_names(evidence)).into_claims();
     let Some(at) = reading.task.as_ref().and_then(|task| task.object) else { return 0 };
     let EventContent::Place(place) = &reading.events[at].what else { return 0 };
@@ -303,6 +303,6 @@ fn new_finding(
 }
 
 /// The findings of one check: a pass where there are none.
-fn or_pass(check: CheckKind, findings: Vec<CheckFinding>) -> Vec<CheckFinding> {
+fn findings_or_pass(check: CheckKind, findings: Vec<CheckFinding>) -> Vec<CheckFinding> {
     if findings.is_empty() { vec![pass_finding(check)] } else { findings }
 }

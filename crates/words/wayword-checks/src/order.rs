@@ -18,7 +18,7 @@ pub(super) struct OrderFindings {
 
 /// Checks the order of the places first, then the order of the turns among them.
 pub(super) fn check_order(reading: &TextReading, evidence: &Evidence, shown: &[ShownFrames]) -> OrderFindings {
-    let sequence = in_order_of_walk(&reading.events);
+    let sequence = order_by_walk(&reading.events);
     let asides = find_asides(reading);
     let steps_with = |frames: &dyn Fn(&ShownFrames) -> Vec<usize>| -> Vec<AlignmentStep> {
         let step_at = |at: &usize| match asides[*at] {
@@ -172,7 +172,7 @@ fn step_for(event: &TextEvent, shown: Vec<usize>, evidence: &Evidence) -> Alignm
 }
 
 /// The events in the order in which the path meets them: the place of a turn comes before that turn.
-fn in_order_of_walk(events: &[TextEvent]) -> Vec<usize> {
+fn order_by_walk(events: &[TextEvent]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..events.len()).collect();
     for at in 1..events.len() {
         let tells_turn = matches!(&events[at].what, EventContent::Place(place) if place.tells_turn);

@@ -36,7 +36,7 @@ pub(super) fn wrong_side(place: &PlaceMention, frames: &[usize], evidence: &Evid
 }
 
 /// Whether the side of a place cannot be checked: without poses, a picture's left need not be the walker's.
-pub(super) fn is_unknown(place: &PlaceMention, evidence: &Evidence) -> bool {
+pub(super) fn is_side_unknown(place: &PlaceMention, evidence: &Evidence) -> bool {
     place.side.is_some() && !evidence.motion.is_known()
 }
 
@@ -136,7 +136,7 @@ mod tests {
     #[test]
     fn a_side_is_unknown_only_without_poses() {
         let left = place("Pass the sofa on your left.");
-        assert!(is_unknown(&left, &on_video()) && !is_unknown(&left, &beside(None, 0.0)));
-        assert!(!is_unknown(&place("Pass the sofa."), &on_video()));
+        assert!(is_side_unknown(&left, &on_video()) && !is_side_unknown(&left, &beside(None, 0.0)));
+        assert!(!is_side_unknown(&place("Pass the sofa."), &on_video()));
     }
 }

@@ -32,7 +32,7 @@ pub(super) fn check_task(reading: &TextReading, subject: CheckSubject<'_>) -> Ch
     if alike.is_empty() {
         return fail(format!("{name:?} is not seen from the final viewpoint"), Some(span));
     }
-    if sides::is_unknown(place, evidence) {
+    if sides::is_side_unknown(place, evidence) {
         let reason = format!("the program cannot check on which side of the walker {name:?} is");
         return new_finding(CheckKind::Task, Verdict::Unverified, reason, Some(span));
     }

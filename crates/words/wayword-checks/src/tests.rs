@@ -7,7 +7,7 @@ mod order;
 mod storeys;
 mod tasks;
 
-use super::{CheckSubject, check_own, check_text, objects_meant};
+use super::{CheckSubject, check_own_text, check_text, count_objects_meant};
 use crate::evidence::{Evidence, EvidenceSource, FrameEvidence, SeenThing};
 use wayword_core::{CheckKind, InstructionStyle, PathMotion, PathMove, StyleConstraints, Verdict};
 
@@ -314,7 +314,7 @@ fn places_of_an_unknown_motion_are_checked_in_their_order() {
 #[test]
 fn check_own_fails_statements_about_an_unknown_motion() {
     let own = |text: &str, evidence: &Evidence| {
-        let checked = check_own(text, CheckSubject::closed_world(evidence, &style(false), None));
+        let checked = check_own_text(text, CheckSubject::closed_world(evidence, &style(false), None));
         let failed = checked.findings.into_iter().filter(|finding| finding.verdict == Verdict::Fail);
         failed
             .map(|finding| (finding.check, finding.span.map(|[from, to]| text[from..to].to_owned())))
@@ -347,7 +347,7 @@ fn check_own_fails_statements_about_an_unknown_motion() {
         assert_eq!(own(text, &video), [], "{text}");
     }
     // Each check has one outcome: the finding before about the same words is gone.
-    let checked = check_own("Turn left to the bed.", CheckSubject::closed_world(&video, &style(false), None));
+    let checked = check_own_text("Turn left to the bed.", CheckSubject::closed_world(&video, &style(false), None));
     let turns = checked.findings.iter().filter(|finding| finding.check == CheckKind::Turns);
     assert_eq!(turns.map(|finding| finding.verdict).collect::<Vec<_>>(), [Verdict::Fail]);
 }
@@ -372,7 +372,7 @@ fn objects_meant_counts_one_object_that_the_text_identifies() {
         ("Go to the bedroom and dust the piano", 0),
         ("Go to the bedroom", 0),
     ] {
-        assert_eq!(objects_meant(text, &evidence), objects, "{text}");
+        assert_eq!(count_objects_meant(text, &evidence), objects, "{text}");
     }
 }
 

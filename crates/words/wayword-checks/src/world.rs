@@ -27,7 +27,7 @@ impl CheckWorld {
     /// against the evidence that is at hand now, and the questions about it were answered from the source of that
     /// evidence. `made_on`: the platform that the record names.
     #[must_use]
-    pub fn of_record(
+    pub fn for_record(
         provenance: &TextProvenance,
         made_on: &str,
         platform: &str,
@@ -94,7 +94,7 @@ mod tests {
     fn a_record_is_closed_only_with_its_platform_its_evidence_and_its_answers() {
         use EvidenceSource::{Captions, Labels};
         let world = |answerer: &str, against: &str, made_on: &str, source| {
-            CheckWorld::of_record(&provenance(answerer, against), made_on, "matterport", source)
+            CheckWorld::for_record(&provenance(answerer, against), made_on, "matterport", source)
         };
         assert_eq!(world("labels", "labels", "matterport", Labels), CheckWorld::Closed);
         assert_eq!(world("labels", "labels", "habitat", Labels), CheckWorld::Open);

@@ -147,7 +147,7 @@ impl KnownBuilding {
     /// A name that distinguishes a viewpoint from others: its room if none of the others lies in a room of that name,
     /// or else an object that is seen from there alone.
     #[must_use]
-    pub fn told_apart_by(&self, viewpoint: usize, others: &[usize]) -> Option<&str> {
+    pub fn distinguishing_name(&self, viewpoint: usize, others: &[usize]) -> Option<&str> {
         let room = |at: usize| self.viewpoints[at].room.as_deref();
         let own_room = room(viewpoint).filter(|room_here| others.iter().all(|other| room(*other) != Some(*room_here)));
         let sees =

@@ -50,7 +50,7 @@ impl WalkFit {
                 for (hops, from) in reached {
                     found.clear();
                     stretch_features(trial, step, &WalkStretch::to_node(tree, end, hops), &mut found);
-                    let weight = weights.sum_of(&found);
+                    let weight = weights.sum_weights(&found);
                     stretches[stretch_index(nodes, step, end, hops)] = weight;
                     after[end] = log_sum(after[end], before[from] + weight);
                 }
@@ -60,7 +60,7 @@ impl WalkFit {
             .map(|end| {
                 found.clear();
                 ending_features(trial, tree, end, &mut found);
-                weights.sum_of(&found)
+                weights.sum_weights(&found)
             })
             .collect();
         Self { sums, stretches, endings }

@@ -98,7 +98,7 @@ impl GuideStepKind {
 
 impl GuideStep {
     /// Whether it describes a part of the way: a turn, stairs, where to stop, a thing to pass.
-    fn tells_way(&self) -> bool {
+    fn describes_way(&self) -> bool {
         let is_way = |mention: &GuideMention| {
             matches!(
                 mention.relation,
@@ -170,7 +170,7 @@ impl Guide {
             GuideStep { kind: GuideStepKind::for_step(&step), step, mentions }
         };
         let mut steps: Vec<GuideStep> = read_steps(text, reading).into_iter().map(to_guide_step).collect();
-        let is_goal = !steps.is_empty() && !steps.iter().any(|step| step.tells_way());
+        let is_goal = !steps.is_empty() && !steps.iter().any(|step| step.describes_way());
         if is_goal {
             steps.iter_mut().for_each(|step| step.kind = GuideStepKind::Task);
             steps[0].kind = GuideStepKind::Goal;
@@ -191,7 +191,7 @@ impl Guide {
     }
 
     /// Whether it names a room.
-    pub(crate) fn tells_room(&self, room: &str) -> bool {
+    pub(crate) fn names_room(&self, room: &str) -> bool {
         self.rooms.iter().any(|named| same_room(room, named))
     }
 
@@ -203,7 +203,7 @@ impl Guide {
     }
 
     /// Whether the guide has a turn or a place within a byte range of its text, and still has a step without the words there.
-    pub(crate) fn stands_without(&self, [from, to]: [usize; 2]) -> bool {
+    pub(crate) fn has_step_without(&self, [from, to]: [usize; 2]) -> bool {
         let is_within = |span: [usize; 2]| from <= span[0] && span[1] <= to;
         let loses_turn = |step: &GuideStep| step.step.turn_span.is_some_and(is_within);
         let loses = |mention: &GuideMention| mention.span.is_some_and(is_within);
@@ -282,7 +282,7 @@ impl<'a> GuideTrial<'a> {
         };
         let found = guide.steps.iter().map(|step| step.mentions.iter().filter_map(find).collect()).collect();
         let room = |at: usize| building.viewpoints[at].room.as_deref();
-        let tells_room = (0..building.len()).map(|at| Some(guide.tells_room(room(at)?))).collect();
+        let tells_room = (0..building.len()).map(|at| Some(guide.names_room(room(at)?))).collect();
         Self { guide, building, located: found, is_room_named: tells_room }
     }
 }

@@ -63,7 +63,7 @@ impl FitSlope {
 
     /// Adds an empty text (`nothing`) for a walk, which teaches the follower a default for texts without information. It does not
     /// count in the number of texts.
-    pub fn add_floor(&mut self, nothing: &GuideTrial<'_>, tree: &WalkTree, goal: usize, weights: &FeatureWeights) {
+    pub fn add_empty_text(&mut self, nothing: &GuideTrial<'_>, tree: &WalkTree, goal: usize, weights: &FeatureWeights) {
         let mut empty_text = Self::default();
         empty_text.add_text(nothing, tree, goal, weights);
         self.values.iter_mut().zip(&empty_text.values).for_each(|(a, b)| *a += b);

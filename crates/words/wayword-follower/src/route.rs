@@ -213,7 +213,7 @@ impl WalkPosterior {
 ///
 /// # Errors
 /// With the reason, if this cannot be decided.
-pub fn leads_there(
+pub fn goal_probability(
     guide: &Guide,
     known: KnownWalk<'_>,
     prior: Option<WalkPrior>,

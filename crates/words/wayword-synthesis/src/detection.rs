@@ -62,7 +62,7 @@ pub fn seek_along_path(
 ///
 /// # Errors
 /// When the view has no picture, or the detector fails.
-pub fn seek_in(view: &View, caption: Caption, seeker: CaptionDetector<'_>) -> Result<Caption, ObserveError> {
+pub fn seek_in_view(view: &View, caption: Caption, seeker: CaptionDetector<'_>) -> Result<Caption, ObserveError> {
     let gaze = ViewGaze { heading: view.pose.heading, horizontal_fov_rad: view.horizontal_fov_rad };
     let mut observation =
         FrameObservation { looks: vec![CaptionedView { gaze, caption }], ..FrameObservation::default() };
@@ -111,7 +111,7 @@ pub fn seek_claims(
 
 /// The detector's own evidence: captions without words, with only the sightings that it found, denied or left unsure.
 #[must_use]
-pub fn detector_only(observations: &[FrameObservation], detector: &str) -> Vec<FrameObservation> {
+pub fn detector_evidence(observations: &[FrameObservation], detector: &str) -> Vec<FrameObservation> {
     let is_from_detector = |sighting: &&ObjectSighting| sighting.spot.is_some() || sighting.by == detector;
     let look = |look: &CaptionedView| {
         let sightings = look.caption.sightings.iter().filter(is_from_detector).cloned().collect();

@@ -53,8 +53,8 @@ pub fn observe_path(
     selection: FrameSelection,
     observers: ObservationRoles<'_>,
 ) -> Result<Vec<FrameObservation>, ObserveError> {
-    observe_with(platform, path, selection, observers, &|views| {
-        views.iter().map(|planned| talk_about(&planned.view, observers)).collect()
+    observe_path_with(platform, path, selection, observers, &|views| {
+        views.iter().map(|planned| caption_view(&planned.view, observers)).collect()
     })
 }
 
@@ -62,7 +62,7 @@ pub fn observe_path(
 ///
 /// # Errors
 /// When the platform gives no view, or a question is not answered.
-pub fn observe_with(
+pub fn observe_path_with(
     platform: &dyn Platform,
     path: &Path,
     selection: FrameSelection,
@@ -91,7 +91,7 @@ pub fn plan_views(
 ) -> Result<Vec<PlannedView>, PlatformError> {
     let mut planned = Vec::new();
     for (at, frame) in path.frames.iter().enumerate() {
-        planned.extend(planned_views(platform, path, at, &frame_gazes(frame, selection))?);
+        planned.extend(views_for_gazes(platform, path, at, &frame_gazes(frame, selection))?);
     }
     Ok(planned)
 }
@@ -111,7 +111,7 @@ fn plan_at_end(
     if !is_empty || !path.motion.is_known() || selection != FrameSelection::Central {
         return Ok(None);
     }
-    planned_views(platform, path, looks.len() - 1, &ViewGaze::around_heading(frame.pose.heading)).map(Some)
+    views_for_gazes(platform, path, looks.len() - 1, &ViewGaze::around_heading(frame.pose.heading)).map(Some)
 }
 
 /// Makes the observation of a frame from its looks, with a summary of their captions.
@@ -154,7 +154,7 @@ pub fn gazes_around(path: &Path, frame: &Frame) -> Vec<ViewGaze> {
 }
 
 /// The views from frame number `at` of a path in the given directions. Blank views are left out, unless all are blank.
-fn planned_views(
+fn views_for_gazes(
     platform: &dyn Platform,
     path: &Path,
     at: usize,
@@ -178,7 +178,7 @@ fn planned_views(
 ///
 /// # Errors
 /// When a role does not answer.
-pub fn talk_about(view: &View, observers: ObservationRoles<'_>) -> Result<Caption, ModelError> {
+pub fn caption_view(view: &View, observers: ObservationRoles<'_>) -> Result<Caption, ModelError> {
     if let DialogueMode::Structured { questions } = observers.mode {
         return see_view(view, observers, questions);
     }
@@ -275,6 +275,8 @@ mod tests {
             prompts_hash: None,
             detector: None,
         };
-        assert!(matches!(talk_about(&view, observers), Err(ModelError::Failed { model, .. }) if model == "test/mute"));
+        assert!(
+            matches!(caption_view(&view, observers), Err(ModelError::Failed { model, .. }) if model == "test/mute")
+        );
     }
 }

@@ -101,7 +101,7 @@ impl ObservedWalk {
     /// The memory of the walk: rooms, things, bends and stairs, from its captions.
     #[must_use]
     pub fn memory(&self) -> WalkMemory {
-        let evidence = self.evidence().unwrap_or_else(|| Evidence::of_path_alone(&self.path));
+        let evidence = self.evidence().unwrap_or_else(|| Evidence::for_path_alone(&self.path));
         WalkMemory::from_path(&evidence, &self.path)
     }
 }

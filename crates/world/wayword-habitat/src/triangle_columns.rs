@@ -171,7 +171,7 @@ impl TriangleColumns {
                 return false;
             }
             *budget -= members.len() as u64;
-            members.iter().any(|number| stands_between(&self.triangles[*number as usize], from, to))
+            members.iter().any(|number| crosses_line(&self.triangles[*number as usize], from, to))
         })
     }
 
@@ -193,7 +193,7 @@ impl TriangleColumns {
     }
 
     /// The largest number of triangles in one cell: the most that a look-up at one position has to test.
-    pub(crate) fn most_near(&self) -> usize {
+    pub(crate) fn max_triangles_per_cell(&self) -> usize {
         self.starts.windows(2).map(|cell| (cell[1] - cell[0]) as usize).max().unwrap_or_default()
     }
 
@@ -235,7 +235,7 @@ fn cells_between(low: f64, high: f64, count: usize) -> std::ops::Range<usize> {
 }
 
 /// Whether a triangle crosses the straight line between two positions (Möller and Trumbore's test).
-fn stands_between([a, b, c]: &[Vec3; 3], from: DVec3, to: DVec3) -> bool {
+fn crosses_line([a, b, c]: &[Vec3; 3], from: DVec3, to: DVec3) -> bool {
     let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
     let (way, ab, ac) = (to - from, b - a, c - a);
     let across = way.cross(ac);
@@ -349,7 +349,7 @@ mod tests {
         fn is_open_misses_no_wall_on_a_line(a in [-3.9..3.9_f64, -3.9..3.9], b in [-3.9..3.9_f64, -3.9..3.9]) {
             let eye = |[x, y]: [f64; 2]| DVec3::new(x, y, 1.2);
             let (walled, from, to) = (walled(), eye(a), eye(b));
-            let all = walled.triangles.iter().any(|triangle| stands_between(triangle, from, to));
+            let all = walled.triangles.iter().any(|triangle| crosses_line(triangle, from, to));
             prop_assert_eq!(walled.is_open(from, to, &mut 1_000_000), !all);
         }
     }

@@ -117,7 +117,7 @@ fn choose_target(home: &PreparedHouse, dice: &mut HouseDice, last: Pose) -> Resu
         let object =
             id.and_then(|id| home.scene.objects.get(&id)).filter(|object| object.role == ObjectRole::Furniture);
         object.is_some_and(|object| {
-            home.scene.house.rooms.get(object.room) == room && off_m(feet, object.bounds_m) <= TARGET_REACH_M
+            home.scene.house.rooms.get(object.room) == room && floor_distance_m(feet, object.bounds_m) <= TARGET_REACH_M
         })
     };
     let can_be_target = |label: &&ObjectLabel| label.name != "ceiling light" && label.name != "curtain";
@@ -138,7 +138,7 @@ fn choose_target(home: &PreparedHouse, dice: &mut HouseDice, last: Pose) -> Resu
 }
 
 /// The distance along the floor from a walker's feet to a box, metres.
-fn off_m(feet: DVec3, (low, high): (DVec3, DVec3)) -> f64 {
+fn floor_distance_m(feet: DVec3, (low, high): (DVec3, DVec3)) -> f64 {
     let nearest = feet.clamp(low.with_z(f64::MIN), high.with_z(f64::MAX));
     (nearest - feet).truncate().length()
 }

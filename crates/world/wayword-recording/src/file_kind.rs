@@ -78,7 +78,7 @@ impl RecordedFileKind {
         };
         let known =
             KNOWN_STARTS.iter().find(|(at, bytes, _)| begins(*at, bytes) && start_fits(*at)).map(|(.., kind)| *kind);
-        known.or_else(|| of_text(head))
+        known.or_else(|| kind_of_text_file(head))
     }
 }
 
@@ -157,7 +157,7 @@ fn head_text(head: &[u8]) -> Option<&str> {
 }
 
 /// The kind of a file that is text: a web page, or any other text.
-fn of_text(head: &[u8]) -> Option<RecordedFileKind> {
+fn kind_of_text_file(head: &[u8]) -> Option<RecordedFileKind> {
     let text = head_text(head)?;
     let start = text.trim_start().to_ascii_lowercase();
     if start.starts_with("<!doctype html") || start.starts_with("<html") {

@@ -3,7 +3,7 @@
 use crate::{
     describe::{self, DESCRIPTION_HINT, RecordingDescription},
     file_kind::RecordedFileKind,
-    names::{plain_files, scene_of, sorted_entries, unknown_scene},
+    names::{plain_files, scene_id_for_path, sorted_entries, unknown_scene},
     poses,
     reel::{PictureReel, Recording, RecordingSource, TakePicture},
 };
@@ -51,14 +51,14 @@ impl PictureFolder {
             names.retain(|name| is_picture(name));
             let names = keep_photographs(names);
             if !names.is_empty() {
-                return Ok(Some(Self { scene: scene_of(root)?, root: root.to_owned(), pictures, names }));
+                return Ok(Some(Self { scene: scene_id_for_path(root)?, root: root.to_owned(), pictures, names }));
             }
         }
         Ok(None)
     }
 
     /// The first file in the pictures' folder for which `is_wanted` is true, and the number of such files.
-    pub(crate) fn beside_pictures(
+    pub(crate) fn find_beside_pictures(
         &self,
         is_wanted: fn(&str) -> bool,
     ) -> Result<Option<(PathBuf, usize)>, PlatformError> {
@@ -71,11 +71,11 @@ impl PictureFolder {
     fn timed_pictures(&self, pictures_per_s: f64) -> Result<Vec<(f64, PathBuf)>, PlatformError> {
         let list = self.root.join(TUM_LIST_FILE);
         if let Some(text) = files::text_if_there(&list, MAX_LIST_BYTES, DESCRIPTION_HINT)? {
-            return read_list(&text, &self.root).map_err(|reason| {
+            return read_picture_list(&text, &self.root).map_err(|reason| {
                 files::file_error(&list, reason, "expected lines of `time file`, each file with a name of its own")
             });
         }
-        let times_in_names: Option<Vec<f64>> = self.names.iter().map(|name| time_of(name)).collect();
+        let times_in_names: Option<Vec<f64>> = self.names.iter().map(|name| time_in_name(name)).collect();
         let times = times_in_names
             .unwrap_or_else(|| (0..self.names.len()).map(|number| number as f64 / pictures_per_s).collect());
         Ok(times.into_iter().zip(self.names.iter().map(|name| self.pictures.join(name))).collect())
@@ -157,7 +157,7 @@ fn unfit_picture(file: &Path) -> Option<PlatformError> {
 }
 
 /// Reads lines of `time file`; the files must lie below the folder.
-fn read_list(text: &str, root: &Path) -> Result<Vec<(f64, PathBuf)>, String> {
+fn read_picture_list(text: &str, root: &Path) -> Result<Vec<(f64, PathBuf)>, String> {
     let lines = text.lines().enumerate().filter(|(_, line)| {
         let line = line.trim();
         !line.is_empty() && !line.starts_with('#')
@@ -213,7 +213,7 @@ fn keep_photographs(names: Vec<String>) -> Vec<String> {
 
 /// The time in a picture's name, seconds: `1305031102.175304.png` is in seconds, `1403636579763555584.png`
 /// in nanoseconds. `None` if the name is a running number (`000012.png`).
-fn time_of(name: &str) -> Option<f64> {
+fn time_in_name(name: &str) -> Option<f64> {
     let stem = Path::new(name).file_stem()?.to_str()?;
     let digits = stem.bytes().all(|byte| byte.is_ascii_digit());
     // KITTI's running numbers have ten digits, as times in seconds have.
@@ -283,9 +283,9 @@ mod tests {
         let stamped = folder(&["rgb/1305031102.175304.png", "rgb/1305031102.211214.png"]);
         let recording = open(stamped.path());
         assert!((recording.reel.times_s()[1] - 1_305_031_102.211_214).abs() < 1e-6);
-        assert_eq!(time_of("1403636579763555584.png"), Some(1_403_636_579.763_555_6));
-        assert_eq!(time_of("000012.png"), None);
-        assert_eq!(time_of("0000000012.png"), None);
+        assert_eq!(time_in_name("1403636579763555584.png"), Some(1_403_636_579.763_555_6));
+        assert_eq!(time_in_name("000012.png"), None);
+        assert_eq!(time_in_name("0000000012.png"), None);
     }
 
     #[test]
@@ -296,9 +296,9 @@ mod tests {
         assert_eq!(recording.reel.times_s(), [5.5, 6.5]);
         assert_eq!(recording.reel.picture_name(0), "b.png");
         for bad in ["1 ../x.png", "1 /etc/x.png", "x rgb/a.png", "1"] {
-            assert!(read_list(bad, Path::new("/tmp")).unwrap_err().contains("line 1"), "{bad}");
+            assert!(read_picture_list(bad, Path::new("/tmp")).unwrap_err().contains("line 1"), "{bad}");
         }
-        assert!(read_list("1 left/a.png\n2 right/a.png", Path::new("/tmp")).unwrap_err().contains("line 2"));
+        assert!(read_picture_list("1 left/a.png\n2 right/a.png", Path::new("/tmp")).unwrap_err().contains("line 2"));
     }
 
     #[test]

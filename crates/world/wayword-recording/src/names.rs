@@ -14,7 +14,7 @@ const MAX_NAMED_SCENES: usize = 12;
 const MAX_ENTRIES: usize = 1_000_000;
 
 /// The scene name of a recording, from the name of its file or folder.
-pub(crate) fn scene_of(path: &Path) -> Result<SceneId, PlatformError> {
+pub(crate) fn scene_id_for_path(path: &Path) -> Result<SceneId, PlatformError> {
     let name = if path.is_dir() { path.file_name() } else { path.file_stem() };
     let name = match name {
         Some(name) => name.to_string_lossy().into_owned(),
@@ -40,7 +40,7 @@ pub(crate) fn sorted_entries(folder: &Path) -> Result<Vec<String>, PlatformError
         // A name that is not UTF-8 cannot be a file that is read here.
         names.extend(entry.map_err(wrong)?.file_name().into_string().ok());
     }
-    names.sort_by(|a, b| in_order(a, b));
+    names.sort_by(|a, b| compare_names(a, b));
     Ok(names)
 }
 
@@ -61,7 +61,7 @@ pub(crate) fn unknown_scene(scene: &SceneId, known_scenes: &[SceneId]) -> Platfo
 }
 
 /// Compares names, with numbers in them compared as numbers.
-fn in_order(a: &str, b: &str) -> Ordering {
+fn compare_names(a: &str, b: &str) -> Ordering {
     let (mut left, mut right) = (a.as_bytes(), b.as_bytes());
     while let (Some((x, left_rest)), Some((y, right_rest))) = (left.split_first(), right.split_first()) {
         let order = if x.is_ascii_digit() && y.is_ascii_digit() {
@@ -96,9 +96,9 @@ mod tests {
     proptest! {
         #[test]
         fn in_order_is_a_total_order(mut names in prop::collection::vec("[a0-9]{0,5}", 3)) {
-            names.sort_by(|a, b| in_order(a, b));
-            prop_assert_ne!(in_order(&names[0], &names[2]), Ordering::Greater);
-            prop_assert_eq!(in_order(&names[0], &names[1]), in_order(&names[1], &names[0]).reverse());
+            names.sort_by(|a, b| compare_names(a, b));
+            prop_assert_ne!(compare_names(&names[0], &names[2]), Ordering::Greater);
+            prop_assert_eq!(compare_names(&names[0], &names[1]), compare_names(&names[1], &names[0]).reverse());
         }
     }
 }

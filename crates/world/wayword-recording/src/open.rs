@@ -5,7 +5,7 @@ use crate::describe::RecordingDescription;
 use crate::{
     file_kind::{self, RecordedFileKind, UnreadRecordings},
     folder::{PICTURE_FOLDERS, PictureFolder, is_unread_picture},
-    names::{scene_of, sorted_entries},
+    names::{scene_id_for_path, sorted_entries},
     reel::{Recording, RecordingSource},
     shelf::RecordingShelf,
 };
@@ -56,7 +56,7 @@ pub(crate) fn open_source(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Re
     }
     for (entry, error) in broken {
         let path = path.join(&entry);
-        match scene_of(&path) {
+        match scene_id_for_path(&path) {
             Ok(scene) => sources.push(Box::new(UnopenedRecording { scene, path })),
             // Without a valid name, no setting can choose it.
             Err(_) => hear(&format!("{entry} is skipped: {error}")),
@@ -118,13 +118,13 @@ fn open_one(path: &Path) -> Result<Option<Box<dyn RecordingSource>>, PlatformErr
         }
         let Some(folder) = PictureFolder::open(path)? else { return Ok(None) };
         // A picture may be among videos by chance, so the program does not guess which of them the user wants.
-        if let Some((file, _)) = folder.beside_pictures(is_file_of_ours)? {
+        if let Some((file, _)) = folder.find_beside_pictures(is_recording_file)? {
             let file = file.file_name().unwrap_or_default().display();
             let reason = format!("holds pictures and also recordings, such as {file}");
             return Err(files::file_error(path, reason, "give the recording's own path, or move the pictures away"));
         }
         // The picture files that cannot be read may be part of the same recording, so its path would have gaps.
-        if let Some((file, count)) = folder.beside_pictures(is_unread_picture)? {
+        if let Some((file, count)) = folder.find_beside_pictures(is_unread_picture)? {
             let kind = RecordedFileKind::from_file(&file).map_or("a picture that cannot be read", |kind| kind.name);
             let more = if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() };
             let reason =
@@ -150,7 +150,7 @@ fn file_ending(path: &Path) -> String {
 }
 
 /// Whether a file is, by its ending, a video or an MCAP file, which this program opens as a recording of its own.
-fn is_file_of_ours(name: &str) -> bool {
+fn is_recording_file(name: &str) -> bool {
     !name.starts_with('.') && matches!(file_ending(Path::new(name)).as_str(), "mp4" | "m4v" | "mov" | "mcap")
 }
 
@@ -187,7 +187,7 @@ fn open_mcap(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
 
 /// The error for a recording of a kind that was left out when this program was built.
 #[cfg(not(all(feature = "lerobot", feature = "mcap", feature = "video")))]
-fn not_built(path: &Path, what: &str) -> PlatformError {
+fn error_for_missing_feature(path: &Path, what: &str) -> PlatformError {
     let hint = "build it with `cargo build --release --features full`";
     files::file_error(path, format!("this build cannot read {what}"), hint)
 }

@@ -98,12 +98,12 @@ pub(crate) fn find_doubt(
                 axes_setting(axes)
             ))
         }),
-        None => doubt_plane(&walk, axes, described).filter(|_| climbs),
+        None => find_plane_doubt(&walk, axes, described).filter(|_| climbs),
     }
 }
 
 /// The doubt about positions alone: they stay in a plane that would be level in another world.
-fn doubt_plane(walk: &RecordedWalk, axes: PoseAxes, described: &RecordingDescription) -> Option<PoseDoubt> {
+fn find_plane_doubt(walk: &RecordedWalk, axes: PoseAxes, described: &RecordingDescription) -> Option<PoseDoubt> {
     let is_likely = |world: &WorldUpAxis| *world != axes.world && walk.is_level(*world) && !walk.is_climbing(*world);
     let likely =
         [WorldUpAxis::ZUp, WorldUpAxis::YUp].into_iter().find(is_likely).filter(|_| described.world.is_none())?;

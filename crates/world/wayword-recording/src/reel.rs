@@ -46,7 +46,7 @@ pub(crate) trait PictureReel: Send + Sync {
     fn picture_name(&self, number: usize) -> String;
 
     /// Hands out the wanted pictures, in order, one at a time: a picture need not stay in memory while the next is
-    /// read. `wanted` ascends without repetition; its numbers are below the length of [`PictureReel::times_s`].
+    /// read. `wanted` ascends without repetition; its numbers are below the length of [`PictureReel::read_times_s`].
     ///
     /// # Errors
     /// When one cannot be read, or `take` fails.

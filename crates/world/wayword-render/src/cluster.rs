@@ -50,7 +50,7 @@ impl TriangleSoup {
     /// Adds a checked mesh; `surface` is the index that its clusters get.
     pub(crate) fn add_mesh(&mut self, mesh: &Mesh, surface: u32) {
         let first_source = self.triangles.len() as u32;
-        let order = near_order(mesh);
+        let order = morton_order(mesh);
         // Where each of the mesh's vertices was stored last.
         let mut stored = vec![NOT_STORED; mesh.positions.len()];
         for group in order.chunks(MAX_CLUSTER_TRIANGLES) {
@@ -92,7 +92,7 @@ impl TriangleSoup {
 
 /// The numbers of a mesh's triangles, in an order in which neighbours in space are near each other (Morton order of the
 /// centroids).
-fn near_order(mesh: &Mesh) -> Vec<u32> {
+fn morton_order(mesh: &Mesh) -> Vec<u32> {
     let mut order: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
     if order.len() <= MAX_CLUSTER_TRIANGLES {
         return order;

@@ -64,7 +64,7 @@ impl RowRays {
             let mut from = 0;
             for run in met[..across.len()].chunk_by(|a, b| a == b) {
                 let (to, side) = (from + run.len(), &sides[run[0] as usize]);
-                let rays = [self.start, self.step].map(|ray| on_side(run[0], ray));
+                let rays = [self.start, self.step].map(|ray| to_side_axes(run[0], ray));
                 RayLandings::new(side.side_px, rays, &across[from..to]).draw_columns(side, &mut row[3 * from..3 * to]);
                 from = to;
             }
@@ -89,7 +89,7 @@ impl RowRays {
 
 /// A ray in a side's own axes: across the side, down it, and towards it, as in GL's cube lookup. +X is side 2, -X 4, +Y 0,
 /// -Y 5, +Z 1 and -Z 3.
-fn on_side(side: u32, Vec3 { x, y, z }: Vec3) -> [f32; 3] {
+fn to_side_axes(side: u32, Vec3 { x, y, z }: Vec3) -> [f32; 3] {
     match side {
         0 => [x, z, y],
         1 => [x, -y, z],

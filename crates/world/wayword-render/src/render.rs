@@ -19,7 +19,7 @@ const BANDS_PER_PICTURE: usize = 16;
 /// [`RenderError`] where the camera's numbers cannot give a picture.
 pub fn render_scene(scene: &RenderScene, camera: &PinholeCamera) -> Result<RenderedPicture, RenderError> {
     camera.check_numbers()?;
-    Ok(draw_view(scene, &ViewProjection::of_camera(camera), Some(scene.background)))
+    Ok(draw_view(scene, &ViewProjection::for_camera(camera), Some(scene.background)))
 }
 
 /// The same depths and ids without colours, in about a third of the time: [`RenderedPicture::rgb`] is empty.
@@ -28,7 +28,7 @@ pub fn render_scene(scene: &RenderScene, camera: &PinholeCamera) -> Result<Rende
 /// [`RenderError`] where the camera's numbers cannot give a picture.
 pub fn render_ids(scene: &RenderScene, camera: &PinholeCamera) -> Result<RenderedPicture, RenderError> {
     camera.check_numbers()?;
-    Ok(draw_view(scene, &ViewProjection::of_camera(camera), None))
+    Ok(draw_view(scene, &ViewProjection::for_camera(camera), None))
 }
 
 /// Draws a view, with colours if a background is given, or else with depths and ids alone.
@@ -53,7 +53,7 @@ pub(crate) fn draw_view(
         band.draw_batches(&batches, &scene.soup.triangles);
         write_depths(view, &band, depth_m);
         for (id, seen) in ids.iter_mut().zip(&band.seen) {
-            *id = id_of(scene, &batches, *seen);
+            *id = visible_id(scene, &batches, *seen);
         }
         band
     };
@@ -82,7 +82,7 @@ fn write_depths(view: &ViewProjection, band: &PictureBand, depth_m: &mut [f32]) 
 }
 
 /// The id of what a pixel shows.
-fn id_of(scene: &RenderScene, batches: &[TriangleBatch], seen: BatchTriangleIndex) -> u32 {
+fn visible_id(scene: &RenderScene, batches: &[TriangleBatch], seen: BatchTriangleIndex) -> u32 {
     if seen == BatchTriangleIndex::NO_TRIANGLE {
         0
     } else {

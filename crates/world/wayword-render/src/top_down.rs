@@ -38,6 +38,6 @@ pub fn top_down(
     let half = DVec2::new(width as f64, -(height as f64)) * (0.5 * metres_per_pixel);
     let centre = DVec2::new(bounds_min.x, bounds_max.y) + half;
     let origin = DVec3::new(centre.x, centre.y, cut_height_m);
-    let view = ViewProjection::of_map(origin, 1.0 / metres_per_pixel, [width as u32, height as u32]);
+    let view = ViewProjection::for_map(origin, 1.0 / metres_per_pixel, [width as u32, height as u32]);
     Ok(draw_view(scene, &view, Some(PAPER_BACKGROUND)))
 }

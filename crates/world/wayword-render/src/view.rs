@@ -60,14 +60,14 @@ pub(crate) struct ViewProjection {
 
 impl ViewProjection {
     /// The projection of a pinhole camera.
-    pub(crate) fn of_camera(camera: &PinholeCamera) -> Self {
+    pub(crate) fn for_camera(camera: &PinholeCamera) -> Self {
         let axes = camera.world_from_camera();
         Self::new(camera.position, axes, true, camera.focal_px(), [camera.width, camera.height])
     }
 
     /// A map seen from `origin` straight down, north up. `origin` falls on the picture's centre, and everything above it is cut
     /// away.
-    pub(crate) fn of_map(origin: DVec3, px_per_m: f64, size: [u32; 2]) -> Self {
+    pub(crate) fn for_map(origin: DVec3, px_per_m: f64, size: [u32; 2]) -> Self {
         Self::new(origin, DMat3::IDENTITY, false, px_per_m, size)
     }
 

@@ -12,7 +12,7 @@ use wayword_core::{
 ///
 /// # Errors
 /// When the scene or a viewpoint is unknown, two viewpoints in a row have no edge, or data cannot be read.
-pub fn path_of(
+pub fn path_for_episode(
     platform: &dyn Platform,
     id: impl Into<String>,
     scene: &SceneId,

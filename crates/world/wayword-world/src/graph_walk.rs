@@ -56,7 +56,7 @@ pub fn sample_graph_path(
         Some(route) => path_along_route(scene, graph, &route, heading, seed, None),
         None => Err(PlatformError::NoSuchPath {
             scene: scene.clone(),
-            request: in_words(request),
+            request: describe_path_request(request),
             hint: "widen --hops or --metres",
         }),
     }
@@ -99,7 +99,7 @@ pub fn choose_target(labels: &[ObjectLabel], rng: &mut impl Rng) -> Option<PathT
 
 /// Describes a request for a path, for an error message.
 #[must_use]
-pub fn in_words(request: &PathRequest) -> String {
+pub fn describe_path_request(request: &PathRequest) -> String {
     let (hops, length_m) = (&request.hops, &request.length_m);
     format!("{} to {} hops and {} to {} metres", hops.start(), hops.end(), length_m.start(), length_m.end())
 }

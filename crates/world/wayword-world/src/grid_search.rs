@@ -31,7 +31,7 @@ pub fn free_steps_around<C>(free: impl Fn((i32, i32)) -> Option<C>) -> impl Iter
 /// A lower bound of the length of a way between two cells: its length if all ground between them were free. `columns` and
 /// `rows` are their distances.
 #[must_use]
-pub fn at_least(columns: u64, rows: u64) -> u64 {
+pub fn min_way_length(columns: u64, rows: u64) -> u64 {
     STRAIGHT_STEP_MILLICELLS * columns.max(rows)
         + (DIAGONAL_STEP_MILLICELLS - STRAIGHT_STEP_MILLICELLS) * columns.min(rows)
 }
@@ -107,7 +107,7 @@ mod tests {
         };
         let left = |cell: usize| {
             let ((x, y), (gx, gy)) = (place(cell), place(goal));
-            at_least(x.abs_diff(gx) as u64, y.abs_diff(gy) as u64)
+            min_way_length(x.abs_diff(gx) as u64, y.abs_diff(gy) as u64)
         };
         let found = find_shortest_way(cells.len(), start, goal, left, steps)?;
         let length =

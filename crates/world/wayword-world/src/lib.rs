@@ -27,6 +27,6 @@ pub mod region_letters;
 pub mod seen_from;
 pub mod survey;
 
-pub use episode_path::{labels_around, path_of};
+pub use episode_path::{labels_around, path_for_episode};
 pub use seen_from::seen_from;
 pub use survey::survey_scene;

@@ -99,7 +99,7 @@ const MAX_NAME_CHARS: usize = 60;
 pub fn plain_name(raw: &str) -> Option<String> {
     let spaced: String =
         raw.chars().take(4 * MAX_NAME_CHARS).map(|c| if c == '#' || c == '_' { ' ' } else { c }).collect();
-    let lower = one_of_two(&spaced).to_lowercase();
+    let lower = choose_slash_name(&spaced).to_lowercase();
     let kept: String = lower.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '\'')).collect();
     let bare = kept.split_whitespace().map(|word| word.trim_matches(['-', '\'']));
     let words: Vec<&str> = bare.filter(|word| !word.is_empty()).map(correct_spelling).collect();
@@ -117,7 +117,7 @@ pub fn plain_name(raw: &str) -> Option<String> {
 }
 
 /// Chooses between two names that are joined by a slash or a backslash.
-fn one_of_two(name: &str) -> &str {
+fn choose_slash_name(name: &str) -> &str {
     let Some((first, second)) = name.split_once(['/', '\\']) else {
         return name;
     };

@@ -64,7 +64,7 @@ impl ParitySubject {
         match self {
             Self::Glip(glip) => {
                 let (logits, _) = glip.raw_outputs(&image, &phrases)?;
-                let boxes_px = finds_off(&glip.find_phrases(&image, &phrases)?, &case.expected_finds());
+                let boxes_px = largest_find_difference(&glip.find_phrases(&image, &phrases)?, &case.expected_finds());
                 Ok(NumberDifference { logits: largest_difference(&logits, &theirs.tensor_values("logits")?), boxes_px })
             }
             Self::Dino(dino) => {
@@ -122,7 +122,7 @@ fn same_set(ours: &[u32], theirs: &[u32]) -> bool {
 
 /// The largest difference between the edges of finds. Finds with nearly equal scores may come in another order. A find without a
 /// counterpart gives an infinite difference.
-fn finds_off(ours: &[Vec<DetectedBox>], theirs: &[Vec<DetectedBox>]) -> f32 {
+fn largest_find_difference(ours: &[Vec<DetectedBox>], theirs: &[Vec<DetectedBox>]) -> f32 {
     if ours.len() != theirs.len() {
         return f32::INFINITY;
     }

@@ -78,9 +78,9 @@ pub fn fit_follower_weights(flags: &FitFollowerArgs, output: &CommandOutput) -> 
             output.say(format!("{follower}, on the buildings left out of {file}: {}", score(texts)));
         }
     };
-    print_scores("by hand", &|texts| with_map(&scenes, texts, &FeatureWeights::by_hand()));
+    print_scores("by hand", &|texts| score_with_map(&scenes, texts, &FeatureWeights::by_hand()));
     let map = fit_map(flags, &scenes, &fitted, output);
-    print_scores("with the map", &|texts| with_map(&scenes, texts, &map));
+    print_scores("with the map", &|texts| score_with_map(&scenes, texts, &map));
     for (number, file) in flags.episodes.iter().enumerate() {
         let texts: Vec<&WalkedText> = fitted.iter().filter(|text| text.file == number).collect();
         output.say(format!("shares of the texts of {} that a change gains more for:", file_name(file)));
@@ -157,7 +157,7 @@ fn add_text_slope(
         slope.add_text(&true_trial, tree, goal, weights);
         // The same walk by an empty text teaches how long people's walks are, for texts of which no word is understood.
         let empty_guide = Guide::read_text("");
-        slope.add_floor(&GuideTrial::new(&empty_guide, building), tree, goal, weights);
+        slope.add_empty_text(&GuideTrial::new(&empty_guide, building), tree, goal, weights);
     }
     let walk = WalkTree::single_walk(building, &text.walk, text.heading_rad);
     for flipped in flip_turns(&text.guide) {
@@ -202,7 +202,7 @@ fn walk_tree(scenes: &[FollowerScene], text: &WalkedText) -> WalkTree {
 }
 
 /// Success rate and SPL (success weighted by path length) of the likeliest walk of each text, for the follower that knows the map.
-fn with_map(scenes: &[FollowerScene], texts: &[WalkedText], weights: &FeatureWeights) -> String {
+fn score_with_map(scenes: &[FollowerScene], texts: &[WalkedText], weights: &FeatureWeights) -> String {
     let scores = texts.par_iter().map(|text| {
         let scene = &scenes[text.scene];
         let tree = walk_tree(scenes, text);

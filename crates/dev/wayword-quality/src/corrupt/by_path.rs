@@ -30,7 +30,7 @@ pub(super) fn add_stairs(text: &str, path: &Path, style: &InstructionStyle, rng:
     let command = commands.choose(rng).filter(|_| high - low < FLAT_M)?;
     let mut letters = text.chars();
     let rest = letters.next()?.to_lowercase().chain(letters).collect::<String>();
-    in_form(format!("{command}, then {rest}"), style)
+    within_length_limit(format!("{command}, then {rest}"), style)
 }
 
 /// Adds a phrase at the end of the text with a storey on which the path does not end.
@@ -39,7 +39,7 @@ pub(super) fn add_wrong_floor(text: &str, path: &Path, style: &InstructionStyle,
     let others: Vec<u32> = (1..=4).filter(|level| *level != last).collect();
     let names_floor = ["floor", "level", "stairs"].iter().any(|word| text.contains(word));
     let level = others.choose(rng).filter(|_| !names_floor)?;
-    at_end(text, &format!("on level {level}"), style)
+    append_words(text, &format!("on level {level}"), style)
 }
 
 /// Replaces a room of the path by one in which no frame is.
@@ -64,7 +64,7 @@ pub(super) fn replace_room(
     let is_near =
         ["next", "near", "by", "beside", "off", "with", "of", "from", "to"].iter().any(|word| before.contains(word));
     let other = absent.choose(rng).filter(|_| !is_near)?;
-    in_form(format!("{}{other}{}", &text[..from], &text[from + name.len()..]), style)
+    within_length_limit(format!("{}{other}{}", &text[..from], &text[from + name.len()..]), style)
 }
 
 /// Puts a thing on the wrong side. It must be on the same side in every frame that shows it.
@@ -95,7 +95,7 @@ pub(super) fn put_on_wrong_side(
     named.dedup();
     let (end, name) = *named.choose(rng)?;
     let wrong = wrong_side(name)?;
-    in_form(format!("{} on your {wrong}{}", &text[..end], &text[end..]), style)
+    within_length_limit(format!("{} on your {wrong}{}", &text[..end], &text[end..]), style)
 }
 
 /// Adds a task on an object that no frame shows, in a style that asks for no task.
@@ -108,17 +108,17 @@ pub(super) fn unasked_task(
     let absent: Vec<&str> =
         ABSENT_OBJECTS.into_iter().filter(|name| evidence.frames_with_thing(name).is_empty()).collect();
     let object = absent.choose(rng).filter(|_| !style.constraints.ends_in_task)?;
-    at_end(text, &format!("and clean the {object}"), style)
+    append_words(text, &format!("and clean the {object}"), style)
 }
 
 /// The text with words added before its last full stop.
-fn at_end(text: &str, words: &str, style: &InstructionStyle) -> Option<String> {
+fn append_words(text: &str, words: &str, style: &InstructionStyle) -> Option<String> {
     let bare = text.trim_end_matches('.');
-    in_form(format!("{bare} {words}{}", &text[bare.len()..]), style)
+    within_length_limit(format!("{bare} {words}{}", &text[bare.len()..]), style)
 }
 
 /// The text, or `None` if the style's limit on length would reject it anyway.
-fn in_form(text: String, style: &InstructionStyle) -> Option<String> {
+fn within_length_limit(text: String, style: &InstructionStyle) -> Option<String> {
     let words = text.split_whitespace().count();
     style.constraints.fewer_words_than.is_none_or(|limit| words < limit).then_some(text)
 }

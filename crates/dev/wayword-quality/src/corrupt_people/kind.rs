@@ -83,7 +83,7 @@ impl PeopleCorruptionKind {
             Self::ObjectNear => replacements::replace_object(text, ReplacementDistance::Near, rng),
             Self::LandmarksSwapped => repeats_and_swaps::swap_mentions(text, rng),
             Self::StopElsewhere => replacements::replace_stop(text, rng),
-            Self::OtherPath => repeats_and_swaps::other_path(text, rng),
+            Self::OtherPath => repeats_and_swaps::take_other_path(text, rng),
         }
     }
 }

@@ -57,7 +57,7 @@ fn joined_name(words: &[PlainWord]) -> String {
 }
 
 /// The kind of room that a name means: its key in the list of rooms.
-fn kind_of(name: &str) -> Option<&'static str> {
+fn room_kind(name: &str) -> Option<&'static str> {
     // A toilet is a thing where a text names one, and a room where a platform does.
     let mut kinds = ROOM_WORDS.iter().filter(|(kind, _)| !kind.ends_with("stairs"));
     kinds.find(|(_, names)| name != "toilet" && names.contains(&name)).map(|(kind, _)| *kind)
@@ -65,7 +65,7 @@ fn kind_of(name: &str) -> Option<&'static str> {
 
 /// A room that `count` words from `at` on name, with the modifiers before them.
 fn room_mention(words: &[PlainWord], at: usize, count: usize) -> Option<BuildingMention> {
-    let kind = kind_of(&joined_name(&words[at..at + count]))?;
+    let kind = room_kind(&joined_name(&words[at..at + count]))?;
     let mut first = at;
     while words[first].is_joined && has_word(&SMALL_WORDS, "room modifiers", &words[first - 1].low) {
         first -= 1;
@@ -93,7 +93,7 @@ fn object_mention(
     let in_list = OBJECT_WORDS.keys().find(|object| **object == named).map(|object| (*object).to_owned());
     let is_known = in_list.is_some() || building.has_label(&singular);
     let is_ignored = has_word(&SMALL_WORDS, "ignored", &named) || has_word(&SMALL_WORDS, "ignored", &name);
-    if !is_known || is_ignored || kind_of(&named).is_some() || !is_determined(words, at) {
+    if !is_known || is_ignored || room_kind(&named).is_some() || !is_determined(words, at) {
         return None;
     }
     let last = &words[at + count - 1];
@@ -121,7 +121,7 @@ fn is_determined(words: &[PlainWord], at: usize) -> bool {
             return true;
         }
         // "The kitchen table" is not any table.
-        if kind_of(word).is_some() || has_word(&SMALL_WORDS, "after a name", word) {
+        if room_kind(word).is_some() || has_word(&SMALL_WORDS, "after a name", word) {
             return false;
         }
     }

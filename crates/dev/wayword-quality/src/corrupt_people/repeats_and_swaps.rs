@@ -60,7 +60,7 @@ fn places_on_path(original: &CorruptibleText<'_>, named: &BuildingMention) -> Ve
 }
 
 /// Replaces the whole text by that of another path.
-pub(super) fn other_path(original: &CorruptibleText<'_>, rng: &mut impl Rng) -> Option<Vec<WordEdit>> {
+pub(super) fn take_other_path(original: &CorruptibleText<'_>, rng: &mut impl Rng) -> Option<Vec<WordEdit>> {
     let other = original.others.choose(rng).filter(|other| **other != original.text)?;
     Some(vec![WordEdit { span: [0, original.text.len()], now: (*other).to_owned() }])
 }
@@ -110,7 +110,8 @@ mod tests {
 
     #[test]
     fn other_path_replaces_the_whole_text_by_a_different_one() {
-        let other = |text: &str| all(text, |original, seed| other_path(original, &mut seeded_rng(seed, &["test"])));
+        let other =
+            |text: &str| all(text, |original, seed| take_other_path(original, &mut seeded_rng(seed, &["test"])));
         assert_eq!(other("Walk past the couch."), ["Go home.".to_owned()].into());
         assert_eq!(other("Go home."), BTreeSet::new());
     }

@@ -23,7 +23,7 @@ pub(super) fn word_counts(texts: &[OutcomeText]) -> CriticFigures {
 }
 
 /// BLEU-4, ROUGE-L and CIDEr-D of each text, with other people's texts about its item or path as references.
-pub(super) fn by_people(texts: &[OutcomeText], people: &PeopleTexts) -> [CriticFigures; 3] {
+pub(super) fn score_by_people(texts: &[OutcomeText], people: &PeopleTexts) -> [CriticFigures; 3] {
     let mut vocabulary = CaptionVocabulary::default();
     let mut number_text = |words: &str| vocabulary.number_text(&ptb_tokens(&collapse_white_space(words)));
     let tokens: Vec<(NumberedText, Vec<NumberedText>)> = texts
@@ -47,7 +47,7 @@ pub(super) fn by_people(texts: &[OutcomeText], people: &PeopleTexts) -> [CriticF
 ///
 /// # Errors
 /// When no text has pictures, or the model or the pictures cannot be read.
-pub(super) fn by_pictures(
+pub(super) fn score_by_pictures(
     texts: &[OutcomeText],
     critic: &ByPictures,
     output: &CommandOutput,

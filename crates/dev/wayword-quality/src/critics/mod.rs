@@ -117,7 +117,7 @@ fn find_correlations(flags: &CriticsArgs, output: &CommandOutput) -> Result<Vec<
     let material = read_material(flags)?;
     let mut critics = vec![figures::word_counts(&material.texts)];
     if let Some(file) = &flags.references {
-        critics.extend(figures::by_people(&material.texts, &PeopleTexts::read_episodes(file)?));
+        critics.extend(figures::score_by_people(&material.texts, &PeopleTexts::read_episodes(file)?));
         if critics.iter().skip(1).all(|critic| critic.figures.iter().all(Option::is_none)) {
             let problem = format!("{}: it has no text of what the texts are about", file.display());
             return Err(CommandError::usage(problem, "give the file of the episodes that were compared or studied"));
@@ -131,7 +131,7 @@ fn find_correlations(flags: &CriticsArgs, output: &CommandOutput) -> Result<Vec<
         ));
     }
     if let Some(critic) = PictureCritic::open(&flags.pictured, &[], file, output)? {
-        critics.extend(figures::by_pictures(&material.texts, &critic, output)?);
+        critics.extend(figures::score_by_pictures(&material.texts, &critic, output)?);
     }
     let texts = &material.texts;
     let correlations = |outcomes| critics.iter().map(move |critic| correlate_critic(texts, outcomes, critic, flags));

@@ -65,7 +65,7 @@ fn references_are_other_peoples_texts_alone() {
     let texts = [told("1", "s", "Turn left at the sofa."), told("2", "s", "Turn left at the sofa.")];
     let said = ["Turn left at the sofa.".to_owned(), "Wait here.".to_owned()];
     let people = PeopleTexts { items: BTreeMap::from([("1".to_owned(), said.to_vec())]), ..PeopleTexts::default() };
-    let [bleu, rouge, _] = figures::by_people(&texts, &people);
+    let [bleu, rouge, _] = figures::score_by_people(&texts, &people);
     assert!(rouge.figures[0].unwrap() < 0.5, "{rouge:?}");
     assert_eq!((bleu.figures[1], rouge.figures[1]), (None, None));
 }
@@ -263,13 +263,13 @@ fn by_pictures_finds_the_pictures_of_a_run_by_item_or_path() {
     let text = "Pass the red door. Stop.";
     let of_path = OutcomeText { item: None, path: "s/7".to_owned(), ..told("", "s", text) };
     let texts = [told("7_3", "s", text), of_path, told("8", "s", text)];
-    let [parts, whole] = figures::by_pictures(&texts, &critic, &quiet()).unwrap();
+    let [parts, whole] = figures::score_by_pictures(&texts, &critic, &quiet()).unwrap();
     let near = |figure: Option<f64>, expected: f64| (figure.unwrap() - expected).abs() < 0.02;
     // Of two sentences one is seen, best in the second picture: 102 of 255 is 0.4.
     assert!(near(parts.figures[0], 2.5 * 0.4 / 2.0) && near(whole.figures[0], 2.5 * 0.3), "{parts:?} {whole:?}");
     assert_eq!(parts.figures[0], parts.figures[1]);
     assert_eq!(parts.figures[2], None);
-    let none = figures::by_pictures(&texts[2..], &critic, &quiet()).unwrap_err().to_string();
+    let none = figures::score_by_pictures(&texts[2..], &critic, &quiet()).unwrap_err().to_string();
     assert!(none.contains("no picture of any path"), "{none}");
 }
 

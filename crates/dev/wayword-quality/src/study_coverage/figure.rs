@@ -63,10 +63,14 @@ impl SimulatedFigure {
         let (slots, sd) = (assign_slots(design, rng), effects.sd_logits());
         let draw = |slots: &[_], base, rng: &mut _| walks::draw_walks(slots, base, sd, rng);
         let interval = match self {
-            Self::Share(base) => answer_share(&draw(&walks::of_one(&slots), base, rng).successes[0], CONFIDENCE_LEVEL)
-                .and_then(|estimate| estimate.interval),
-            Self::Mean(base) => answer_mean(&draw(&walks::of_one(&slots), base, rng).values[0], CONFIDENCE_LEVEL)
-                .and_then(|estimate| estimate.interval),
+            Self::Share(base) => {
+                answer_share(&draw(&walks::with_first_condition(&slots), base, rng).successes[0], CONFIDENCE_LEVEL)
+                    .and_then(|estimate| estimate.interval)
+            }
+            Self::Mean(base) => {
+                answer_mean(&draw(&walks::with_first_condition(&slots), base, rng).values[0], CONFIDENCE_LEVEL)
+                    .and_then(|estimate| estimate.interval)
+            }
             Self::ShareDifference(base) => {
                 let [first, second] = draw(&slots, base, rng).successes;
                 share_difference(&first, &second, CONFIDENCE_LEVEL).and_then(|estimate| estimate.interval)

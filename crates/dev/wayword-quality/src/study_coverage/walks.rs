@@ -26,7 +26,7 @@ pub(super) struct SimulatedWalks {
 }
 
 /// The same slots, all of the first condition.
-pub(super) fn of_one(slots: &[AnswerSlot]) -> Vec<AnswerSlot> {
+pub(super) fn with_first_condition(slots: &[AnswerSlot]) -> Vec<AnswerSlot> {
     slots.iter().map(|slot| AnswerSlot { is_second: false, ..*slot }).collect()
 }
 

@@ -90,14 +90,14 @@ struct TellingGram {
 /// # Errors
 /// When a file cannot be read, or no item has texts in both.
 pub fn measure_tell_apart(flags: &TellApartArgs, output: &CommandOutput) -> Result<(), CommandError> {
-    let people = by_item(wayword_formats::read_any_format(&flags.people)?);
-    let generated = by_item(wayword_formats::read_any_format(&flags.generated)?);
+    let people = group_by_item(wayword_formats::read_any_format(&flags.people)?);
+    let generated = group_by_item(wayword_formats::read_any_format(&flags.generated)?);
     let texts = draw_sides(&people, &generated, flags.seed);
     if texts.is_empty() {
         return Err(CommandError::usage("no item has texts in both files", "give files of the same items"));
     }
     let folds = flags.folds as usize;
-    let pairs = first_and_second(&people);
+    let pairs = pair_people_texts(&people);
     let measured = TellApartReport {
         apart: separate_sides(&texts, folds, flags.seed),
         people: (!pairs.is_empty()).then(|| separate_sides(&pairs, folds, flags.seed)),
@@ -115,7 +115,7 @@ struct SideItem {
 }
 
 /// The texts of a file by the id of their item.
-fn by_item(episodes: Vec<Episode>) -> BTreeMap<String, SideItem> {
+fn group_by_item(episodes: Vec<Episode>) -> BTreeMap<String, SideItem> {
     let mut items: BTreeMap<String, SideItem> = BTreeMap::new();
     for Episode { id, scene, instructions, .. } in episodes {
         let item = items.entry(id).or_insert_with(|| SideItem { building: scene.to_string(), texts: Vec::new() });
@@ -145,7 +145,7 @@ fn draw_sides(people: &BTreeMap<String, SideItem>, generated: &BTreeMap<String, 
 }
 
 /// People's first texts, and their second ones in the place of generated texts.
-fn first_and_second(people: &BTreeMap<String, SideItem>) -> Vec<SideText> {
+fn pair_people_texts(people: &BTreeMap<String, SideItem>) -> Vec<SideText> {
     let pair = |item: &SideItem| Some(pair_texts(item, item.texts.first()?.clone(), item.texts.get(1)?.clone()));
     people.values().filter_map(pair).flatten().collect()
 }
@@ -171,7 +171,7 @@ fn separate_sides(texts: &[SideText], folds: usize, seed: u64) -> SideSeparation
 /// The score of each text by a classifier that never saw its building.
 fn cross_validated_scores(texts: &[SideText], folds: usize) -> Vec<f64> {
     let runs: Vec<BTreeSet<String>> = texts.iter().map(|text| word_grams(&text.plain)).collect();
-    let folds_by_building = fold_of(texts, folds);
+    let folds_by_building = assign_folds(texts, folds);
     let mut scores = vec![0.0; texts.len()];
     for fold in 0..folds {
         let (left_out, rest): (Vec<usize>, Vec<usize>) =
@@ -195,7 +195,7 @@ fn fit_classifier(texts: &[SideText], runs: &[BTreeSet<String>], chosen: &[usize
 }
 
 /// The part of each building: the largest buildings first, each into the part with the fewest texts.
-fn fold_of(texts: &[SideText], folds: usize) -> BTreeMap<String, usize> {
+fn assign_folds(texts: &[SideText], folds: usize) -> BTreeMap<String, usize> {
     let mut sizes: BTreeMap<&String, usize> = BTreeMap::new();
     texts.iter().for_each(|text| *sizes.entry(&text.building).or_default() += 1);
     let mut sizes: Vec<(&String, usize)> = sizes.into_iter().collect();

@@ -51,7 +51,7 @@ fn apart_is_at_chance_for_like_texts_and_perfect_for_a_word_of_its_own() {
 #[test]
 fn a_building_is_in_one_part_and_the_parts_are_of_like_size() {
     let texts = made_up(70, 0.5);
-    let parts = fold_of(&texts, 3);
+    let parts = assign_folds(&texts, 3);
     assert_eq!(parts.len(), 7);
     let mut sizes = [0; 3];
     texts.iter().for_each(|text| sizes[parts[&text.building]] += 1);
@@ -74,6 +74,6 @@ fn one_text_of_each_side_is_drawn_for_items_that_both_have() {
     let texts = draw_sides(&people, &generated, 0);
     assert_eq!(texts.len(), 2);
     assert!(["a", "b", "c"].contains(&texts[0].plain.as_str()) && texts[1].plain == "x" && texts[1].is_generated);
-    let pairs: Vec<String> = first_and_second(&people).into_iter().map(|text| text.plain).collect();
+    let pairs: Vec<String> = pair_people_texts(&people).into_iter().map(|text| text.plain).collect();
     assert_eq!(pairs, ["a", "b"]);
 }

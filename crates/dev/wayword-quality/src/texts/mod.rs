@@ -60,9 +60,9 @@ pub struct TextFiguresArgs {
 /// When a file cannot be read, or the platform cannot be opened or lacks a scene.
 pub fn measure_texts(flags: &TextFiguresArgs, output: &CommandOutput) -> Result<(), CommandError> {
     let generated = wayword_formats::read_any_format(&flags.generated)?;
-    let people = flags.people.as_deref().map(|file| of_items(file, &generated)).transpose()?;
+    let people = flags.people.as_deref().map(|file| read_same_items(file, &generated)).transpose()?;
     let train = flags.train.as_deref().map(wayword_formats::read_any_format).transpose()?;
-    let train = train.map(|episodes| TrainingTexts::from_texts(&in_turn(&episodes)));
+    let train = train.map(|episodes| TrainingTexts::from_texts(&texts_in_turn(&episodes)));
     let platform = flags.platform.clone().map(|name| open_platform(name, flags.data.clone())).transpose()?;
     let mut sides: Vec<(&str, Vec<TextFigureRow>)> = Vec::new();
     for (name, episodes) in [("generated", Some(&generated)), ("people", people.as_ref())] {
@@ -101,7 +101,7 @@ fn survey_scenes(
 }
 
 /// The items of people's file that are among the generated ones; all items of the file where none is.
-fn of_items(file: &Path, generated: &[Episode]) -> Result<Vec<Episode>, CommandError> {
+fn read_same_items(file: &Path, generated: &[Episode]) -> Result<Vec<Episode>, CommandError> {
     let ids: BTreeSet<&str> = generated.iter().map(|episode| episode.id.as_str()).collect();
     let (same, others): (Vec<Episode>, Vec<Episode>) =
         wayword_formats::read_any_format(file)?.into_iter().partition(|episode| ids.contains(episode.id.as_str()));
@@ -110,14 +110,14 @@ fn of_items(file: &Path, generated: &[Episode]) -> Result<Vec<Episode>, CommandE
 
 /// The figures that need only the texts.
 fn text_rows(episodes: &[Episode], train: Option<&TrainingTexts>) -> Vec<TextFigureRow> {
-    let texts = in_turn(episodes);
+    let texts = texts_in_turn(episodes);
     let mut rows = surface::surface_rows(&texts);
     rows.extend(copies::copy_rows(&texts, train));
     rows
 }
 
 /// The first text of each item, then the second ones, and so on.
-fn in_turn(episodes: &[Episode]) -> Vec<&str> {
+fn texts_in_turn(episodes: &[Episode]) -> Vec<&str> {
     let most = episodes.iter().map(|episode| episode.instructions.len()).max().unwrap_or(0);
     let nth = |at: usize| episodes.iter().filter_map(move |episode| episode.instructions.get(at));
     (0..most).flat_map(nth).map(String::as_str).collect()

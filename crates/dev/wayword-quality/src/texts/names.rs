@@ -48,7 +48,7 @@ impl LexiconName {
     }
 
     /// Whether it is a wall, a floor, or another part of the building itself.
-    pub(super) fn is_floor(&self) -> bool {
+    pub(super) fn is_fabric_part(&self) -> bool {
         self.thing_class() == Some(ThingClass::Fabric)
     }
 
@@ -71,7 +71,7 @@ pub(super) fn find_names(words: &[String]) -> Vec<LexiconName> {
 }
 
 /// The names among words, also those without an article. `known` adds names of things in normal spelling; "room" alone counts too.
-pub(super) fn named_with(words: &[String], known: &BTreeSet<String>) -> Vec<LexiconName> {
+pub(super) fn find_names_with(words: &[String], known: &BTreeSet<String>) -> Vec<LexiconName> {
     all_names(words, known)
 }
 

@@ -26,7 +26,7 @@ impl OfficialSplit {
     /// because several platforms show the same scenes.
     #[must_use]
     pub fn for_scene(scene: &SceneId) -> Option<Self> {
-        of_matterport3d(scene.as_str()).or_else(|| of_hm3d(scene.as_str()))
+        matterport3d_split(scene.as_str()).or_else(|| hm3d_split(scene.as_str()))
     }
 
     /// Its name in the names of files.
@@ -60,7 +60,7 @@ impl OfficialSplit {
 }
 
 /// The split of a Matterport3D scene.
-fn of_matterport3d(scene: &str) -> Option<OfficialSplit> {
+fn matterport3d_split(scene: &str) -> Option<OfficialSplit> {
     let mut lines = MATTERPORT3D_SCENES.lines().filter_map(|line| line.split_once(' '));
     let (split, _) = lines.find(|(_, name)| *name == scene)?;
     match split {
@@ -72,7 +72,7 @@ fn of_matterport3d(scene: &str) -> Option<OfficialSplit> {
 }
 
 /// HM3D's scenes are numbered: `00800-TEEsavR23oF`. 800 are for training, 100 each for validation and test.
-fn of_hm3d(scene: &str) -> Option<OfficialSplit> {
+fn hm3d_split(scene: &str) -> Option<OfficialSplit> {
     let (number, name) = scene.split_once('-')?;
     let is_number = number.len() == 5 && number.bytes().all(|byte| byte.is_ascii_digit());
     let is_scene = is_number && name.len() == 11 && name.bytes().all(|byte| byte.is_ascii_alphanumeric());

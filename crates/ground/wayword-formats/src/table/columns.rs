@@ -52,7 +52,7 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
     }
 
     /// Writes a column of texts, with null where a row has none.
-    fn words_or_null<'r>(
+    fn put_optional_words<'r>(
         &mut self,
         rows: &[ParquetRow<'r>],
         cell: impl Fn(&ParquetRow<'r>) -> Option<&'r str>,
@@ -79,8 +79,8 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
         self.put_column::<DoubleType>(&optional_points(rows, frame_positions))?;
         self.put_column::<DoubleType>(&optional_list(rows, frame_headings))?;
         self.put_column::<DoubleType>(&optional_column(rows, |row| row.record.path.length_m()))?;
-        self.words_or_null(rows, |row| path_target(row).map(|target| target.object.as_str()))?;
-        self.words_or_null(rows, |row| path_target(row).map(|target| target.name.as_str()))
+        self.put_optional_words(rows, |row| path_target(row).map(|target| target.object.as_str()))?;
+        self.put_optional_words(rows, |row| path_target(row).map(|target| target.name.as_str()))
     }
 
     fn write_ambiguity(&mut self, rows: &[ParquetRow<'_>]) -> Result<(), ParquetError> {
@@ -97,10 +97,10 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
     fn write_provenance(&mut self, rows: &[ParquetRow<'_>]) -> Result<(), ParquetError> {
         self.put_words(rows, |row| &row.record.instruction.provenance.asker)?;
         self.put_words(rows, |row| &row.record.instruction.provenance.answerer)?;
-        self.words_or_null(rows, |row| row.record.instruction.provenance.detector.as_deref())?;
+        self.put_optional_words(rows, |row| row.record.instruction.provenance.detector.as_deref())?;
         self.put_words(rows, |row| &row.record.instruction.provenance.summariser)?;
         self.put_words(rows, |row| &row.record.instruction.provenance.writer)?;
-        self.words_or_null(rows, |row| row.record.instruction.provenance.finished_for.as_deref())?;
+        self.put_optional_words(rows, |row| row.record.instruction.provenance.finished_for.as_deref())?;
         self.put_words(rows, |row| &row.record.instruction.provenance.checked_against)?;
         // The schema declares this column unsigned; the same bits are passed as a signed number.
         self.put_column::<Int64Type>(&required_column(rows, |row| {
@@ -110,18 +110,18 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
             i64::from(row.record.instruction.provenance.repairs)
         }))?;
         self.put_words(rows, |row| &row.record.instruction.provenance.style_hash)?;
-        self.words_or_null(rows, |row| row.record.instruction.provenance.prompts_hash.as_deref())?;
+        self.put_optional_words(rows, |row| row.record.instruction.provenance.prompts_hash.as_deref())?;
         self.put_words(rows, |row| &row.record.instruction.provenance.wayword)
     }
 
     fn write_checks(&mut self, rows: &[ParquetRow<'_>]) -> Result<(), ParquetError> {
-        self.of_findings(rows, |finding| finding.check.name())?;
-        self.of_findings(rows, |finding| verdict_name(finding.verdict))?;
-        self.of_findings(rows, |finding| &finding.reason)
+        self.put_finding_texts(rows, |finding| finding.check.name())?;
+        self.put_finding_texts(rows, |finding| verdict_name(finding.verdict))?;
+        self.put_finding_texts(rows, |finding| &finding.reason)
     }
 
     /// Writes a column with a list of texts in each row, one for each finding.
-    fn of_findings(
+    fn put_finding_texts(
         &mut self,
         rows: &[ParquetRow<'_>],
         text: impl Fn(&CheckFinding) -> &str,

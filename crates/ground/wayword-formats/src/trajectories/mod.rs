@@ -103,7 +103,7 @@ pub struct SubInstruction {
 /// A position and a heading as a file holds them, with few digits. Pictures are taken from there, so that readers of the
 /// file can take the same.
 #[must_use]
-pub fn as_written(position: DVec3, heading: Heading) -> (DVec3, Heading) {
+pub fn round_pose(position: DVec3, heading: Heading) -> (DVec3, Heading) {
     (round_position(position), rounded_heading(heading))
 }
 

@@ -53,7 +53,7 @@ fn take_trajectory(item: &mut DatasetItem<'_>) -> Result<ActionTrajectory, Forma
     let frame_steps = take_frame_steps(item, actions.len())?;
     let (positions, headings) = take_poses(item, actions.len())?;
     let off_m = item.take_field("off_m")?;
-    let pictures = take_place(item)?;
+    let pictures = take_picture_location(item)?;
     let sha256 = item.take_field("sha256")?;
     let sha256 = item.checked_text("sha256", &sha256)?.to_owned();
     if sha256.len() != 64 || !sha256.bytes().all(|digit| digit.is_ascii_hexdigit()) {
@@ -128,7 +128,7 @@ fn take_frame_steps(item: &mut DatasetItem<'_>, actions: usize) -> Result<Vec<us
 }
 
 /// Takes the place of the pictures: a path of at most 512 bytes that does not leave the folder.
-fn take_place(item: &mut DatasetItem<'_>) -> Result<PictureLocation, FormatError> {
+fn take_picture_location(item: &mut DatasetItem<'_>) -> Result<PictureLocation, FormatError> {
     let value = item.take_field("pictures")?;
     let place: PictureLocation = item.parse_value("pictures", value)?;
     let (path, key) = match &place {

@@ -133,7 +133,7 @@ fn read_refuses_broken_rules_with_line_and_field() {
 proptest! {
     #[test]
     fn poses_are_read_as_they_were_written(x in -50.0..50.0f64, y in -50.0..50.0f64, z in -5.0..5.0f64, rad in 0.0..std::f64::consts::TAU) {
-        let (position, heading) = as_written(DVec3::new(x, y, z), Heading::new(rad).unwrap());
+        let (position, heading) = round_pose(DVec3::new(x, y, z), Heading::new(rad).unwrap());
         prop_assert!(position.distance(DVec3::new(x, y, z)) < 1e-5);
         let written = ActionTrajectory {
             actions: vec![AgentAction::Stop],

@@ -37,7 +37,8 @@ fn path(id: &str, object: Option<&str>) -> wayword_core::Path {
 
 fn episode(id: &str, object: Option<&str>, texts: &[&str]) -> Episode {
     let path = path(id, object);
-    Episode::from_path(&path, texts.iter().map(|text| (*text).to_owned()).collect()).on_floor_of(&path, EYE_HEIGHT_M)
+    Episode::from_path(&path, texts.iter().map(|text| (*text).to_owned()).collect())
+        .with_floor_positions(&path, EYE_HEIGHT_M)
 }
 
 /// A path with a number as its name, as in Matterport3D, and two with other names, as in a house; four instructions
@@ -231,7 +232,7 @@ fn no_writer_invents_poses_for_a_path_without_them() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("export.json");
     let video = wayword_core::Path { motion: PathMotion::Unknown, ..path("7", None) };
-    let episode = Episode::from_path(&video, vec!["Go on.".into()]).on_floor_of(&video, EYE_HEIGHT_M);
+    let episode = Episode::from_path(&video, vec!["Go on.".into()]).with_floor_positions(&video, EYE_HEIGHT_M);
     assert_eq!((episode.start_heading, episode.floor_length_m()), (None, None));
     let episode = std::slice::from_ref(&episode);
     for refused in [

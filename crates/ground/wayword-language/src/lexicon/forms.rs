@@ -26,7 +26,7 @@ pub fn to_singular(name: &str) -> String {
 
 /// Whether a name means several things: "chairs" does, "stairs" does not.
 #[must_use]
-pub fn says_several(name: &str) -> bool {
+pub fn means_several(name: &str) -> bool {
     split_words(name).last().is_some_and(|last| normal_word(last) != *last && !ONE_THING.contains(&last.as_str()))
 }
 
@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn stairs_are_one_thing_and_chairs_are_several() {
-        assert!(says_several("dining chairs") && says_several("shelves"));
-        assert!(!says_several("stairs") && !says_several("glass") && !says_several("chair"));
+        assert!(means_several("dining chairs") && means_several("shelves"));
+        assert!(!means_several("stairs") && !means_several("glass") && !means_several("chair"));
     }
 }

@@ -8,7 +8,7 @@ mod things;
 
 pub use colours::same_colour;
 pub use forms::{
-    COUNT_WORDS, counted_name, is_plural, says_several, to_plural, to_singular, with_article, without_article,
+    COUNT_WORDS, counted_name, is_plural, means_several, to_plural, to_singular, with_article, without_article,
 };
 pub use normal_spelling::{normal_word, normalise_name};
 pub use rooms::{is_room, room_name, same_room};

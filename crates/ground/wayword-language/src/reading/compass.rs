@@ -21,7 +21,7 @@ pub(super) fn compass_events(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<T
 
 /// The direction that the words from a token on name, and the token behind them.
 fn direction_at(tokens: TokenSlice<'_>, at: usize) -> Option<(CompassDirection, usize)> {
-    let (first, second) = (of_word(tokens.word_at(at))?, of_word(tokens.word_at(at + 1)));
+    let (first, second) = (direction_from_word(tokens.word_at(at))?, direction_from_word(tokens.word_at(at + 1)));
     // "North-east".
     match second.and_then(|second| join_directions(first, second)) {
         Some(both) => Some((both, at + 2)),
@@ -30,7 +30,7 @@ fn direction_at(tokens: TokenSlice<'_>, at: usize) -> Option<(CompassDirection, 
 }
 
 /// The direction that a word names: "north", "northern", "northwards".
-fn of_word(word: &str) -> Option<CompassDirection> {
+fn direction_from_word(word: &str) -> Option<CompassDirection> {
     let stem = ["wards", "ward", "erly", "ern"].iter().find_map(|end| word.strip_suffix(end)).unwrap_or(word);
     match stem {
         "north" => Some(CompassDirection::North),

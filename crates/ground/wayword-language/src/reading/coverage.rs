@@ -42,7 +42,7 @@ fn named_tokens(tokens: TokenSlice<'_>, known: &BTreeSet<String>) -> Vec<bool> {
 fn event_roles(tokens: TokenSlice<'_>, events: &[TextEvent]) -> Vec<Option<WordRole>> {
     let mut roles = vec![None; tokens.len()];
     for event in events {
-        let Some(role) = role_of(&event.what) else { continue };
+        let Some(role) = role_for_event(&event.what) else { continue };
         let within = tokens.first_from(event.span[0])..tokens.first_from(event.span[1]);
         roles[within].fill(Some(role));
     }
@@ -50,7 +50,7 @@ fn event_roles(tokens: TokenSlice<'_>, events: &[TextEvent]) -> Vec<Option<WordR
 }
 
 /// The role of the words of an event. Those of a place are named or not, word by word.
-fn role_of(what: &EventContent) -> Option<WordRole> {
+fn role_for_event(what: &EventContent) -> Option<WordRole> {
     match what {
         EventContent::Place(_) => None,
         EventContent::Turn(_) => Some(WordRole::Turn),
@@ -85,12 +85,13 @@ impl<'a> CoverageText<'a> {
         if !self.tokens.is_word(at) {
             return None;
         }
-        let role = event_role.or_else(|| self.named[at].then_some(WordRole::Place)).or_else(|| self.by_context(at));
-        Some(role.or_else(|| self.by_list(self.word_at(at))).unwrap_or(WordRole::Unknown))
+        let role =
+            event_role.or_else(|| self.named[at].then_some(WordRole::Place)).or_else(|| self.role_from_context(at));
+        Some(role.or_else(|| self.role_from_list(self.word_at(at))).unwrap_or(WordRole::Unknown))
     }
 
     /// The role of a word that depends on the words around it; `None` where they decide nothing.
-    fn by_context(&self, at: usize) -> Option<WordRole> {
+    fn role_from_context(&self, at: usize) -> Option<WordRole> {
         let (word, before, next) = (self.word_at(at), self.word_before(at), self.word_at(at + 1));
         let is_number = !matches!(word, "bottom" | "ground") && v::floor_number(word).is_some()
             || word.starts_with(|c: char| c.is_ascii_digit());
@@ -181,7 +182,7 @@ impl<'a> CoverageText<'a> {
     }
 
     /// The role that a word has wherever it occurs.
-    fn by_list(&self, word: &str) -> Option<WordRole> {
+    fn role_from_list(&self, word: &str) -> Option<WordRole> {
         let name = normal_word(word);
         let lists: [(&[&str], WordRole); 8] = [
             (&v::COLOURS, WordRole::Colour),

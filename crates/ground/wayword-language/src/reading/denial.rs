@@ -6,8 +6,8 @@ use super::{tokens::TokenSlice, vocabulary as v};
 /// For each token, whether the text denies it: "do not turn right", "without going up the stairs", "there is no piano",
 /// "if you reach the stairs you have gone too far".
 pub(super) fn denied_tokens(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<bool> {
-    let mut denied = by_words(tokens, clauses);
-    too_far(tokens, clauses, &mut denied);
+    let mut denied = denied_by_words(tokens, clauses);
+    deny_wrong_ways(tokens, clauses, &mut denied);
     denied
 }
 
@@ -25,7 +25,7 @@ enum DenialReach {
 }
 
 /// For each token, whether a word of denial before it ("not", "no", "without") reaches it.
-fn by_words(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<bool> {
+fn denied_by_words(tokens: TokenSlice<'_>, clauses: &[usize]) -> Vec<bool> {
     // The denial that is in force, and its clause.
     let mut reach = DenialReach::Nothing;
     let mut clause = 0;
@@ -123,7 +123,7 @@ fn affirms_anyway(tokens: TokenSlice<'_>, at: usize) -> bool {
 
 /// Marks conditions of having gone wrong: in "if you reach the stairs, you have gone too far", the stairs are not part of
 /// the walk.
-fn too_far(tokens: TokenSlice<'_>, clauses: &[usize], denied: &mut [bool]) {
+fn deny_wrong_ways(tokens: TokenSlice<'_>, clauses: &[usize], denied: &mut [bool]) {
     let mut from = 0;
     while from < tokens.len() {
         let ends = |at: &usize| tokens.get(*at).is_some_and(crate::text::TextToken::ends_sentence);

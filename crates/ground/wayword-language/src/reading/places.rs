@@ -4,7 +4,7 @@ use super::{
     EventContent, PlaceMention, TextEvent, colours::PlaceColours, distances::is_unit, links::link_before,
     numbers::PlaceNumbers, place_motion::motion_by_place, sides, task, tokens::TokenSlice, vocabulary as v,
 };
-use crate::lexicon::{ThingClass, find_thing, is_room, is_thing, longest_name, normal_word, room_name, says_several};
+use crate::lexicon::{ThingClass, find_thing, is_room, is_thing, longest_name, means_several, normal_word, room_name};
 use std::collections::BTreeSet;
 
 /// A run of tokens that names a place.
@@ -68,7 +68,7 @@ pub(super) fn read_places(
         let colour = colours.colour_before(place.from).or_else(|| colours.colour_behind(end));
         let going = motion_by_place(tokens, clauses, place.noun, &place.name);
         let (ordinal, count) = (numbers.ordinal_before(place.noun), numbers.count_before(place.noun));
-        let several = count.is_some() || says_several(tokens.word_at(place.to - 1));
+        let several = count.is_some() || means_several(tokens.word_at(place.to - 1));
         let PlaceCandidate { name, is_thing, is_room, .. } = place;
         // `mark_turn_places` sets it.
         let tells_turn = false;
@@ -124,7 +124,7 @@ fn is_no_place(tokens: TokenSlice<'_>, at: usize, length: usize) -> bool {
     if length > 1 {
         return false;
     }
-    if task::is_done(tokens, at) || is_unit(tokens, at) {
+    if task::is_task_verb(tokens, at) || is_unit(tokens, at) {
         return true;
     }
     let after_determiner = at > 0 && (v::DETERMINERS.contains(&word(at - 1)) || v::ADJECTIVES.contains(&word(at - 1)));

@@ -15,13 +15,13 @@ pub(super) fn side_after(tokens: TokenSlice<'_>, to: usize) -> (Option<Side>, us
         at += 1;
     }
     let owned = matches!(word(at), "on" | "to" | "at") && matches!(word(at + 1), "the" | "your");
-    let bare = word(at) == "on" && side_of(word(at + 1)).is_some();
+    let bare = word(at) == "on" && side_from_word(word(at + 1)).is_some();
     if !(owned || bare) {
         return (None, to);
     }
     let at = if bare { at + 1 } else { at + 2 };
     let at = at + usize::from(is_exact(word(at)));
-    let Some(side) = side_of(word(at)) else { return (None, to) };
+    let Some(side) = side_from_word(word(at)) else { return (None, to) };
     let end = behind_side(tokens, at);
     if word(end) == "of" { (None, to) } else { (Some(side), end) }
 }
@@ -31,7 +31,7 @@ pub(super) fn side_before(tokens: TokenSlice<'_>, from: usize) -> Option<Side> {
     let word = |at: usize| tokens.word_at(at);
     let can_come_between = |word: &str| {
         v::DETERMINERS.contains(&word)
-            || v::ADJECTIVES.contains(&word) && side_of(word).is_none()
+            || v::ADJECTIVES.contains(&word) && side_from_word(word).is_none()
             || matches!(word, "there" | "you" | "will" | "should" | "you'll" | "you’ll" | "," | "can")
     };
     let locates = |word: &str| {
@@ -44,7 +44,7 @@ pub(super) fn side_before(tokens: TokenSlice<'_>, from: usize) -> Option<Side> {
     }
     let at = if matches!(word(at), "side" | "hand") { at.checked_sub(1)? } else { at };
     let at = if word(at) == "hand" { at.checked_sub(1)? } else { at };
-    let side = side_of(word(at))?;
+    let side = side_from_word(word(at))?;
     let at = at.checked_sub(1)?;
     let at = if is_exact(word(at)) { at.checked_sub(1)? } else { at };
     let preposition = at.checked_sub(1).filter(|_| matches!(word(at), "the" | "your"))?;
@@ -54,7 +54,7 @@ pub(super) fn side_before(tokens: TokenSlice<'_>, from: usize) -> Option<Side> {
     (begins && matches!(word(preposition), "on" | "to" | "at")).then_some(side)
 }
 
-fn side_of(word: &str) -> Option<Side> {
+fn side_from_word(word: &str) -> Option<Side> {
     match word {
         "left" => Some(Side::Left),
         "right" => Some(Side::Right),

@@ -44,7 +44,7 @@ pub(super) fn verb_at(tokens: TokenSlice<'_>, at: usize) -> Option<usize> {
 }
 
 /// Whether a word that can name a thing is a verb here: "switch on the lamp", "vacuum the rug", "fan the fire".
-pub(super) fn is_done(tokens: TokenSlice<'_>, at: usize) -> bool {
+pub(super) fn is_task_verb(tokens: TokenSlice<'_>, at: usize) -> bool {
     let (word, next, before) = (tokens.word_at(at), tokens.word_at(at + 1), tokens.word_before(at));
     let begins = at == 0 || !tokens.is_word(at - 1);
     let joined = v::ADVERBS.contains(&before) || matches!(before, "and" | "or");

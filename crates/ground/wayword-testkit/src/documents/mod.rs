@@ -43,18 +43,18 @@ pub fn documented_commands(repository: &Path) -> io::Result<Vec<DocumentedComman
     let mut commands = Vec::new();
     for document in documents {
         let name = document.strip_prefix(repository).unwrap_or(&document).display().to_string();
-        commands.extend(commands_of(&name, &fs::read_to_string(&document)?));
+        commands.extend(commands_in_markdown(&name, &fs::read_to_string(&document)?));
     }
     Ok(commands)
 }
 
 /// The commands of one document, in its order. `name` is the document's name in their places.
 #[must_use]
-pub fn commands_of(name: &str, markdown: &str) -> Vec<DocumentedCommand> {
+pub fn commands_in_markdown(name: &str, markdown: &str) -> Vec<DocumentedCommand> {
     let mut found = Vec::new();
     for MarkdownSnippet { line, text, is_within_text } in find_snippets(markdown) {
         for command in shell::parse_script(&text) {
-            if let Some((program, args)) = program_of(&command.words) {
+            if let Some((program, args)) = started_program(&command.words) {
                 let place = format!("{name}:{}", line + command.line);
                 found.push(DocumentedCommand { place, program, variables: command.variables, args, is_within_text });
             }
@@ -64,7 +64,7 @@ pub fn commands_of(name: &str, markdown: &str) -> Vec<DocumentedCommand> {
 }
 
 /// Which of [`DOCUMENTED_PROGRAMS`] a command starts, directly or as `cargo run -p PROGRAM -- ...`, and the program's arguments.
-fn program_of(words: &[String]) -> Option<(String, Vec<String>)> {
+fn started_program(words: &[String]) -> Option<(String, Vec<String>)> {
     let (first, rest) = words.split_first()?;
     if DOCUMENTED_PROGRAMS.contains(&first.as_str()) {
         return Some((first.clone(), rest.to_vec()));
@@ -173,7 +173,7 @@ wayword is well
 
     #[test]
     fn commands_of_reads_shell_fences_tables_and_wrapped_text() {
-        let found: Vec<String> = commands_of("A.md", DOCUMENT)
+        let found: Vec<String> = commands_in_markdown("A.md", DOCUMENT)
             .into_iter()
             .map(|found| format!("{} {} {:?} {}", found.place, found.program, found.args, found.is_within_text))
             .collect();
@@ -192,7 +192,7 @@ wayword is well
 
     #[test]
     fn commands_of_keeps_the_variables_of_a_command() {
-        let found = commands_of("A.md", DOCUMENT);
+        let found = commands_in_markdown("A.md", DOCUMENT);
         assert_eq!(found[3].variables, [("OFFLINE".into(), "1".into())]);
     }
 }

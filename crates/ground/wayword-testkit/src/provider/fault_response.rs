@@ -54,7 +54,7 @@ impl FaultResponder<'_> {
             }
             ServiceFault::WrongType => html_response(StatusCode::OK),
             ServiceFault::EchoesKey => {
-                let message = format!("Upstream refused the key {}.", key_of(self.dialect, self.headers));
+                let message = format!("Upstream refused the key {}.", request_key(self.dialect, self.headers));
                 self.dialect.error_response(ServiceErrorKind::Server, &message)
             }
             ServiceFault::CutOff => {
@@ -93,7 +93,7 @@ fn html_response(status: StatusCode) -> Response {
 }
 
 /// The API key that came with a request; empty if none did.
-pub(super) fn key_of(dialect: ProviderDialect, headers: &HeaderMap) -> String {
+pub(super) fn request_key(dialect: ProviderDialect, headers: &HeaderMap) -> String {
     let (name, prefix) = dialect.key_header();
     let value = headers.get(name).and_then(|value| value.to_str().ok()).unwrap_or_default();
     value.strip_prefix(prefix).unwrap_or_default().to_owned()

@@ -4,8 +4,8 @@
 use super::{
     ProviderBehaviour, ProviderDialect, ProviderLog, ScriptRequest,
     breakable_connection::{BreakSwitch, BreakableListener},
-    dialect::{ReplyEnding, ScriptReply, ServiceErrorKind, with_calls},
-    fault_response::{self, FaultResponder, key_of},
+    dialect::{ReplyEnding, ScriptReply, ServiceErrorKind, split_tool_calls},
+    fault_response::{self, FaultResponder, request_key},
     request_rate::ProviderTokenBucket,
 };
 use axum::{
@@ -57,7 +57,7 @@ pub(super) async fn serve_connections(listener: TcpListener, shared: Arc<Provide
         .route("/v1/messages", ask_route(ProviderDialect::Anthropic))
         .route("/api/chat", ask_route(ProviderDialect::Ollama))
         .route("/api/show", post(show_model))
-        .route("/v1beta/models/{action}", asked_of_gemini())
+        .route("/v1beta/models/{action}", gemini_ask_route())
         .route("/v1/models", list_route(ProviderDialect::OpenAi))
         .route("/v1beta/models", list_route(ProviderDialect::Gemini))
         .route("/api/tags", list_route(ProviderDialect::Ollama))
@@ -80,7 +80,7 @@ fn ask_route(dialect: ProviderDialect) -> MethodRouter<Arc<ProviderState>> {
 }
 
 /// Gemini's route for requests to a model: the address contains the model's name.
-fn asked_of_gemini() -> MethodRouter<Arc<ProviderState>> {
+fn gemini_ask_route() -> MethodRouter<Arc<ProviderState>> {
     post(
         move |State(shared): State<Arc<ProviderState>>,
               ConnectInfo(line): ConnectInfo<BreakSwitch>,
@@ -168,7 +168,7 @@ impl ProviderState {
 
     /// Whether the key of a request is the right one, or none is needed.
     fn accepts_key(&self, dialect: ProviderDialect, headers: &HeaderMap) -> bool {
-        self.behaviour.key.as_ref().is_none_or(|key| *key == key_of(dialect, headers))
+        self.behaviour.key.as_ref().is_none_or(|key| *key == request_key(dialect, headers))
     }
 
     /// Lets a request in and returns how many were let in before it, and how many of them were equal to it; `Err` with the
@@ -216,7 +216,7 @@ impl ProviderState {
         let tokens_in = tokens_in + PICTURE_TOKENS * request.pictures.len() as u64;
         let (text, end) = cut_reply(script.reply(&request), &request);
         let tokens_out = count_tokens(&text);
-        let (text, calls) = with_calls(text, &body);
+        let (text, calls) = split_tool_calls(text, &body);
         Ok(ScriptReply { tokens_in, tokens_out, text, calls, end, model: request.model })
     }
 }

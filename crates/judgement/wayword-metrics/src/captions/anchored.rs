@@ -2,7 +2,7 @@
 //! computed for two anchors: another person's text about the item, and a person's text about another path.
 
 use super::{BleuCounts, CaptionRow, CaptionScores, NumberedText, score_rows};
-use crate::{MeanEstimate, ResamplingOptions, bootstrap::interval_of};
+use crate::{MeanEstimate, ResamplingOptions, bootstrap::resampled_intervals};
 use rand::Rng;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -180,7 +180,7 @@ impl CaptionFigures {
             return None;
         }
         let figures = |drawn: &[usize]| total(&mut drawn.iter().map(|at| sums[*at])).mean_figures();
-        let intervals = interval_of(sums.len(), drawing, figures);
+        let intervals = resampled_intervals(sums.len(), drawing, figures);
         let estimate = |at: usize| MeanEstimate {
             mean: means.mean_figures()[at],
             low: intervals[at].0,

@@ -27,7 +27,7 @@ impl BleuCounts {
     #[must_use]
     pub fn for_text(text: &NumberedText, references: &[&NumberedText]) -> Self {
         let mut correct = [0; GRAM_ORDER_COUNT];
-        for (gram, most) in text.grams().iter().zip(most_in(text, references)) {
+        for (gram, most) in text.grams().iter().zip(highest_reference_counts(text, references)) {
             correct[gram.order()] += u64::from(gram.count.min(most));
         }
         let lengths = references.iter().map(|reference| (reference.len().abs_diff(text.len()), reference.len()));
@@ -54,7 +54,7 @@ impl BleuCounts {
 }
 
 /// For each n-gram of a text, its highest count in any one reference.
-fn most_in(text: &NumberedText, references: &[&NumberedText]) -> Vec<u32> {
+fn highest_reference_counts(text: &NumberedText, references: &[&NumberedText]) -> Vec<u32> {
     let mut highest = vec![0; text.grams().len()];
     for reference in references {
         // Both lists of n-grams are sorted, so one pass over both finds the common ones.

@@ -8,8 +8,8 @@ pub fn split_tokens(text: &str) -> Vec<String> {
     let mut tokens = Vec::new();
     let mut rest = text.as_str();
     while let Some(first) = rest.chars().next() {
-        let is_word = is_of_word(first);
-        let end = rest.find(|c| is_of_word(c) != is_word).unwrap_or(rest.len());
+        let is_word = is_word_character(first);
+        let end = rest.find(|c| is_word_character(c) != is_word).unwrap_or(rest.len());
         let (run, after) = rest.split_at(end);
         push_run(run.trim(), &mut tokens);
         rest = after;
@@ -17,7 +17,7 @@ pub fn split_tokens(text: &str) -> Vec<String> {
     tokens
 }
 
-fn is_of_word(c: char) -> bool {
+fn is_word_character(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 

@@ -25,7 +25,7 @@ impl SceneDistances {
         let mut metres = vec![f64::INFINITY; places.len() * places.len()];
         let mut frontier = BinaryHeap::new();
         for (start, row) in metres.chunks_exact_mut(places.len().max(1)).enumerate() {
-            roads.walk_all(start, row, &mut frontier);
+            roads.write_distances_from(start, row, &mut frontier);
         }
         Self { places, edge_lists: roads, metres }
     }
@@ -101,7 +101,7 @@ impl EdgeLists {
 
     /// Writes the distances from `start` to all places, metres, into a row that is infinite everywhere. The frontier is empty before
     /// and after; the caller passes it so that its memory is reused.
-    fn walk_all(&self, start: usize, row: &mut [f64], frontier: &mut BinaryHeap<FrontierPlace>) {
+    fn write_distances_from(&self, start: usize, row: &mut [f64], frontier: &mut BinaryHeap<FrontierPlace>) {
         row[start] = 0.0;
         frontier.push(FrontierPlace { metres: 0.0, place: start });
         while let Some(FrontierPlace { metres, place }) = frontier.pop() {

@@ -102,11 +102,11 @@ pub(super) fn trajectory_places<'n>(
     if starts_right && !places.contains(&UNKNOWN_PLACE) && !places.windows(2).any(is_broken) {
         return Ok(places);
     }
-    Err(wrong_with(distances, start, &places, &names.collect::<Vec<_>>()))
+    Err(list_problems(distances, start, &places, &names.collect::<Vec<_>>()))
 }
 
 /// Every problem of a trajectory.
-fn wrong_with(
+fn list_problems(
     distances: &SceneDistances,
     start: Option<usize>,
     places: &[usize],

@@ -6,7 +6,8 @@ use serde_json::Value;
 use std::fmt::Debug;
 use wayword_metrics::{
     AnswerScale, ConfidenceInterval, PairPreference, StudyAnswer, SystemComparison, answer_mean, answer_share,
-    bradley_terry, clustered_interval_of, krippendorff_alpha, mean_difference, share_difference, wilson_interval,
+    bradley_terry, clustered_interval_from_draws, krippendorff_alpha, mean_difference, share_difference,
+    wilson_interval,
 };
 
 const LEVEL: f64 = 0.95;
@@ -228,7 +229,7 @@ fn a_bootstrap_is_numpys_with_the_same_draws() {
     for (n, (study, mut g, expected)) in studies().into_iter().enumerate() {
         let values: Vec<(usize, f64)> = study.value.iter().map(|answer| (answer.person, answer.value)).collect();
         let draw = |clusters: usize| (0..clusters).map(|_| g.below(clusters)).collect();
-        let found = clustered_interval_of(&values, 200, LEVEL, draw).unwrap();
+        let found = clustered_interval_from_draws(&values, 200, LEVEL, draw).unwrap();
         let interval = ConfidenceInterval { low: found.low, high: found.high };
         assert_interval(Some(interval), &expected["bootstrap"], EXACT, &format!("bootstrap {n}"));
     }

@@ -46,7 +46,11 @@ pub fn walk_shortest_path(
 ///
 /// # Errors
 /// When the platform gives no view.
-pub fn nearest_room(platform: &dyn Platform, start: &AgentStart, wanted: Option<&str>) -> Result<AgentWalk, WalkError> {
+pub fn walk_to_nearest_room(
+    platform: &dyn Platform,
+    start: &AgentStart,
+    wanted: Option<&str>,
+) -> Result<AgentWalk, WalkError> {
     let graph = platform.graph_for_scene(&start.scene)?;
     let distances = graph.distances_from(&start.viewpoint).map_err(|_| unknown_viewpoint(start, &start.viewpoint))?;
     let mut near: Vec<(&ViewpointId, f64)> = distances.into_iter().collect();

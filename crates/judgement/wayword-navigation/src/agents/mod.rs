@@ -8,7 +8,7 @@ mod policy;
 mod reader;
 mod tools;
 
-pub use baselines::{last_room_in, nearest_room, walk_randomly, walk_shortest_path, walk_straight};
+pub use baselines::{last_room_in, walk_randomly, walk_shortest_path, walk_straight, walk_to_nearest_room};
 pub use map_reader::{MapReader, MappedScene};
 pub use parameters::{BacktrackParameters, PhraseWalkParameters};
 pub use phrase_walker::walk_by_phrases;

@@ -52,7 +52,7 @@ impl WalkScores {
     }
 
     /// An agent's figure for each item: the mean over the item's texts, or over those in `only`.
-    pub(super) fn by_item(
+    pub(super) fn figures_by_item(
         &self,
         agent: &str,
         set: &str,

@@ -44,7 +44,7 @@ pub struct ComparedAgent {
 impl ComparedAgent {
     /// Whether swap tests are meaningful for it: either it can find the goal only by reading, or its two extra rows show what it
     /// reaches without reading.
-    fn is_swapped(&self) -> bool {
+    fn takes_swap_tests(&self) -> bool {
         self.kind == AgentKind::Agent || self.has_extra_rows
     }
 }
@@ -76,7 +76,7 @@ pub fn compare_agents(
     }
     let mut swapped = Vec::new();
     if let Some(first) = sets.first() {
-        for walker in walkers.iter().filter(|walker| walker.is_swapped()) {
+        for walker in walkers.iter().filter(|walker| walker.takes_swap_tests()) {
             swapped.extend(swaps.iter().map(|swap| table.swap_effect(walker, &first.name, *swap)));
         }
     }
@@ -135,7 +135,7 @@ impl TableBuilder<'_> {
         set: &str,
         only: Option<&TextsByItem>,
     ) -> BTreeMap<TrajectoryMetric, MeanEstimate> {
-        self.estimate_metrics(|metric| self.results.by_item(agent, set, metric, self.about.rule, only))
+        self.estimate_metrics(|metric| self.results.figures_by_item(agent, set, metric, self.about.rule, only))
     }
 
     /// The first set minus the second, on the items that have a figure in both.
@@ -147,8 +147,8 @@ impl TableBuilder<'_> {
     ) -> RowDifference {
         let rule = self.about.rule;
         let figures = self.estimate_metrics(|metric| {
-            let second = self.results.by_item(agent, second, metric, rule, only_second);
-            let first = self.results.by_item(agent, first, metric, rule, only_first);
+            let second = self.results.figures_by_item(agent, second, metric, rule, only_second);
+            let first = self.results.figures_by_item(agent, first, metric, rule, only_first);
             first.into_iter().filter_map(|(item, figure)| Some((item, figure - second.get(item)?))).collect()
         });
         let second = self.results.first_successes(agent, second, rule, only_second);

@@ -24,7 +24,7 @@ pub(super) fn mend_clauses(text: &str, tokens: &[TextToken]) -> Vec<MendedClause
     for (at, range) in ranges.iter().enumerate() {
         let continues = || {
             let from = at.checked_sub(1).map_or(0, |before| ranges[before].end);
-            goes_on(tokens, from..range.start, range)
+            continues_clause(tokens, from..range.start, range)
                 || (at + 1 < ranges.len() && is_adjective(text, tokens, from, range))
         };
         match mended.last_mut() {
@@ -54,7 +54,7 @@ pub(super) fn has_object(tokens: &[TextToken], clause: &Range<usize>) -> bool {
 
 /// Whether a clause continues the one before: no mark ends the one before, and either no word joins the two or the clause begins by
 /// describing a place further. `between` is the tokens between the two.
-fn goes_on(tokens: &[TextToken], between: Range<usize>, clause: &Range<usize>) -> bool {
+fn continues_clause(tokens: &[TextToken], between: Range<usize>, clause: &Range<usize>) -> bool {
     let between = &tokens[between];
     let is_mark = |token: &TextToken| matches!(token.word.as_str(), "." | "!" | "?" | "," | ";" | ":");
     let has_word = between.iter().any(TextToken::is_word);

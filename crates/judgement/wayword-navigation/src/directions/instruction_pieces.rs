@@ -92,7 +92,7 @@ impl<'a> InstructionPieces<'a> {
             let rooms = self
                 .visible_places(&clause.all)
                 .filter(|(_, place)| place.is_room && matches!(place.link, PlaceLink::Within | PlaceLink::Beside));
-            rooms.filter_map(|(event, _)| self.about_room(&clause.all, event))
+            rooms.filter_map(|(event, _)| self.room_words(&clause.all, event))
         });
         rooms.map(|room| self.words_in(&room)).next()
     }
@@ -111,8 +111,9 @@ impl<'a> InstructionPieces<'a> {
             let (start, at) = (cuts.last().map_or(0, |cut| cut + 1), self.first_token(event));
             if let Some((end, passed)) = previous {
                 let is_goal = place.link == PlaceLink::Goal && self.leads_on(end, passed);
-                let cut =
-                    self.going_on(end..at).or_else(|| is_goal.then(|| self.before_goal(end.max(start)..at)).flatten());
+                let cut = self
+                    .onward_token(end..at)
+                    .or_else(|| is_goal.then(|| self.goal_start(end.max(start)..at)).flatten());
                 cuts.extend(cut);
             }
             previous = Some((self.tokens.partition_point(|token| token.span[0] < event.span[1]), place));
@@ -135,13 +136,13 @@ impl<'a> InstructionPieces<'a> {
     }
 
     /// The token after an "and" with which the walk goes on ("and continue"), if there is one between two places.
-    fn going_on(&self, between: Range<usize>) -> Option<usize> {
+    fn onward_token(&self, between: Range<usize>) -> Option<usize> {
         let goes_on = |at: &usize| self.word_at(*at - 1) == "and" && GOING_ON.contains(&self.word_at(*at));
         (between.start + 1..between.end).find(goes_on)
     }
 
     /// The token at which the words that lead to a place begin: its preposition, with the adverbs before that ("all the way to the sofa").
-    fn before_goal(&self, between: Range<usize>) -> Option<usize> {
+    fn goal_start(&self, between: Range<usize>) -> Option<usize> {
         let is_goal =
             |at: &usize| matches!(self.word_at(*at), "to" | "into" | "onto" | "toward" | "towards" | "until" | "till");
         let mut at = between.clone().rev().take(PREPOSITION_REACH_WORDS).find(is_goal)?;
@@ -157,7 +158,7 @@ impl<'a> InstructionPieces<'a> {
 
     /// The words about a room in a clause: from after its preposition to the beginning of the next part. `None` if its preposition
     /// means that the task is elsewhere, as "near" or "away from".
-    fn about_room(&self, clause: &Range<usize>, event: &TextEvent) -> Option<Range<usize>> {
+    fn room_words(&self, clause: &Range<usize>, event: &TextEvent) -> Option<Range<usize>> {
         let room = self.first_token(event);
         let is_in = |at: &usize| matches!(self.word_at(*at), "in" | "inside" | "within" | "at" | "on" | "from" | "of");
         let preposition = (clause.start..room).rev().take(PREPOSITION_REACH_WORDS).find(is_in)?;

@@ -115,7 +115,7 @@ fn find_names(text: &str) -> Vec<NameMention> {
         }
         let mut named = NameMention { name, is_room: is_room && !is_thing, span: event.span, specifiers: Vec::new() };
         let end = all.last().map_or(0, |before| before.span[1]);
-        while let Some((start, name)) = right_before(&text[end..named.span[0]]) {
+        while let Some((start, name)) = closing_name(&text[end..named.span[0]]) {
             named.span[0] = end + start;
             named.specifiers.push(name);
         }
@@ -137,7 +137,7 @@ fn ends_in_joint(name: &str) -> bool {
 }
 
 /// The name with which a text ends, if the lexicon has it, and the byte at which the name begins.
-fn right_before(text: &str) -> Option<(usize, String)> {
+fn closing_name(text: &str) -> Option<(usize, String)> {
     let from = text.ceil_char_boundary(text.len().saturating_sub(SPECIFIER_REACH_BYTES));
     let last = read_instruction(&text[from..], &BTreeSet::new()).events.pop()?;
     let EventContent::Place(place) = last.what else { return None };
@@ -183,7 +183,7 @@ impl LandmarkReplacements {
     }
 
     /// The replacement of a name. It is one that replaces no other name, as long as there are any.
-    fn instead_of(&mut self, named: &NameMention) -> Option<&'static str> {
+    fn choose_replacement(&mut self, named: &NameMention) -> Option<&'static str> {
         if let Some(given) = self.replacements.get(&named.name) {
             return Some(given);
         }
@@ -201,7 +201,7 @@ impl LandmarkReplacements {
     /// The edits that write another name for one: its article, if that is right before it, and the name itself.
     fn edits_for_name(&mut self, text: &str, named: &NameMention) -> Option<Vec<([usize; 2], String)>> {
         let [from, to] = named.span;
-        let other = self.instead_of(named)?;
+        let other = self.choose_replacement(named)?;
         let before = &text[..from];
         let word = before.trim_end().rsplit(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
         let replacement =

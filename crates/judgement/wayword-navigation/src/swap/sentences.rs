@@ -12,7 +12,11 @@ pub(super) fn swap_sentences(text: &str, seed: u64, item: &str) -> Option<String
     let sentences = split_sentences(text);
     let clauses = if sentences.len() > 1 { Vec::new() } else { clause_texts(text) };
     let order = draw_order(sentences.len().max(clauses.len()), seed, item)?;
-    let new = if clauses.is_empty() { of_sentences(&sentences, &order) } else { of_clauses(text, &clauses, &order) };
+    let new = if clauses.is_empty() {
+        reorder_sentences(&sentences, &order)
+    } else {
+        reorder_clauses(text, &clauses, &order)
+    };
     (split_words(&new) != split_words(text)).then_some(new)
 }
 
@@ -30,7 +34,7 @@ fn draw_order(count: usize, seed: u64, item: &str) -> Option<Vec<usize>> {
 }
 
 /// The sentences in another order, each with a capital letter and a closing mark.
-fn of_sentences(sentences: &[&str], order: &[usize]) -> String {
+fn reorder_sentences(sentences: &[&str], order: &[usize]) -> String {
     let whole = |at: &usize| {
         let sentence = capitalise_first(sentences[*at]);
         let ends = sentence.ends_with(['.', '!', '?']);
@@ -40,7 +44,7 @@ fn of_sentences(sentences: &[&str], order: &[usize]) -> String {
 }
 
 /// The clauses in another order as one sentence ("a, b and c"), with the closing mark of the text.
-fn of_clauses(text: &str, clauses: &[&str], order: &[usize]) -> String {
+fn reorder_clauses(text: &str, clauses: &[&str], order: &[usize]) -> String {
     let is_capitalised = capitalise_first(clauses[0]) == clauses[0];
     let clause = |at: &usize| if *at == 0 { uncapitalise_first(clauses[0]) } else { clauses[*at].to_owned() };
     let clauses: Vec<String> = order.iter().map(clause).collect();

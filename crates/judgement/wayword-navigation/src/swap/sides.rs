@@ -75,7 +75,7 @@ impl<'a> TextTokens<'a> {
     fn opposite_at(&self, at: usize, turns: &BTreeSet<usize>) -> Option<&'static str> {
         let word = self.word_at(at);
         if let Some(other) = other_of_pair(&SIDE_PAIRS, word) {
-            return (turns.contains(&at) || self.tells_place(at)).then_some(other);
+            return (turns.contains(&at) || self.locates_place(at)).then_some(other);
         }
         if let Some(other) = other_of_pair(&LEVEL_PAIRS, word) {
             let is_level = match word {
@@ -92,8 +92,8 @@ impl<'a> TextTokens<'a> {
     /// The word to write at a token in order to swap "turn around" and "go straight", where these two words are a whole clause.
     fn opposite_course(&self, at: usize) -> Option<&'static str> {
         let is_clause = |from: usize| {
-            let begins = from == 0 || self.is_joint(from - 1);
-            begins && (from + 2 >= self.tokens.len() || self.is_joint(from + 2))
+            let begins = from == 0 || self.separates_clauses(from - 1);
+            begins && (from + 2 >= self.tokens.len() || self.separates_clauses(from + 2))
         };
         match (self.word_before(at, 1), self.word_at(at), self.word_at(at + 1)) {
             (_, "turn", "around") if is_clause(at) => Some("go"),
@@ -105,26 +105,26 @@ impl<'a> TextTokens<'a> {
     }
 
     /// Whether a token separates two clauses: a mark, "and" or "then".
-    fn is_joint(&self, at: usize) -> bool {
+    fn separates_clauses(&self, at: usize) -> bool {
         !self.tokens[at].is_word() || matches!(self.word_at(at), "and" | "then")
     }
 
     /// Whether the word for a side gives a place: "on the left", "to the left of the sofa", "the left door", "left and right", but
     /// not "right before the sofa".
-    fn tells_place(&self, at: usize) -> bool {
+    fn locates_place(&self, at: usize) -> bool {
         let is_side = |word: &str| other_of_pair(&SIDE_PAIRS, word).is_some();
         let listed = matches!(self.word_before(at, 1), "and" | "or") && is_side(self.word_before(at, 2)) && at > 2;
         BEFORE_SIDE.contains(&self.word_before(at, 1))
             || (self.word_before(at, 1) == "to" && !self.word_at(at + 1).starts_with("the"))
             || AFTER_SIDE.contains(&self.word_at(at + 1))
-            || (listed && self.tells_place(at - 2))
+            || (listed && self.locates_place(at - 2))
     }
 
     /// Whether "up" or "down" means a climb: "up the stairs", "up to the second floor", "the stairs up", "go up.", but not "down the
     /// hallway".
     fn is_climb(&self, at: usize) -> bool {
         let behind_stairs = (1..=3).any(|back| is_stairs(self.word_before(at, back)));
-        let ends = at + 1 >= self.tokens.len() || self.is_joint(at + 1);
+        let ends = at + 1 >= self.tokens.len() || self.separates_clauses(at + 1);
         let to_floor = self.word_at(at + 1) == "to" && self.leads_to(at + 2, is_floor);
         self.leads_to_stairs(at + 1)
             || to_floor

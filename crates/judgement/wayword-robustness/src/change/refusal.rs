@@ -94,7 +94,7 @@ impl<'a> OtherPlatform<'a> {
 impl WholeChange {
     fn refusal_reason(self, setting: &ChangeSetting<'_>) -> Option<String> {
         match self {
-            Self::Mirror | Self::Turn | Self::Reverse if !setting.has_poses => Some(no_poses("directions", setting)),
+            Self::Mirror | Self::Turn | Self::Reverse if !setting.has_poses => Some(no_poses_reason("directions", setting)),
             Self::Reverse if setting.is_recorded() => {
                 Some(format!("platform {} has no pictures of the way back", setting.platform))
             }
@@ -120,9 +120,9 @@ impl DoseKind {
                 == SightSource::Labels)
                 .then(|| "it changes the pictures, and labels are not read from pictures".to_owned()),
             Self::DroppedFrames => None,
-            Self::FrameSpacing if !setting.has_poses => Some(no_poses("distances", setting)),
-            Self::FrameSpacing => setting.finer_than_there_is(value),
-            Self::HeadingNoise | Self::StartHeading if !setting.has_poses => Some(no_poses("headings", setting)),
+            Self::FrameSpacing if !setting.has_poses => Some(no_poses_reason("distances", setting)),
+            Self::FrameSpacing => setting.spacing_refusal(value),
+            Self::HeadingNoise | Self::StartHeading if !setting.has_poses => Some(no_poses_reason("headings", setting)),
             Self::StartHeading if setting.is_recorded() => {
                 Some(format!("platform {} has no pictures of other directions", setting.platform))
             }
@@ -138,7 +138,7 @@ impl ChangeSetting<'_> {
     }
 
     /// Why frames cannot be so close together; `None` if they can.
-    fn finer_than_there_is(&self, spacing_m: f64) -> Option<String> {
+    fn spacing_refusal(&self, spacing_m: f64) -> Option<String> {
         let (own_m, from) = match (self.is_graph_bound, self.can_render) {
             (true, _) => (VIEWPOINT_SPACING_M, "viewpoints"),
             (false, false) => (RECORDED_FRAME_SPACING_M, "frames that were recorded"),
@@ -154,6 +154,6 @@ impl ChangeSetting<'_> {
 }
 
 /// The reason for a refusal on a platform without poses: a quantity, such as headings, is not known there.
-fn no_poses(quantity: &str, setting: &ChangeSetting<'_>) -> String {
+fn no_poses_reason(quantity: &str, setting: &ChangeSetting<'_>) -> String {
     format!("the frames of platform {} have no poses, so that no {quantity} of the path are known", setting.platform)
 }

@@ -49,7 +49,7 @@ pub(super) fn clauses_with_frames(written: AnnotatedText<'_>) -> Vec<FramedClaus
     let stops = stop_positions(written.text);
     let mut drafts: Vec<ClauseDraft> = Vec::new();
     for (_, words, span) in parts {
-        let content: Vec<&str> = words.into_iter().skip_while(|word| is_joint(word)).collect();
+        let content: Vec<&str> = words.into_iter().skip_while(|word| is_joining_word(word)).collect();
         if content.is_empty() {
             continue;
         }
@@ -126,7 +126,7 @@ impl ClauseEnding {
 }
 
 /// Whether a word only joins clauses: a conjunction or a punctuation mark.
-fn is_joint(word: &str) -> bool {
+fn is_joining_word(word: &str) -> bool {
     matches!(word, "and" | "then") || !word.starts_with(char::is_alphanumeric)
 }
 
@@ -145,7 +145,7 @@ pub(super) fn find_unexpected_clause(
     after: &[FramedClause],
     may_change: &[usize],
 ) -> Option<UnexpectedClause> {
-    let shared = in_both(before, after, may_change);
+    let shared = shared_clauses(before, after, may_change);
     // The clauses between two shared ones are compared; the ends of both texts close the last gap.
     let ends = [(before.len(), after.len())];
     let (mut from, mut to) = (0, 0);
@@ -170,7 +170,7 @@ pub(super) fn find_unexpected_clause(
 
 /// The clauses that both texts have, in order, as pairs of indices: a longest common subsequence, in which clauses that must not change
 /// count more than all others together.
-fn in_both(before: &[FramedClause], after: &[FramedClause], may_change: &[usize]) -> Vec<(usize, usize)> {
+fn shared_clauses(before: &[FramedClause], after: &[FramedClause], may_change: &[usize]) -> Vec<(usize, usize)> {
     let worth = |clause: &FramedClause| if clause.speaks_of(may_change) { 1 } else { before.len() + 1 };
     // `best[i][j]` is the highest worth of a common subsequence of the clauses from `i` and from `j` on.
     let mut best = vec![vec![0; after.len() + 1]; before.len() + 1];

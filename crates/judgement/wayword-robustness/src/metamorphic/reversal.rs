@@ -1,7 +1,7 @@
 //! The check for a path that is walked in the opposite direction.
 
 use super::{AnnotatedText, ExpectationOutcome};
-use crate::facts::turn_told;
+use crate::facts::implied_turn;
 use std::collections::BTreeSet;
 use wayword_core::{ClimbDirection, Side, TextMention};
 use wayword_language::{
@@ -69,7 +69,7 @@ impl WayDescription {
     fn from_text(written: AnnotatedText<'_>) -> Self {
         let (mut way, mut has_stopped) = (Self::default(), false);
         for event in read_instruction(written.text, &BTreeSet::new()).events.into_iter().filter(|event| !event.denied) {
-            way.turns.extend(turn_told(&event.what));
+            way.turns.extend(implied_turn(&event.what));
             match event.what {
                 EventContent::Stop => has_stopped = true,
                 EventContent::Climb(climb) => way.climbs.push(climb),

@@ -73,14 +73,14 @@ fn thinning_keeps_frames_that_there_are() {
 
 #[test]
 fn start_heading_turns_the_first_frame_and_along_removes_the_turn() {
-    assert!((start_heading(&bent(), -90.0).path.frames[0].pose.heading.deg() - 270.0).abs() < 1e-9);
+    assert!((turn_start_heading(&bent(), -90.0).path.frames[0].pose.heading.deg() - 270.0).abs() < 1e-9);
     assert!((face_first_hop(&bent()).path.frames[0].pose.heading.deg() - 90.0).abs() < 1e-9);
 }
 
 #[test]
 fn unknown_motion_lets_only_order_and_number_of_frames_change() {
     let unknown = Path { motion: PathMotion::Unknown, ..bent() };
-    for changed in [space_frames(&unknown, 0.5), start_heading(&unknown, 9.0), face_first_hop(&unknown)] {
+    for changed in [space_frames(&unknown, 0.5), turn_start_heading(&unknown, 9.0), face_first_hop(&unknown)] {
         assert_eq!(changed, unchanged_path(&unknown));
     }
     assert_eq!(reverse_path(&unknown).path.frames[0], unknown.frames[3]);

@@ -69,14 +69,14 @@ impl PathLabels {
             let words = text.get(mention.span[0]..mention.span[1])?;
             let label = self.0.get(mention.frame)?.iter().find(|label| names_agree(&label.name, words))?;
             let from = text[..mention.span[0]].rmatch_indices(' ').nth(MAX_COLOUR_WORDS).map_or(0, |(at, _)| at + 1);
-            Some(self.find_thing(words, &label.name, &text[from..mention.span[1]]))
+            Some(self.collect_thing(words, &label.name, &text[from..mention.span[1]]))
         });
-        things.filter(|thing| can_go(&thing.name) && !is_target(&thing.name)).collect()
+        things.filter(|thing| can_be_removed(&thing.name) && !is_target(&thing.name)).collect()
     }
 
     /// Collects the objects of a name along the path. `words` are the text's name for it, and `phrase` has in addition the few words
     /// before them, in which the colour is looked for.
-    fn find_thing(&self, words: &str, name: &str, phrase: &str) -> MentionedThing {
+    fn collect_thing(&self, words: &str, name: &str, phrase: &str) -> MentionedThing {
         let (mut objects, mut seen_from, mut colours) = (BTreeSet::new(), Vec::new(), BTreeSet::new());
         for (frame, labels) in self.0.iter().enumerate() {
             let alike: Vec<&ObjectLabel> = labels.iter().filter(|label| names_agree(&label.name, name)).collect();
@@ -93,7 +93,7 @@ impl PathLabels {
     }
 
     /// The objects of a name and colour with a label anywhere along the path.
-    fn of_colour(&self, name: &str, colour: &str) -> BTreeSet<ObjectId> {
+    fn objects_of_colour(&self, name: &str, colour: &str) -> BTreeSet<ObjectId> {
         let is_it = |label: &&ObjectLabel| names_agree(&label.name, name) && label.colour.as_deref() == Some(colour);
         self.0.iter().flatten().filter(is_it).map(|label| label.object.clone()).collect()
     }
@@ -121,13 +121,13 @@ impl PathLabels {
             self.mentioned_things(path_text).into_iter().filter(|thing| thing.colour.is_some()).collect();
         let thing = things.get(draw_index(seed, "material", path_text.path, things.len())?)?.clone();
         let colour = NEW_COLOURS.iter().find(|colour| !self.has_colour(&thing.name, colour))?;
-        let objects = self.of_colour(&thing.name, thing.colour.as_deref()?);
+        let objects = self.objects_of_colour(&thing.name, thing.colour.as_deref()?);
         Some((thing, ThingRecolouring { objects, colour: (*colour).to_owned() }))
     }
 
     /// Chooses a thing with a name that no label along the path has, and returns it with the change that puts it next to a drawn frame.
     #[must_use]
-    pub fn with_one_more(&self, path: &Path, seed: u64) -> Option<(MentionedThing, ThingAddition)> {
+    pub fn add_thing(&self, path: &Path, seed: u64) -> Option<(MentionedThing, ThingAddition)> {
         let is_new = |name: &&&str| !self.0.iter().flatten().any(|label| names_agree(&label.name, name));
         let name = (*ADDED_THING_NAMES.iter().find(is_new)?).to_owned();
         let frame = path.frames.get(draw_index(seed, "add", path, path.frames.len())?)?;
@@ -157,7 +157,7 @@ impl PathLabels {
 
 /// Whether things of this name can be removed. Doors, stairs and parts of the building cannot, because paths may lead through them.
 #[must_use]
-pub fn can_go(name: &str) -> bool {
+pub fn can_be_removed(name: &str) -> bool {
     let is_built_in = |class: ThingClass| matches!(class, ThingClass::Door | ThingClass::Stairs | ThingClass::Fabric);
     find_thing(name).is_none_or(|thing| !is_built_in(thing.class))
 }

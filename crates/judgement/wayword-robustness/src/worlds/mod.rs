@@ -15,7 +15,7 @@ mod tilt;
 
 pub use altered_platform::{AlteredLook, AlteredPlatform, WorldAlteration};
 pub use camera::{CameraHeight, FieldOfView};
-pub use edits::{MentionedThing, PathLabels, PathText, can_go};
+pub use edits::{MentionedThing, PathLabels, PathText, can_be_removed};
 pub use eye::{EyeQuality, ScriptedEye};
 pub use heading_noise::HeadingNoise;
 pub use pictures::PictureChange;

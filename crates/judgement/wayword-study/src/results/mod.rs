@@ -101,7 +101,7 @@ pub fn compute_results(data: &StudyData, now_ms: i64) -> Result<StudyReport, Stu
     }
     let names = ParticipantNames::new(data);
     let (answered, problems) = judgements::collect_answers(data, &names);
-    let most_failed = data.settings.most_failed();
+    let most_failed = data.settings.tolerated_failed_checks();
     let version = |filter| ResultVersion::new(data, &answered, filter, most_failed);
     let people = ParticipantSummary::new(data, &names, &answered, now_ms);
     let sources = SheetSources { data, names: &names, answered: &answered, most_failed };

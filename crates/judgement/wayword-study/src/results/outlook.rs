@@ -114,7 +114,8 @@ impl StudyOutlook {
     }
 
     fn detectable_difference(&self, effects: &'static str, sd: f64, items: &[&StudyItem]) -> DetectableDifference {
-        let plan = if self.mode == StudyTask::Pair { self.of_pairs(sd) } else { self.of_two(sd, items) };
+        let plan =
+            if self.mode == StudyTask::Pair { self.comparison_plan(sd) } else { self.two_condition_plan(sd, items) };
         let found: Option<DetectableShareDifference> =
             plan.and_then(|plan| detectable_difference(&plan, TEST_POWER, TEST_SIGNIFICANCE));
         // One share against a half has half the variance of a difference between two.
@@ -129,7 +130,7 @@ impl StudyOutlook {
     }
 
     /// The plan of the power calculation for the first two conditions, with their share of the answers.
-    fn of_two(&self, sd: f64, items: &[&StudyItem]) -> Option<wayword_metrics::PowerPlan> {
+    fn two_condition_plan(&self, sd: f64, items: &[&StudyItem]) -> Option<wayword_metrics::PowerPlan> {
         let [first, second] = self.conditions.get(..2)? else { return None };
         let routes = |name: &str| -> BTreeSet<u32> {
             let has_condition = |item: &&&StudyItem| item.texts.iter().any(|text| text.condition == name);
@@ -154,7 +155,7 @@ impl StudyOutlook {
 
     /// The plan of the power calculation for comparisons of two conditions. Its result is one share. The calculation expects two groups,
     /// so it gets the persons and the routes twice.
-    fn of_pairs(&self, sd: f64) -> Option<wayword_metrics::PowerPlan> {
+    fn comparison_plan(&self, sd: f64) -> Option<wayword_metrics::PowerPlan> {
         let conditions = self.conditions.len();
         let pairs = (conditions * conditions.saturating_sub(1) / 2).max(1);
         // A person's comparisons of these two conditions.

@@ -215,7 +215,7 @@ impl<'a> HandoutTally<'a> {
 
 impl AttentionSummary {
     fn new(data: &StudyData, names: &ParticipantNames<'_>) -> Self {
-        let most_failed = data.settings.most_failed();
+        let most_failed = data.settings.tolerated_failed_checks();
         let failed = |person: &Participant| {
             let checks: Vec<u32> =
                 person.attention.iter().filter(|check| !check.passed).map(|check| check.number + 1).collect();

@@ -351,7 +351,7 @@ pub(super) fn win_matrix(version: &ResultVersion) -> Option<WinMatrix> {
         Some(MatrixCell {
             id: format!("m-{}-{row}-{column}", version.name),
             share: format!("{} %", format_number(100.0 * turn(share.value), 1)),
-            interval: tables::per_cent(ends.as_ref()),
+            interval: tables::format_percent_interval(ends.as_ref()),
             description: format!(
                 "{} against {}: {wins} wins, {} ties, {} both bad, {losses} losses.",
                 to_table_name(this),

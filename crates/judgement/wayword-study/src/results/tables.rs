@@ -103,7 +103,7 @@ pub(super) fn difference_table(results: &StudyReport, version: &ResultVersion) -
             let heading = if at == 0 { measure.heading_with_unit() } else { String::new() };
             table.add_row(
                 at == 0,
-                difference_row(measure, difference, heading, kind_of(version, &difference.condition)),
+                difference_row(measure, difference, heading, condition_kind(version, &difference.condition)),
             );
         }
     }
@@ -111,7 +111,7 @@ pub(super) fn difference_table(results: &StudyReport, version: &ResultVersion) -
 }
 
 /// The kind of a condition, by its name.
-fn kind_of(version: &ResultVersion, condition: &str) -> ConditionKind {
+fn condition_kind(version: &ResultVersion, condition: &str) -> ConditionKind {
     version.rows.iter().find(|row| row.condition == condition).map_or(ConditionKind::Run, |row| row.kind)
 }
 
@@ -214,7 +214,7 @@ pub(super) fn pair_tables(version: &ResultVersion) -> Vec<ResultTable> {
         table.notes.push(format!(
             "Of the comparisons with a preference, {} % preferred the text shown as A, {} ({}).",
             format_number(100.0 * side.value, 1),
-            per_cent(side.interval.as_ref()),
+            format_percent_interval(side.interval.as_ref()),
             number_format::method_name(side.method)
         ));
     }
@@ -231,13 +231,13 @@ fn pair_cells(row: &PairRow) -> [String; 9] {
         row.ties.to_string(),
         row.both_bad.to_string(),
         row.share.as_ref().map_or_else(nothing, |share| format_number(100.0 * share.value, 1)),
-        row.share.as_ref().map_or_else(nothing, |share| per_cent(share.interval.as_ref())),
+        row.share.as_ref().map_or_else(nothing, |share| format_percent_interval(share.interval.as_ref())),
         row.share.as_ref().map_or_else(nothing, |share| number_format::method_name(share.method).to_owned()),
     ]
 }
 
 /// An interval of a share, in per cent.
-pub(super) fn per_cent(interval: Option<&wayword_metrics::ConfidenceInterval>) -> String {
+pub(super) fn format_percent_interval(interval: Option<&wayword_metrics::ConfidenceInterval>) -> String {
     let ends = |interval: &wayword_metrics::ConfidenceInterval| {
         format!("[{}, {}]", format_number(100.0 * interval.low, 1), format_number(100.0 * interval.high, 1))
     };

@@ -19,7 +19,7 @@ pub(super) fn read_comprehension(fields: &FormFields, questions: usize) -> Resul
     Ok(ParticipantInput::Understood { attempt, answers: choices.ok_or("Please answer every question.")? })
 }
 
-pub(super) fn own_text(fields: &FormFields) -> Result<ParticipantInput, &'static str> {
+pub(super) fn read_own_text(fields: &FormFields) -> Result<ParticipantInput, &'static str> {
     let text = fields.get("own_text").map_or("", String::as_str).trim();
     if text.is_empty() {
         return Err("Please write a text.");
@@ -119,8 +119,8 @@ mod tests {
 
     #[test]
     fn a_text_of_spaces_is_no_text() {
-        assert!(own_text(&fields(&[("slot", "s"), ("own_text", " \n ")])).is_err());
-        assert!(own_text(&fields(&[("slot", "s"), ("own_text", &"é".repeat(1001))])).is_err());
-        assert!(own_text(&fields(&[("slot", "s"), ("own_text", &"é".repeat(1000))])).is_ok());
+        assert!(read_own_text(&fields(&[("slot", "s"), ("own_text", " \n ")])).is_err());
+        assert!(read_own_text(&fields(&[("slot", "s"), ("own_text", &"é".repeat(1001))])).is_err());
+        assert!(read_own_text(&fields(&[("slot", "s"), ("own_text", &"é".repeat(1000))])).is_ok());
     }
 }

@@ -94,8 +94,8 @@ pub fn serve_study(
     let host = reachable_host(listen.address.ip());
     let acceptor = match &listen.security {
         SiteSecurity::Loopback | SiteSecurity::InsecureLan => None,
-        SiteSecurity::Tls { certificate, key } => Some(tls::of_files(certificate, key)?),
-        SiteSecurity::SelfSigned => Some(tls::self_signed(&study.folder, host)?),
+        SiteSecurity::Tls { certificate, key } => Some(tls::acceptor_from_files(certificate, key)?),
+        SiteSecurity::SelfSigned => Some(tls::self_signed_acceptor(&study.folder, host)?),
     };
     let scheme = if acceptor.is_some() { "https" } else { "http" };
     let public = listen.public.as_ref().map(|url| url.trim_end_matches('/').to_owned());

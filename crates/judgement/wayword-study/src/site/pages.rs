@@ -182,7 +182,7 @@ impl StudyPage {
     }
 
     /// The page for the stage that a participant has reached.
-    pub(super) fn of_stage(
+    pub(super) fn page_for_stage(
         transaction: &StudyTransaction<'_>,
         person: i64,
         page_context: &PageContext,
@@ -209,7 +209,7 @@ impl StudyPage {
                     context! { number, text, levels => AGREEMENT_LEVELS, ..progress_context(progress) },
                 )
             }
-            ParticipantStage::Item(held) => match Self::of_item(transaction, &held, page_context, progress) {
+            ParticipantStage::Item(held) => match Self::page_for_item(transaction, &held, page_context, progress) {
                 Some(page) => page,
                 None => Self::message_page(
                     study,
@@ -222,7 +222,7 @@ impl StudyPage {
     }
 
     /// The page of an item; `None` if the study lacks the item, its route or its scene.
-    fn of_item(
+    fn page_for_item(
         transaction: &StudyTransaction<'_>,
         held: &StoredSlot,
         page_context: &PageContext,

@@ -45,7 +45,7 @@ pub(super) fn response_headers(is_secure: bool) -> Vec<(HeaderName, HeaderValue)
 }
 
 /// Whether a form comes from a page of this site. Scripts on other sites cannot forge these headers, because the browser sets them.
-pub(super) fn is_own(headers: &HeaderMap, public: Option<&str>, scheme: &str) -> bool {
+pub(super) fn comes_from_this_site(headers: &HeaderMap, public: Option<&str>, scheme: &str) -> bool {
     let header_text = |name: HeaderName| headers.get(name).and_then(|value| value.to_str().ok());
     match (header_text(header::ORIGIN), header_text(header::HOST)) {
         (Some(origin), host) => {
@@ -165,7 +165,9 @@ mod tests {
 
     #[test]
     fn a_form_of_another_site_is_refused() {
-        let own = |pairs: &[(&'static str, &str)]| is_own(&from(pairs), Some("https://study.example.org"), "http");
+        let own = |pairs: &[(&'static str, &str)]| {
+            comes_from_this_site(&from(pairs), Some("https://study.example.org"), "http")
+        };
         assert!(own(&[("origin", "http://127.0.0.1:8080"), ("host", "127.0.0.1:8080")]));
         assert!(own(&[("origin", "https://study.example.org"), ("host", "127.0.0.1:8080")]));
         assert!(own(&[("sec-fetch-site", "same-origin")]));

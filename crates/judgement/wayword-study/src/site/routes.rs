@@ -84,7 +84,7 @@ pub(super) fn build_router(site: Arc<StudySite>) -> Router {
 /// Wraps every request: checks the origin of forms, limits the time, and adds the security headers.
 async fn guard_request(State(site): SiteState, request: Request, next: Next) -> Response {
     let is_foreign = request_guard::changes_state(request.method())
-        && !request_guard::is_own(request.headers(), site.public.as_deref(), site.scheme);
+        && !request_guard::comes_from_this_site(request.headers(), site.public.as_deref(), site.scheme);
     let mut response = if is_foreign {
         RequestProblem::Foreign.problem_page(&site)
     } else {
@@ -278,7 +278,7 @@ async fn stage_response(
         if transaction.is_closed()? && !transaction.is_over(person)? {
             return Ok(None);
         }
-        StudyPage::of_stage(transaction, person, &page_context).map(Some)
+        StudyPage::page_for_stage(transaction, person, &page_context).map(Some)
     };
     match site.desk.ask_store(page).await? {
         Some(page) => Ok(page_response(site, status, &page)),
@@ -418,7 +418,7 @@ async fn post_comprehension(State(site): SiteState, request: Request) -> Respons
 }
 
 async fn post_own_text(State(site): SiteState, request: Request) -> Response {
-    response_or_problem_page(post_input(&site, request, forms::own_text).await, &site)
+    response_or_problem_page(post_input(&site, request, forms::read_own_text).await, &site)
 }
 
 async fn post_move(State(site): SiteState, request: Request) -> Response {

@@ -18,7 +18,7 @@ const SELF_SIGNED_KEY_FILE: &str = "self-signed.key";
 ///
 /// # Errors
 /// When a file cannot be read, or the two do not fit.
-pub(super) fn of_files(certificate: &Path, key: &Path) -> Result<TlsAcceptor, StudyError> {
+pub(super) fn acceptor_from_files(certificate: &Path, key: &Path) -> Result<TlsAcceptor, StudyError> {
     let wrong = |path: &Path, problem: String| StudyError::File {
         path: path.to_owned(),
         problem,
@@ -41,7 +41,7 @@ pub(super) fn of_files(certificate: &Path, key: &Path) -> Result<TlsAcceptor, St
 ///
 /// # Errors
 /// When it cannot be made or written.
-pub(super) fn self_signed(folder: &Path, address: IpAddr) -> Result<TlsAcceptor, StudyError> {
+pub(super) fn self_signed_acceptor(folder: &Path, address: IpAddr) -> Result<TlsAcceptor, StudyError> {
     let (certificate, key) = (folder.join(SELF_SIGNED_CERTIFICATE_FILE), folder.join(SELF_SIGNED_KEY_FILE));
     if !(certificate.is_file() && key.is_file()) {
         let names = vec!["localhost".to_owned(), "127.0.0.1".to_owned(), address.to_string()];
@@ -51,7 +51,7 @@ pub(super) fn self_signed(folder: &Path, address: IpAddr) -> Result<TlsAcceptor,
         fs::write(&certificate, generated.cert.pem()).map_err(StudyError::io_error(&certificate, "write"))?;
         write_secret(&key, &generated.signing_key.serialize_pem()).map_err(StudyError::io_error(&key, "write"))?;
     }
-    of_files(&certificate, &key)
+    acceptor_from_files(&certificate, &key)
 }
 
 /// Writes a file that only its owner can read.

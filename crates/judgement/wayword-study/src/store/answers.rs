@@ -59,7 +59,7 @@ impl StudyTransaction<'_> {
             ParticipantInput::Understood { attempt, answers } => self.store_comprehension(person, attempt, &answers),
             ParticipantInput::Attention { number, choice } => self.store_attention(person, number, choice),
             ParticipantInput::OwnText { slot, text } => {
-                self.with_slot(person, &slot, |held| self.own_text(held, &text))
+                self.with_slot(person, &slot, |held| self.store_own_text(held, &text))
             }
             ParticipantInput::Move { slot, seq, to } => {
                 self.with_slot(person, &slot, |held| self.store_move(held, seq, to))
@@ -135,7 +135,7 @@ impl StudyTransaction<'_> {
         Ok(Ok(()))
     }
 
-    fn own_text(&self, held: &StoredSlot, text: &str) -> InputResult {
+    fn store_own_text(&self, held: &StoredSlot, text: &str) -> InputResult {
         if held.own_text.is_none() {
             let text: String = text.chars().take(MAX_OWN_TEXT_CHARS).collect();
             self.db.execute("UPDATE slot SET own_text = ?2 WHERE id = ?1", params![held.id, text])?;

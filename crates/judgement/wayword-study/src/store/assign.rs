@@ -24,7 +24,7 @@ fn filled_places(filled: &BTreeMap<u32, ItemFillCount>, item: u32) -> u32 {
 
 impl StudyTransaction<'_> {
     /// Length of a lease, milliseconds.
-    pub(super) fn lease_ms(&self) -> i64 {
+    pub(super) fn lease_length_ms(&self) -> i64 {
         i64::try_from(self.study.settings.lease_s).unwrap_or(i64::MAX / 2000).saturating_mul(1000)
     }
 
@@ -35,7 +35,7 @@ impl StudyTransaction<'_> {
             "SELECT item, sum(state = 'answered'), sum(state = 'live' AND lease_ms BETWEEN ?1 + 1 AND ?2) FROM slot \
              WHERE position IS NOT NULL GROUP BY item",
         )?;
-        let counts = count.query_map([self.now_ms, self.now_ms + self.lease_ms()], |row| {
+        let counts = count.query_map([self.now_ms, self.now_ms + self.lease_length_ms()], |row| {
             Ok((row.get(0)?, ItemFillCount { answered: row.get(1)?, live: row.get(2)? }))
         })?;
         Ok(counts.collect::<Result<_, _>>()?)
@@ -59,7 +59,7 @@ impl StudyTransaction<'_> {
             "SELECT coalesce(sum(max(0, expected - (SELECT count(*) FROM slot WHERE person = person.id AND position IS NOT NULL \
              AND (state = 'answered' OR (state = 'live' AND lease_ms > ?1))))), 0) \
              FROM person WHERE status = 'started' AND seen_ms > ?2",
-            params![self.now_ms, self.now_ms - self.lease_ms()],
+            params![self.now_ms, self.now_ms - self.lease_length_ms()],
             |row| row.get(0),
         )?;
         let remaining = open.saturating_sub(pending.unsigned_abs()).min(routes.len() as u64);
@@ -116,7 +116,16 @@ impl StudyTransaction<'_> {
         self.db.execute(
             "INSERT INTO slot (name, person, item, route, position, state, lease_ms, given_ms, is_turned) \
              VALUES (?1, ?2, ?3, ?4, ?5, 'live', ?6, ?7, ?8)",
-            params![name, person, item.id, item.route, position, self.now_ms + self.lease_ms(), self.now_ms, is_turned],
+            params![
+                name,
+                person,
+                item.id,
+                item.route,
+                position,
+                self.now_ms + self.lease_length_ms(),
+                self.now_ms,
+                is_turned
+            ],
         )?;
         Ok(())
     }
@@ -130,14 +139,14 @@ impl StudyTransaction<'_> {
         lease_end_ms: i64,
         is_practice: bool,
     ) -> Result<bool, StudyError> {
-        let until_ms = self.now_ms + self.lease_ms();
+        let until_ms = self.now_ms + self.lease_length_ms();
         let is_over = lease_end_ms <= self.now_ms;
         if is_over && !is_practice && filled_places(&self.fill_counts()?, item) >= self.study.plan.per_item {
             self.db.execute("UPDATE slot SET state = 'returned' WHERE id = ?1 AND state = 'live'", [slot])?;
             return Ok(false);
         }
         // A lease is renewed only when a tenth of it is gone, so that merely loading pages causes no writes.
-        if is_over || until_ms - lease_end_ms > self.lease_ms() / 10 {
+        if is_over || until_ms - lease_end_ms > self.lease_length_ms() / 10 {
             self.db.execute("UPDATE slot SET lease_ms = ?2 WHERE id = ?1", params![slot, until_ms])?;
         }
         Ok(true)

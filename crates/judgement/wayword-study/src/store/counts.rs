@@ -74,8 +74,9 @@ impl StudyTransaction<'_> {
             row.answered_per_item = (least.min(fill.answered), most.max(fill.answered));
         }
         let mut counts = self.db.prepare("SELECT status, count(*) FROM person GROUP BY status")?;
-        let participants =
-            counts.query_map([], |row| Ok((people::status_of(row, 0)?, row.get(1)?)))?.collect::<Result<_, _>>()?;
+        let participants = counts
+            .query_map([], |row| Ok((people::status_in_column(row, 0)?, row.get(1)?)))?
+            .collect::<Result<_, _>>()?;
         let count_unused = "SELECT count(*) FROM link WHERE hash NOT IN (SELECT link FROM person)";
         Ok(StudyProgress {
             is_closed: self.is_closed()?,

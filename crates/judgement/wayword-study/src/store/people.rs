@@ -118,8 +118,8 @@ impl StudyTransaction<'_> {
         if !arrival.is_plain() {
             return Ok(ArrivalOutcome::Unknown);
         }
-        if let Some(person) = self.by_link(arrival)? {
-            return Ok(ArrivalOutcome::Back(self.session_for(person)?));
+        if let Some(person) = self.person_by_link(arrival)? {
+            return Ok(ArrivalOutcome::Back(self.open_session(person)?));
         }
         if self.is_barred(arrival)? {
             return Ok(ArrivalOutcome::Gone);
@@ -186,7 +186,7 @@ impl StudyTransaction<'_> {
             let row = params![person, id, study, session];
             self.db.execute("INSERT INTO recruit (person, id, study, session) VALUES (?1, ?2, ?3, ?4)", row)?;
         }
-        Ok(ArrivalOutcome::Back(self.session_for(person)?))
+        Ok(ArrivalOutcome::Back(self.open_session(person)?))
     }
 
     /// The person of a session, with the person's id in the results. Also records a sign of life.
@@ -302,7 +302,7 @@ impl StudyTransaction<'_> {
 
     /// How many participants are still answering: not finished, and seen within the lease.
     pub(crate) fn count_live(&self) -> Result<u32, StudyError> {
-        let since_ms = self.now_ms - self.lease_ms();
+        let since_ms = self.now_ms - self.lease_length_ms();
         let count = "SELECT count(*) FROM person WHERE status = 'started' AND seen_ms > ?1";
         Ok(self.db.query_row(count, [since_ms], |row| row.get(0))?)
     }
@@ -310,7 +310,7 @@ impl StudyTransaction<'_> {
     /// How a participation ended; `None` while it goes on.
     pub(super) fn find_outcome(&self, person: i64) -> Result<Option<ParticipationOutcome>, StudyError> {
         let find = "SELECT status FROM person WHERE id = ?1";
-        match self.db.query_row(find, [person], |row| status_of(row, 0))? {
+        match self.db.query_row(find, [person], |row| status_in_column(row, 0))? {
             ParticipantStatus::Started => Ok(None),
             status => Ok(Some(ParticipationOutcome { status, answers: self.answer_progress(person)?.answered })),
         }
@@ -328,13 +328,13 @@ impl StudyTransaction<'_> {
     }
 
     /// The participant who came by this link before.
-    fn by_link(&self, arrival: &ParticipantArrival) -> Result<Option<i64>, StudyError> {
+    fn person_by_link(&self, arrival: &ParticipantArrival) -> Result<Option<i64>, StudyError> {
         let find = "SELECT id FROM person WHERE link = ?1";
         Ok(self.db.query_row(find, [arrival.arrival_hash()], |row| row.get(0)).optional()?)
     }
 
     /// Opens a session for a person and returns its token.
-    fn session_for(&self, person: i64) -> Result<String, StudyError> {
+    fn open_session(&self, person: i64) -> Result<String, StudyError> {
         let session = new_token()?;
         let insert = "INSERT INTO session (hash, person, made_ms) VALUES (?1, ?2, ?3)";
         self.db.execute(insert, params![hash_parts(&["session", &session]), person, self.now_ms])?;
@@ -357,7 +357,7 @@ pub(super) fn count_forgotten(transaction: &StudyTransaction<'_>) -> Result<u64,
 }
 
 /// The status in a column of a row.
-pub(super) fn status_of(row: &Row<'_>, column: usize) -> Result<ParticipantStatus, rusqlite::Error> {
+pub(super) fn status_in_column(row: &Row<'_>, column: usize) -> Result<ParticipantStatus, rusqlite::Error> {
     let name: String = row.get(column)?;
     let found = ParticipantStatus::ALL.into_iter().find(|status| status.name() == name);
     found.ok_or_else(|| unreadable_value(column, format!("unknown status {name}")))

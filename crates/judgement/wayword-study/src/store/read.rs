@@ -40,7 +40,7 @@ fn read_participants(db: &Connection) -> Result<Vec<Participant>, StudyError> {
         let id: i64 = row.get(0)?;
         Ok(Participant {
             id: row.get(1)?,
-            status: people::status_of(row, 2)?,
+            status: people::status_in_column(row, 2)?,
             consented_ms: row.get(3)?,
             consent: row.get(4)?,
             finished_ms: row.get(5)?,

@@ -46,7 +46,7 @@ impl StudyTransaction<'_> {
             "SELECT recruit.id, person.name, person.status FROM recruit JOIN person ON person.id = recruit.person",
         )?;
         let ours: BTreeMap<String, (String, ParticipantStatus)> = find
-            .query_map([], |row| Ok((row.get(0)?, (row.get(1)?, people::status_of(row, 2)?))))?
+            .query_map([], |row| Ok((row.get(0)?, (row.get(1)?, people::status_in_column(row, 2)?))))?
             .collect::<Result<_, _>>()?;
         if ours.is_empty() {
             let problem = "no participant has a recruiter's id";
@@ -59,7 +59,7 @@ impl StudyTransaction<'_> {
         for (id, status) in &theirs {
             let update =
                 "UPDATE person SET recruiter_status = ?2 WHERE id = (SELECT person FROM recruit WHERE recruit.id = ?1)";
-            self.db.execute(update, [id, &known_word(status)])?;
+            self.db.execute(update, [id, &plain_status(status)])?;
         }
         let ids: BTreeSet<&String> = theirs.keys().chain(ours.keys()).collect();
         let row = |id: &String| {
@@ -117,7 +117,7 @@ fn status_conflict(ours: Option<ParticipantStatus>, theirs: Option<&str>) -> Opt
 }
 
 /// A status from the recruiter's file, reduced to harmless characters and to 40 of them.
-fn known_word(status: &str) -> String {
+fn plain_status(status: &str) -> String {
     let is_plain = |letter: &char| letter.is_ascii_alphanumeric() || matches!(letter, ' ' | '-' | '_');
     status.chars().filter(is_plain).take(40).collect()
 }

@@ -137,16 +137,16 @@ impl StudyTransaction<'_> {
 
     /// The unanswered item that a person has.
     fn live_slot(&self, person: i64) -> Result<Option<StoredSlot>, StudyError> {
-        self.held_where("person = ?1 AND state = 'live' ORDER BY id DESC LIMIT 1", person, "")
+        self.slot_where("person = ?1 AND state = 'live' ORDER BY id DESC LIMIT 1", person, "")
     }
 
     /// A slot of a person by its name on pages, in any state.
     pub(super) fn slot_by_name(&self, person: i64, slot: &str) -> Result<Option<StoredSlot>, StudyError> {
-        self.held_where("person = ?1 AND name = ?2", person, slot)
+        self.slot_where("person = ?1 AND name = ?2", person, slot)
     }
 
     /// The slot of a person that meets an SQL condition, with its steps.
-    fn held_where(&self, condition: &str, person: i64, slot: &str) -> Result<Option<StoredSlot>, StudyError> {
+    fn slot_where(&self, condition: &str, person: i64, slot: &str) -> Result<Option<StoredSlot>, StudyError> {
         // `?2 = ?2` is for conditions without `?2`: each parameter must occur in the statement.
         let mut find = self.db.prepare_cached(&format!(
             "SELECT id, lease_ms, name, item, position IS NULL, is_turned, own_text, stopped_ms, looks, state FROM slot \
@@ -194,7 +194,7 @@ impl StudyTransaction<'_> {
     fn has_failed_checks(&self, person: i64) -> Result<bool, StudyError> {
         let count = "SELECT count(*) FROM attention WHERE person = ?1 AND NOT passed";
         let failed: u32 = self.db.query_row(count, [person], |row| row.get(0))?;
-        Ok(failed as usize > self.study.settings.most_failed())
+        Ok(failed as usize > self.study.settings.tolerated_failed_checks())
     }
 
     /// Whether a participation has ended.

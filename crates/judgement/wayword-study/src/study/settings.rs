@@ -102,7 +102,7 @@ const MAX_ANSWERS_PER_QUESTION: usize = 10;
 
 impl StudySettings {
     /// How many failed attention checks are tolerated by Prolific's rule.
-    pub(crate) fn most_failed(&self) -> usize {
+    pub(crate) fn tolerated_failed_checks(&self) -> usize {
         usize::from(self.minutes >= LONG_STUDY_MINUTES)
     }
 

@@ -140,7 +140,7 @@ impl BertConfig {
     }
 
     /// The most tokens for which the model has positions.
-    pub(crate) fn longest_text(&self) -> usize {
+    pub(crate) fn max_positions(&self) -> usize {
         self.max_position_embeddings
     }
 

@@ -49,19 +49,19 @@ impl BertEncoder {
             words: embeddings.read_embedding("word_embeddings", config.vocab_size, size)?,
             positions: embeddings.read_embedding("position_embeddings", config.max_position_embeddings, size)?,
             kind: kind.map_err(|error| embeddings.tensor_error("token_type_embeddings.weight", &error))?,
-            norm: embeddings.layer_norm("LayerNorm", size, epsilon)?,
+            norm: embeddings.read_layer_norm("LayerNorm", size, epsilon)?,
             layers: layers.collect::<std::result::Result<_, _>>()?,
         })
     }
 
     /// The states [batch, length, size] of ids [batch, length]. `mask` [batch, 1, 1, length] hides padding.
     pub(crate) fn encode_tokens(&self, ids: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
-        self.of_at(ids, &Tensor::arange(0, ids.dim(1)? as u32, ids.device())?, mask)
+        self.encode_tokens_at(ids, &Tensor::arange(0, ids.dim(1)? as u32, ids.device())?, mask)
     }
 
     /// Like [`BertEncoder::encode_tokens`], for tokens with other positions [length] than 0, 1, 2 .., and a mask that
     /// can be broadcast to [batch, heads, length, length].
-    pub(crate) fn of_at(&self, ids: &Tensor, positions: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+    pub(crate) fn encode_tokens_at(&self, ids: &Tensor, positions: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
         let positions = self.positions.look_up(positions)?;
         let x = self
             .words
@@ -80,10 +80,10 @@ impl BertLayer {
         Ok(Self {
             qkv: weights.sub_scope("attention.self").read_joined_linears(&["query", "key", "value"], size, size)?,
             mixed: weights.read_linear("attention.output.dense", size, size)?,
-            mixed_norm: weights.layer_norm("attention.output.LayerNorm", size, epsilon)?,
+            mixed_norm: weights.read_layer_norm("attention.output.LayerNorm", size, epsilon)?,
             wide: weights.read_linear("intermediate.dense", size, inner)?,
             narrow: weights.read_linear("output.dense", inner, size)?,
-            norm: weights.layer_norm("output.LayerNorm", size, epsilon)?,
+            norm: weights.read_layer_norm("output.LayerNorm", size, epsilon)?,
             heads: config.num_attention_heads,
             activation: config.hidden_act,
         })
@@ -104,6 +104,6 @@ impl BertLayer {
             narrow: &self.narrow,
             after: Some(&self.norm),
         };
-        feed_forward.apply_to(&self.mixed.apply_onto_then(&mixed, x, &self.mixed_norm)?)
+        feed_forward.apply_to(&self.mixed.apply_add_and_norm(&mixed, x, &self.mixed_norm)?)
     }
 }

@@ -47,7 +47,7 @@ impl BlipDecoder {
             text: TextModel::from_weights(&weights.sub_scope("bert"), config)?,
             dense: head.read_linear("transform.dense", size, size)?,
             activation: config.hidden_act,
-            norm: head.layer_norm("transform.LayerNorm", size, config.layer_norm_eps)?,
+            norm: head.read_layer_norm("transform.LayerNorm", size, config.layer_norm_eps)?,
             words: words.map_err(|error| table.tensor_error("weight", &error))?,
             begin: config.bos_token_id,
             end: config.sep_token_id,
@@ -57,7 +57,7 @@ impl BlipDecoder {
 
     /// Logits [1, length, words] from states [1, length, size].
     pub(super) fn token_logits(&self, states: &Tensor) -> Result<Tensor> {
-        self.words.apply_to(&self.norm.apply_to(&self.dense.apply_then(states, self.activation)?)?)
+        self.words.apply_to(&self.norm.apply_to(&self.dense.apply_and_activate(states, self.activation)?)?)
     }
 
     /// The tokens that continue a prompt: at most `max_tokens`, without the one that ends a text. `prompt` does not

@@ -59,7 +59,7 @@ impl TextModel {
         Ok(Self {
             words: embeddings.read_embedding("word_embeddings", config.vocab_size, size)?,
             positions: embeddings.read_embedding("position_embeddings", config.max_position_embeddings, size)?,
-            norm: embeddings.layer_norm("LayerNorm", size, config.layer_norm_eps)?,
+            norm: embeddings.read_layer_norm("LayerNorm", size, config.layer_norm_eps)?,
             layers: layers.collect::<std::result::Result<_, _>>()?,
         })
     }
@@ -121,7 +121,7 @@ impl BlipTextLayer {
             let layer = weights.sub_scope(name);
             Ok(BlipTextOutput {
                 dense: layer.read_linear("dense", inputs, size)?,
-                norm: layer.layer_norm("LayerNorm", size, epsilon)?,
+                norm: layer.read_layer_norm("LayerNorm", size, epsilon)?,
             })
         };
         let cross = weights.sub_scope("crossattention.self");
@@ -158,7 +158,7 @@ impl BlipTextLayer {
         let x = self
             .cross
             .add_and_norm(&cross_attention.attend_to(&self.cross_query.apply_to(&x)?, &attended.0, &attended.1)?, &x)?;
-        self.narrow.add_and_norm(&self.wide.apply_then(&x, self.activation)?, &x)
+        self.narrow.add_and_norm(&self.wide.apply_and_activate(&x, self.activation)?, &x)
     }
 }
 

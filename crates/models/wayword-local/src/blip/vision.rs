@@ -55,7 +55,7 @@ impl BlipVision {
             class: embeddings.read_state("class_embedding", &[1, 1, size])?,
             positions: embeddings.read_state("position_embedding", &[1, count, size])?,
             layers: layers.collect::<std::result::Result<_, _>>()?,
-            norm: weights.layer_norm("post_layernorm", size, config.layer_norm_eps)?,
+            norm: weights.read_layer_norm("post_layernorm", size, config.layer_norm_eps)?,
         })
     }
 
@@ -75,10 +75,10 @@ impl BlipVisionLayer {
     fn from_weights(weights: &WeightScope<'_>, config: &VisionConfig) -> std::result::Result<Self, LocalError> {
         let (size, inner, epsilon) = (config.hidden_size, config.intermediate_size, config.layer_norm_eps);
         Ok(Self {
-            norm: weights.layer_norm("layer_norm1", size, epsilon)?,
+            norm: weights.read_layer_norm("layer_norm1", size, epsilon)?,
             qkv: weights.read_linear("self_attn.qkv", size, 3 * size)?,
             mixed: weights.read_linear("self_attn.projection", size, size)?,
-            mixed_norm: weights.layer_norm("layer_norm2", size, epsilon)?,
+            mixed_norm: weights.read_layer_norm("layer_norm2", size, epsilon)?,
             wide: weights.read_linear("mlp.fc1", size, inner)?,
             narrow: weights.read_linear("mlp.fc2", inner, size)?,
             heads: config.num_attention_heads,
@@ -100,6 +100,6 @@ impl BlipVisionLayer {
             narrow: &self.narrow,
             after: None,
         };
-        feed_forward.apply_to(&self.mixed.apply_onto(&mixed, x)?)
+        feed_forward.apply_to(&self.mixed.apply_and_add(&mixed, x)?)
     }
 }

@@ -60,7 +60,7 @@ impl OptModel {
             words: decoder.read_embedding("embed_tokens", count, size)?,
             positions: decoder.read_embedding("embed_positions", positions, size)?,
             layers: (0..config.num_hidden_layers).map(layer).collect::<std::result::Result<_, _>>()?,
-            norm: decoder.layer_norm("final_layer_norm", size, NORM_EPSILON)?,
+            norm: decoder.read_layer_norm("final_layer_norm", size, NORM_EPSILON)?,
             head: LinearLayer::new(&head.read_tensor("weight", &[count, size])?, None)
                 .map_err(|error| head.tensor_error("weight", &error))?,
             longest: config.max_position_embeddings,
@@ -100,10 +100,10 @@ impl OptLayer {
     fn from_weights(weights: &WeightScope<'_>, config: &OptConfig) -> std::result::Result<Self, LocalError> {
         let size = config.hidden_size;
         Ok(Self {
-            own_norm: weights.layer_norm("self_attn_layer_norm", size, NORM_EPSILON)?,
+            own_norm: weights.read_layer_norm("self_attn_layer_norm", size, NORM_EPSILON)?,
             qkv: weights.sub_scope("self_attn").read_joined_linears(&["q_proj", "k_proj", "v_proj"], size, size)?,
             mixed: weights.read_linear("self_attn.out_proj", size, size)?,
-            norm: weights.layer_norm("final_layer_norm", size, NORM_EPSILON)?,
+            norm: weights.read_layer_norm("final_layer_norm", size, NORM_EPSILON)?,
             wide: weights.read_linear("fc1", size, config.ffn_dim)?,
             narrow: weights.read_linear("fc2", config.ffn_dim, size)?,
             heads: config.num_attention_heads,
@@ -119,6 +119,6 @@ impl OptLayer {
         let scale = 1.0 / ((size / self.heads) as f32).sqrt();
         let mixed = MultiHeadAttention { heads: self.heads, scale, bias: mask }.attend_to(&part(0)?, &keys, &values)?;
         let x = (self.mixed.apply_to(&mixed)? + x)?;
-        self.narrow.apply_to(&self.wide.apply_then(&self.norm.apply_to(&x)?, self.activation)?)? + x
+        self.narrow.apply_to(&self.wide.apply_and_activate(&self.norm.apply_to(&x)?, self.activation)?)? + x
     }
 }

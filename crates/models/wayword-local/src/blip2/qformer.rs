@@ -57,7 +57,7 @@ impl QFormer {
         };
         Ok(Self {
             tokens: weights.read_state("query_tokens", &[1, count, size])?,
-            norm: all.layer_norm("layernorm", size, config.layer_norm_eps)?,
+            norm: all.read_layer_norm("layernorm", size, config.layer_norm_eps)?,
             layers: (0..config.num_hidden_layers).map(layer).collect::<std::result::Result<_, _>>()?,
         })
     }
@@ -77,7 +77,7 @@ impl QFormerLayer {
         let (size, inner) = (config.hidden_size, config.intermediate_size);
         let output = |name: &str, inputs: usize| -> std::result::Result<QFormerOutput, LocalError> {
             let layer = weights.sub_scope(name);
-            let norm = layer.layer_norm("LayerNorm", size, config.layer_norm_eps)?;
+            let norm = layer.read_layer_norm("LayerNorm", size, config.layer_norm_eps)?;
             Ok(QFormerOutput { dense: layer.read_linear("dense", inputs, size)?, norm })
         };
         let cross = || -> std::result::Result<QFormerCrossAttention, LocalError> {
@@ -115,7 +115,7 @@ impl QFormerLayer {
             let (keys, values) = (keys_values.narrow(2, 0, size)?, keys_values.narrow(2, size, size)?);
             x = cross.output.add_and_norm(&attention.attend_to(&cross.query.apply_to(&x)?, &keys, &values)?, &x)?;
         }
-        self.narrow.add_and_norm(&self.wide.apply_then(&x, self.activation)?, &x)
+        self.narrow.add_and_norm(&self.wide.apply_and_activate(&x, self.activation)?, &x)
     }
 }
 

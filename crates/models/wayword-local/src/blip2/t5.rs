@@ -119,7 +119,7 @@ impl T5Stack {
             blocks: (0..layers)
                 .map(|at| T5Block::from_weights(&blocks.sub_scope(at).sub_scope("layer"), config, is_decoder))
                 .collect::<std::result::Result<_, _>>()?,
-            norm: weights.rms_norm("final_layer_norm", config.d_model, config.layer_norm_epsilon)?,
+            norm: weights.read_rms_norm("final_layer_norm", config.d_model, config.layer_norm_epsilon)?,
             distances: T5DistanceBias {
                 table: bias.read_embedding("relative_attention_bias", buckets, config.num_heads)?,
                 buckets,
@@ -199,7 +199,7 @@ impl T5Block {
         is_decoder: bool,
     ) -> std::result::Result<Self, LocalError> {
         let (size, width, inner) = (config.d_model, config.num_heads * config.d_kv, config.d_ff);
-        let norm = |name: &str| weights.rms_norm(name, size, config.layer_norm_epsilon);
+        let norm = |name: &str| weights.read_rms_norm(name, size, config.layer_norm_epsilon);
         let cross = || -> std::result::Result<T5CrossAttention, LocalError> {
             let attention = weights.sub_scope("1.EncDecAttention");
             Ok(T5CrossAttention {
@@ -251,7 +251,7 @@ impl T5Block {
             x = (cross.mixed.apply_to(&mixed)? + x)?;
         }
         let normed = self.wide_norm.apply_to(&x)?;
-        let gated = (self.gate.apply_then(&normed, self.activation)? * self.wide.apply_to(&normed)?)?;
+        let gated = (self.gate.apply_and_activate(&normed, self.activation)? * self.wide.apply_to(&normed)?)?;
         self.narrow.apply_to(&gated)? + x
     }
 }

@@ -77,10 +77,10 @@ impl ClipLayer {
     fn from_weights(weights: &WeightScope<'_>, config: &LayersConfig) -> std::result::Result<Self, LocalError> {
         let (size, inner, epsilon) = (config.hidden_size, config.intermediate_size, config.layer_norm_eps);
         Ok(Self {
-            attention_norm: weights.layer_norm("layer_norm1", size, epsilon)?,
+            attention_norm: weights.read_layer_norm("layer_norm1", size, epsilon)?,
             qkv: weights.sub_scope("self_attn").read_joined_linears(&["q_proj", "k_proj", "v_proj"], size, size)?,
             mixed: weights.read_linear("self_attn.out_proj", size, size)?,
-            feed_forward_norm: weights.layer_norm("layer_norm2", size, epsilon)?,
+            feed_forward_norm: weights.read_layer_norm("layer_norm2", size, epsilon)?,
             wide: weights.read_linear("mlp.fc1", size, inner)?,
             narrow: weights.read_linear("mlp.fc2", inner, size)?,
             heads: config.num_attention_heads,
@@ -107,6 +107,6 @@ impl ClipLayer {
             narrow: &self.narrow,
             after: None,
         };
-        feed_forward.apply_to(&self.mixed.apply_onto(&mixed, x)?)
+        feed_forward.apply_to(&self.mixed.apply_and_add(&mixed, x)?)
     }
 }

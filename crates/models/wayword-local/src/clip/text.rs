@@ -32,7 +32,7 @@ impl TextTower {
             words: embeddings.read_embedding("token_embedding", config.vocab_size, size)?,
             positions: embeddings.read_embedding("position_embedding", config.max_position_embeddings, size)?,
             layers: ClipLayers::from_weights(&weights.sub_scope("encoder.layers"), &config.layers)?,
-            norm: weights.layer_norm("final_layer_norm", size, epsilon)?,
+            norm: weights.read_layer_norm("final_layer_norm", size, epsilon)?,
             end: config.eos_token_id.filter(|&end| end != WRONG_END_TOKEN_ID),
         })
     }
@@ -45,14 +45,14 @@ impl TextTower {
         let ids = Tensor::from_vec(texts.iter().flat_map(padded).collect(), (texts.len(), length), device)?;
         let positions = self.positions.look_up(&Tensor::arange(0, length as u32, device)?)?;
         let x = self.words.look_up(&ids)?.broadcast_add(&positions)?;
-        let ends: Vec<u32> = texts.iter().map(|ids| self.end_of(ids)).collect();
+        let ends: Vec<u32> = texts.iter().map(|ids| self.end_position(ids)).collect();
         let x = self.layers.states_at(x, Some(&causal_mask(length, length, device)?), &ends)?;
         self.norm.apply_to(&x)
     }
 
     /// The position at which a text ends: the first end token or, if the configuration names none or the wrong one, the
     /// first token with the highest id. 0 if there is none.
-    fn end_of(&self, ids: &[u32]) -> u32 {
+    fn end_position(&self, ids: &[u32]) -> u32 {
         let end = self.end.or_else(|| ids.iter().max().copied());
         ids.iter().position(|&id| Some(id) == end).unwrap_or(0) as u32
     }

@@ -44,9 +44,9 @@ impl VisionTower {
             patches: kernel.map_err(|error| embeddings.tensor_error("patch_embedding.weight", &error))?,
             class: class_and_positions.0,
             positions: class_and_positions.1,
-            first_norm: weights.layer_norm(first_norm, size, epsilon)?,
+            first_norm: weights.read_layer_norm(first_norm, size, epsilon)?,
             layers: ClipLayers::from_weights(&weights.sub_scope("encoder.layers"), &config.layers)?,
-            last_norm: weights.layer_norm("post_layernorm", size, epsilon)?,
+            last_norm: weights.read_layer_norm("post_layernorm", size, epsilon)?,
         })
     }
 

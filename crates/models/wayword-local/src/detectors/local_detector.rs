@@ -38,12 +38,12 @@ impl LocalDetector {
 
     /// The boxes of each phrase in one view. `phrases_meet` is true for detectors in which the phrases of a call
     /// influence each other's scores.
-    fn in_view(&self, view: &View, phrases: &[&str]) -> Result<Vec<PhraseBoxes>, ModelError> {
+    fn detect_in_view(&self, view: &View, phrases: &[&str]) -> Result<Vec<PhraseBoxes>, ModelError> {
         let picture = picture_hash(picture_of_view(view, &self.calls.name)?);
         match phrases {
             [] => Ok(Vec::new()),
             _ if self.scoring().phrases_interact => self.detect_together(view, &picture, phrases),
-            _ => self.one_by_one(view, &picture, phrases),
+            _ => self.detect_separately(view, &picture, phrases),
         }
     }
 
@@ -61,7 +61,7 @@ impl LocalDetector {
     }
 
     /// One call for each phrase. Phrases that the ledger lacks are computed together nevertheless.
-    fn one_by_one(&self, view: &View, picture: &str, phrases: &[&str]) -> Result<Vec<PhraseBoxes>, ModelError> {
+    fn detect_separately(&self, view: &View, picture: &str, phrases: &[&str]) -> Result<Vec<PhraseBoxes>, ModelError> {
         // The first phrase that the ledger lacks computes all phrases from there on. The boxes of those
         // that follow wait in `ahead` until their own call.
         let ahead: RefCell<VecDeque<PhraseBoxes>> = RefCell::default();
@@ -119,7 +119,7 @@ impl ObjectDetector for LocalDetector {
     }
 
     fn detect_phrases(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<DetectedBox>>, ModelError>> {
-        views.iter().map(|view| self.in_view(view, phrases)).collect()
+        views.iter().map(|view| self.detect_in_view(view, phrases)).collect()
     }
 }
 

@@ -103,7 +103,7 @@ impl DetectorCheckpoint {
     /// keeps.
     pub(crate) fn memory_bytes(&self, precision: WeightPrecision) -> Result<u64, LocalError> {
         let (weights, feature_bytes) = match self {
-            Self::Glip(files) => (memory::of_file(&files.weights, precision)?, glip::FEATURE_CACHE_BYTES),
+            Self::Glip(files) => (memory::checkpoint_file_bytes(&files.weights, precision)?, glip::FEATURE_CACHE_BYTES),
             Self::Dino(folder) => (memory::checkpoint_bytes(&folder.path, precision)?, dino::FEATURE_CACHE_BYTES),
             Self::Owl(folder) => (memory::checkpoint_bytes(&folder.path, precision)?, owl::FEATURE_CACHE_BYTES),
         };

@@ -58,7 +58,7 @@ impl DinoDecoder {
         Ok(Self {
             begin: model.read_state("query_position_embeddings.weight", &[config.queries, size])?,
             layers: (0..config.decoder.count).map(layer).collect::<LoadResult<_>>()?,
-            norm: decoder.layer_norm("layer_norm", size, config.epsilon)?,
+            norm: decoder.read_layer_norm("layer_norm", size, config.epsilon)?,
             places: ReluPerceptron::from_weights(&decoder.sub_scope("reference_points_head"), &[2 * size, size, size])?,
             heads: DinoHeads::from_weights(all, config)?,
             size,
@@ -109,7 +109,7 @@ fn move_boxes(boxes: &[[f32; 4]], moves: &Tensor) -> Result<Vec<[f32; 4]>> {
 impl DinoDecoderLayer {
     fn from_weights(weights: &WeightScope<'_>, config: &DinoConfig) -> LoadResult<Self> {
         let (size, heads, epsilon) = (config.size, config.decoder.heads, config.epsilon);
-        let norm = |name: &str| weights.layer_norm(name, size, epsilon);
+        let norm = |name: &str| weights.read_layer_norm(name, size, epsilon);
         let widths = (size, config.decoder.inner);
         Ok(Self {
             mix: ProjectedAttention::from_weights(&weights.sub_scope("self_attn"), size, heads)?,

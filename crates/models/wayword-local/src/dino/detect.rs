@@ -69,7 +69,7 @@ fn phrase_boxes(
         let mut found: Vec<DetectedBox> = scores
             .zip(&edges)
             .map(|(score, &box_px)| DetectedBox { box_px, score })
-            .filter(|found| is_sound(*found))
+            .filter(|found| is_finite_box(*found))
             .collect();
         found.sort_by(|a, b| b.score.total_cmp(&a.score));
         found.truncate(MAX_BOXES_PER_PHRASE);
@@ -79,7 +79,7 @@ fn phrase_boxes(
 }
 
 /// Whether score and box are finite. A damaged checkpoint may give other numbers.
-fn is_sound(found: DetectedBox) -> bool {
+fn is_finite_box(found: DetectedBox) -> bool {
     found.score.is_finite() && found.box_px.iter().all(|edge| edge.is_finite())
 }
 

@@ -36,7 +36,7 @@ impl EncoderLayer {
         Ok(Self {
             fusion: DinoFusion::from_weights(&weights.sub_scope("fusion_layer"), config)?,
             text_mix: ProjectedAttention::from_weights(&text.sub_scope("self_attn"), size, config.encoder.heads / 2)?,
-            text_norm: text.layer_norm("layer_norm_before", size, epsilon)?,
+            text_norm: text.read_layer_norm("layer_norm_before", size, epsilon)?,
             text_feed: feed(&text, "layer_norm_after", inner / 2)?,
             look: DeformableAttention::from_weights(
                 &cells.sub_scope("self_attn"),
@@ -44,7 +44,7 @@ impl EncoderLayer {
                 config.levels,
                 config.encoder,
             )?,
-            norm: cells.layer_norm("self_attn_layer_norm", size, epsilon)?,
+            norm: cells.read_layer_norm("self_attn_layer_norm", size, epsilon)?,
             feed: feed(&cells, "final_layer_norm", inner)?,
         })
     }

@@ -74,7 +74,7 @@ impl DinoFeatureExtractor {
     pub(super) fn from_weights(model: &WeightScope<'_>, config: &DinoConfig) -> LoadResult<Self> {
         let backbone = &config.backbone;
         let maps = backbone.outputs.len();
-        let width = |map: usize| backbone.outputs.get(map).map_or(config.size, |&stage| backbone.width_of(stage));
+        let width = |map: usize| backbone.outputs.get(map).map_or(config.size, |&stage| backbone.stage_width(stage));
         let projection = |at: usize| {
             let weights = model.sub_scope("input_proj_vision").sub_scope(at);
             // The first coarser level is computed from the backbone's last map, each further one from the level before.

@@ -59,8 +59,8 @@ impl DinoFusion {
         let value = value.reshape((heads, head_size, size)).and_then(|value| value.transpose(1, 2)?.contiguous());
         let value_bias = bias("values_vision_proj", width)?.reshape((heads, 1, head_size));
         Ok(Self {
-            vision_norm: weights.layer_norm("layer_norm_vision", size, config.epsilon)?,
-            text_norm: weights.layer_norm("layer_norm_text", size, config.epsilon)?,
+            vision_norm: weights.read_layer_norm("layer_norm_vision", size, config.epsilon)?,
+            text_norm: weights.read_layer_norm("layer_norm_text", size, config.epsilon)?,
             text: attn.read_joined_linears(&["text_proj", "values_text_proj"], size, width)?,
             query: query.map_err(|error| wrong("vision_proj.weight", error))?,
             query_bias: query_bias.map_err(|error| wrong("vision_proj.bias", error))?,

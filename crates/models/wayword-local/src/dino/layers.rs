@@ -5,7 +5,7 @@ use super::LoadResult;
 use crate::{
     ops::{
         Activation, LayerNorm, LinearLayer, MultiHeadAttention,
-        kernels::{is_ours, with_numbers},
+        kernels::{is_cpu_f32, with_f32_slice},
         tiles::{each_tile, split_memory},
     },
     weights::WeightScope,
@@ -88,28 +88,28 @@ impl NormedFeedForward {
         Ok(Self {
             parts: parts.map_err(|error| first.tensor_error("weight", &error))?,
             width,
-            norm: weights.layer_norm(norm, size, epsilon)?,
+            norm: weights.read_layer_norm(norm, size, epsilon)?,
             activation,
         })
     }
 
     /// The output for x [1, rows, size].
     pub(super) fn apply_to(&self, x: &Tensor) -> Result<Tensor> {
-        if is_ours(x) {
-            return self.on_processor(x);
+        if is_cpu_f32(x) {
+            return self.apply_on_cpu(x);
         }
         let part = |sum: Tensor, (wide, narrow): &(LinearLayer, LinearLayer)| {
-            sum + narrow.apply_to(&wide.apply_then(x, self.activation)?)?
+            sum + narrow.apply_to(&wide.apply_and_activate(x, self.activation)?)?
         };
         self.norm.apply_to(&self.parts.iter().try_fold(x.clone(), part)?)
     }
 
     /// Takes a tile of rows at a time through both layers, so that the numbers between them stay in the processor's
     /// cache.
-    fn on_processor(&self, x: &Tensor) -> Result<Tensor> {
+    fn apply_on_cpu(&self, x: &Tensor) -> Result<Tensor> {
         let (_, count, size) = x.dims3()?;
         let mut y = vec![0.0; count * size];
-        with_numbers(x, |x| {
+        with_f32_slice(x, |x| {
             each_tile(&mut y, size, |from, y, memory| {
                 let rows = y.len() / size;
                 let x = &x[from * size..(from + rows) * size];
@@ -137,6 +137,6 @@ impl ReluPerceptron {
 
     pub(super) fn apply_to(&self, x: &Tensor) -> Result<Tensor> {
         let Some((last, before)) = self.0.split_last() else { return Ok(x.clone()) };
-        last.apply_to(&before.iter().try_fold(x.clone(), |x, layer| layer.apply_then(&x, Activation::Relu))?)
+        last.apply_to(&before.iter().try_fold(x.clone(), |x, layer| layer.apply_and_activate(&x, Activation::Relu))?)
     }
 }

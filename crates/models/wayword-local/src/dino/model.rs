@@ -79,7 +79,7 @@ impl GroundingDino {
         let layer = |at: usize| EncoderLayer::from_weights(&model.sub_scope("encoder.layers").sub_scope(at), &config);
         // The bytes of one picture: the cells of the finest level, and a quarter as many for each coarser one.
         let cell_px = PATCH_PX << config.backbone.outputs.first().copied().unwrap_or_default();
-        let picture_bytes = (shown.most_pixels() / (cell_px * cell_px) + 1) * 4 / 3 * config.size * size_of::<f32>();
+        let picture_bytes = (shown.max_pixels() / (cell_px * cell_px) + 1) * 4 / 3 * config.size * size_of::<f32>();
         Ok(Self {
             name: name.to_owned(),
             family: config.family,

@@ -67,7 +67,7 @@ impl DinoPictureProcessor {
     }
 
     /// The most pixels of a picture for the model.
-    pub(super) fn most_pixels(&self) -> usize {
+    pub(super) fn max_pixels(&self) -> usize {
         self.shortest * self.longest
     }
 
@@ -78,7 +78,7 @@ impl DinoPictureProcessor {
         if from_height == 0 || from_width == 0 {
             return Err(wrong(format!("{image:?} has no pixels")));
         }
-        let (height, width) = self.size_of(from_height, from_width);
+        let (height, width) = self.resized_size(from_height, from_width);
         let axis = |from, to| ResampleAxis::keep_middle(ResampleFilter::Bilinear, from, to, to);
         let rgb = resample_picture(image.rgb_bytes(), &axis(from_height, height), &axis(from_width, width));
         let mut numbers = vec![0.0; 3 * height * width];
@@ -91,7 +91,7 @@ impl DinoPictureProcessor {
     }
 
     /// The height and width to which a picture is resized, rounded as Python rounds them.
-    fn size_of(&self, height: usize, width: usize) -> (usize, usize) {
+    fn resized_size(&self, height: usize, width: usize) -> (usize, usize) {
         let (short, long) = (height.min(width), height.max(width));
         let (mut edge, mut exact) = (self.shortest, self.shortest as f64);
         if long as f64 / short as f64 * edge as f64 > self.longest as f64 {

@@ -44,7 +44,7 @@ impl QueryChooser {
         let size = config.size;
         Ok(Self {
             layer: model.read_linear("enc_output", size, size)?,
-            norm: model.layer_norm("enc_output_norm", size, config.epsilon)?,
+            norm: model.read_layer_norm("enc_output_norm", size, config.epsilon)?,
             boxes: ReluPerceptron::from_weights(&model.sub_scope("encoder_output_bbox_embed"), &[size, size, size, 4])?,
             contrast: TokenContrast::from_weights(&model.sub_scope("encoder_output_class_embed"), config)?,
             queries: config.queries,

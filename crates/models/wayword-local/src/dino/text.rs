@@ -38,7 +38,7 @@ impl TextTower {
         let places = prompt.token_places();
         let mask = prompt.attention_mask(device)?.reshape((1, 1, count, count))?;
         let at = Tensor::from_slice(&places, count, device)?;
-        let states = self.projection.apply_to(&self.bert.of_at(&ids, &at, Some(&mask))?)?;
+        let states = self.projection.apply_to(&self.bert.encode_tokens_at(&ids, &at, Some(&mask))?)?;
         let places = Tensor::from_vec(position::token_positions(&places, self.size), (1, count, self.size), device)?;
         let places = if device.is_cpu() { places.to_dtype(DType::F32)? } else { places.to_dtype(states.dtype())? };
         Ok(PromptStates { states, places, mask })

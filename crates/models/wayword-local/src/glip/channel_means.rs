@@ -2,7 +2,7 @@
 
 use crate::ops::{
     conv3::FeatureMap,
-    kernels::{is_ours, with_numbers},
+    kernels::{is_cpu_f32, with_f32_slice},
     tiles::TILE_ROWS,
 };
 use candle_core::{Result, Tensor};
@@ -22,7 +22,7 @@ impl ChannelMeans {
     /// The means of a map. `shares` are the weights of its positions; without them all positions count the same.
     pub(super) fn from_map(map: &FeatureMap, shares: Option<&[f32]>) -> Result<Self> {
         let (count, width) = map.x.dims2()?;
-        if !is_ours(&map.x) {
+        if !is_cpu_f32(&map.x) {
             let x = map.x.to_dtype(candle_core::DType::F32)?;
             let numbers =
                 |x: Tensor| -> Result<Vec<f64>> { Ok(x.to_vec1::<f32>()?.into_iter().map(f64::from).collect()) };
@@ -36,7 +36,7 @@ impl ChannelMeans {
             };
             return Ok(Self { plain, square: numbers(x.sqr()?.mean(0)?)?, shared });
         }
-        with_numbers(&map.x, |x| {
+        with_f32_slice(&map.x, |x| {
             let tiles =
                 x.par_chunks(width * TILE_ROWS).enumerate().map(|(tile, x)| Self::sum_tile(tile, x, width, shares));
             let zero = || vec![0.0; 3 * width];

@@ -87,15 +87,15 @@ impl GlipDetector {
                 hint: "GLIP needs the tokenizer of bert-base-uncased",
             });
         }
-        let weights = CheckpointWeights::of_file(&files.weights, device, precision)?;
+        let weights = CheckpointWeights::open_file(&files.weights, device, precision)?;
         let model = GlipModel::from_weights(&weights, &config)?;
-        let picture_count = (FEATURE_CACHE_BYTES / model.feature_bytes(edges.most_pixels()).max(1)).max(1);
+        let picture_count = (FEATURE_CACHE_BYTES / model.feature_bytes(edges.max_pixels()).max(1)).max(1);
         Ok(Self {
             name: name.to_owned(),
             model,
             tokenizer,
             processor: edges,
-            most_tokens: MAX_PROMPT_TOKENS.min(config.text.longest_text()),
+            most_tokens: MAX_PROMPT_TOKENS.min(config.text.max_positions()),
             device: device.clone(),
             picture_cache: RecentCache::one_at_a_time(picture_count),
         })

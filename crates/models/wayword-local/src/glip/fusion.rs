@@ -9,7 +9,7 @@ use crate::{
     LocalError,
     ops::{
         LayerNorm, LinearLayer,
-        matrix::{multiply_matrices, plus_times, softmax_rows},
+        matrix::{add_product, multiply_matrices, softmax_rows},
     },
     weights::WeightScope,
 };
@@ -62,8 +62,8 @@ impl GlipFusion {
         let (out, out_bias) = pair("out_v_proj", [width, inner])?;
         let by_head = |weight: &Tensor| weight.reshape((heads, size, width)).map_err(wrong);
         Ok(Self {
-            norm_v: weights.layer_norm("layer_norm_v", width, NORM_EPSILON)?,
-            norm_l: weights.layer_norm("layer_norm_l", text, NORM_EPSILON)?,
+            norm_v: weights.read_layer_norm("layer_norm_v", width, NORM_EPSILON)?,
+            norm_l: weights.read_layer_norm("layer_norm_l", text, NORM_EPSILON)?,
             gamma_v: weights.read_state("gamma_v", &[width])?,
             gamma_l: weights.read_state("gamma_l", &[text])?,
             query: (by_head(&query)?, query_bias.reshape((heads, size, 1)).map_err(wrong)?),
@@ -106,7 +106,7 @@ impl GlipFusion {
             let added = take_heads(&added)?.reshape((1, heads * tokens))?;
             let scores = multiply_matrices(&v, &folded.t()?)?.broadcast_add(&added)?;
             let to_vision = softmax_rows(&scores.reshape((v.dim(0)?, heads, tokens))?)?.flatten_from(1)?;
-            new_v = plus_times(&new_v, &to_vision, &take_heads(&outputs)?, (begin == 0).then_some(&bias))?;
+            new_v = add_product(&new_v, &to_vision, &take_heads(&outputs)?, (begin == 0).then_some(&bias))?;
         }
         let mixed = Tensor::cat(&pooled, 0)?.matmul(&self.values_v.0.transpose(1, D::Minus1)?.contiguous()?)?;
         let mixed = mixed.broadcast_add(&self.values_v.1)?.transpose(0, 1)?.contiguous()?.flatten_from(1)?;

@@ -30,7 +30,7 @@ impl GlipModel {
         config: &GlipConfig,
     ) -> std::result::Result<Self, LocalError> {
         let all = weights.scope_under("");
-        let map_widths = [1, 2, 3].map(|stage| config.swin.width_of(stage));
+        let map_widths = [1, 2, 3].map(|stage| config.swin.stage_width(stage));
         Ok(Self {
             backbone: SwinBackbone::from_weights(
                 &all.sub_scope("backbone.body"),

@@ -11,8 +11,8 @@ use super::{channel_means::ChannelMeans, config::HeadConfig, enlargement::MapEnl
 use crate::{
     LocalError,
     ops::{
-        conv3::{Conv3Layer, FeatureMap, OFFSET_NUMBERS_PER_POSITION, TapOffsets, mix_rows, rows_between},
-        kernels::{is_ours, with_numbers},
+        conv3::{Conv3Layer, FeatureMap, OFFSET_NUMBERS_PER_POSITION, TapOffsets, mix_rows, mix_rows_on_device},
+        kernels::{is_cpu_f32, with_f32_slice},
         tiles::{TILE_ROWS, each_tile, split_memory},
     },
     weights::WeightScope,
@@ -125,10 +125,10 @@ impl GlipTower {
             mean.iter_mut().zip(&result.mean).for_each(|(sum, mean)| *sum += mean * weight);
         }
         let lines = self.activation_lines(&mean);
-        let x = if is_ours(&level.x) {
+        let x = if is_cpu_f32(&level.x) {
             self.join_results(&results, &height, &lines, level)?
         } else {
-            on_device(&results, &height, &lines, level)?
+            join_on_device(&results, &height, &lines, level)?
         };
         Ok(FeatureMap { x, ..*level })
     }
@@ -194,7 +194,7 @@ impl GlipTower {
         let width = self.width;
         let mut y = vec![0.0; level.position_count() * width];
         for (at, result) in results.iter().enumerate() {
-            with_numbers(&result.map.x, |x| {
+            with_f32_slice(&result.map.x, |x| {
                 each_tile(&mut y, width, |from, y, memory| {
                     let [between] = split_memory(memory, [width]);
                     for (at_row, y) in y.chunks_exact_mut(width).enumerate() {
@@ -227,7 +227,7 @@ impl GlipTower {
 }
 
 /// The sum of the results after the activation, with candle's operators.
-fn on_device(
+fn join_on_device(
     results: &[ConvolvedLevel],
     height: &[f32],
     lines: &ActivationLines,
@@ -242,7 +242,7 @@ fn on_device(
             Some(enlarged) => {
                 let points: Vec<_> =
                     (0..level.position_count()).map(|position| enlarged.corner_shares(position)).collect();
-                rows_between(&result.map.x, &points, 4, device)?
+                mix_rows_on_device(&result.map.x, &points, 4, device)?
             }
         };
         sum = x.broadcast_mul(&row(&result.scale)?)?.broadcast_add(&sum)?;

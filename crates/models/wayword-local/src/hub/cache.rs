@@ -1,6 +1,6 @@
 //! The cache on disk: its folders, which are those of the hub's own client, and the hashes that name its files.
 
-use super::name::{HubModelName, is_part};
+use super::name::{HubModelName, is_name_part};
 use crate::LocalError;
 use serde::Serialize;
 use sha1::Sha1;
@@ -107,19 +107,19 @@ impl RepoFolder {
     }
 
     /// The commit that a revision (a branch, tag or commit) pointed to when it was fetched.
-    pub(super) fn commit_of(&self, revision: &str) -> Option<CommitHash> {
+    pub(super) fn find_commit(&self, revision: &str) -> Option<CommitHash> {
         CommitHash::parse(revision).or_else(|| read_ref(&self.root.join("refs").join(revision)))
     }
 
     /// Records the commit that a revision points to.
     pub(super) fn keep_ref(&self, revision: &str, commit: &CommitHash) -> Result<(), LocalError> {
-        if self.commit_of(revision).as_ref() == Some(commit) {
+        if self.find_commit(revision).as_ref() == Some(commit) {
             return Ok(());
         }
         let path = self.root.join("refs").join(revision);
         make_parent(&path)?;
         // The file is replaced as a whole, because another process may read it at the same time.
-        let fresh = fresh_beside(&path);
+        let fresh = temporary_path(&path);
         fs::write(&fresh, commit.as_str()).map_err(|error| LocalError::from_io(&fresh, "write", error))?;
         fs::rename(&fresh, &path).map_err(|error| LocalError::from_io(&path, "write", error))
     }
@@ -178,7 +178,7 @@ impl RepoFolder {
         make_parent(&path)?;
         let io = |error| LocalError::from_io(&path, "write", error);
         // The link is made under another name and then moved, because another process may make it at the same time.
-        let fresh = fresh_beside(&path);
+        let fresh = temporary_path(&path);
         // From snapshots/COMMIT/FILE, the link goes up two folders, and one more for each folder in FILE.
         let up = "../".repeat(2 + file.matches('/').count());
         let links =
@@ -201,7 +201,7 @@ fn read_ref(path: &Path) -> Option<CommitHash> {
 }
 
 /// A new path in the same folder, which no other thread or process uses.
-fn fresh_beside(path: &Path) -> PathBuf {
+fn temporary_path(path: &Path) -> PathBuf {
     static TEMPORARY_FILE_COUNT: AtomicU64 = AtomicU64::new(0);
     path_with_suffix(
         path,
@@ -283,7 +283,7 @@ pub(super) fn list_models(cache: &Path) -> Result<Vec<CachedModel>, LocalError> 
 /// The organisation and name of a model's folder.
 fn parse_repo_folder(folder: &str) -> Option<(&str, &str)> {
     let (org, name) = folder.strip_prefix("models--")?.split_once("--")?;
-    (is_part(org) && is_part(name)).then_some((org, name))
+    (is_name_part(org) && is_name_part(name)).then_some((org, name))
 }
 
 /// Branches and tags with their commits, in the order of their names.

@@ -168,7 +168,7 @@ impl HubClient {
             let response = self.follow_redirects(HubMethod::Get { from }, address, |_| false)?;
             match response.status().as_u16() {
                 200 => from = 0,
-                206 if begins_at(response.headers()) == Some(from) => {}
+                206 if first_byte_position(response.headers()) == Some(from) => {}
                 // The server sends another part than requested, or none: request all bytes.
                 206 | 416 if from > 0 => {
                     from = 0;
@@ -250,7 +250,7 @@ fn header_number(headers: &HeaderMap, name: &str) -> Option<u64> {
 }
 
 /// The position of a partial answer's first byte.
-fn begins_at(headers: &HeaderMap) -> Option<u64> {
+fn first_byte_position(headers: &HeaderMap) -> Option<u64> {
     header_text(headers, "content-range")?.strip_prefix("bytes ")?.split('-').next()?.parse().ok()
 }
 

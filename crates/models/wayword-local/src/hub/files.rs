@@ -131,7 +131,7 @@ impl NeededFiles {
         }
         let weights = match named {
             Some(file) => vec![files.get_file(file)?.ok_or_else(|| files.missing_error(file, "the model"))?],
-            None if self.weights => weights_of(files)?,
+            None if self.weights => gather_weights(files)?,
             None => Vec::new(),
         };
         Ok(GatheredFiles { folder: files.folder_path(), small, weights })
@@ -139,7 +139,7 @@ impl NeededFiles {
 }
 
 /// The files with the weights, in the first form that the model has.
-fn weights_of(files: &mut dyn ModelFiles) -> Result<Vec<PathBuf>, LocalError> {
+fn gather_weights(files: &mut dyn ModelFiles) -> Result<Vec<PathBuf>, LocalError> {
     let forms = [WHOLE_WEIGHTS_FILE, WEIGHTS_INDEX_FILE, PICKLED_WEIGHTS_FILE];
     // If one form of the weights is on this machine, no other form is fetched.
     let local_form = forms.into_iter().find(|form| files.local_path(form).is_some());

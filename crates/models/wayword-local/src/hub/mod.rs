@@ -145,15 +145,17 @@ impl ModelHub {
     ) -> Result<ModelFolder, LocalError> {
         let model = match &name.source {
             ModelSource::Hub(model) => model,
-            ModelSource::Folder(path) => return on_disk(&mut DiskModelFiles::for_user_folder(path), needs, None, None),
+            ModelSource::Folder(path) => {
+                return gather_local_files(&mut DiskModelFiles::for_user_folder(path), needs, None, None);
+            }
             ModelSource::File(path) => {
                 let folder = path.parent().unwrap_or(Path::new("."));
                 let file = path.file_name().map(|file| file.to_string_lossy());
-                return on_disk(&mut DiskModelFiles::for_user_folder(folder), needs, file.as_deref(), None);
+                return gather_local_files(&mut DiskModelFiles::for_user_folder(folder), needs, file.as_deref(), None);
             }
         };
         let repo = RepoFolder::new(&self.config.cache, model);
-        let known = repo.commit_of(&model.revision);
+        let known = repo.find_commit(&model.revision);
         if self.config.offline {
             return self.find_cached(name, model, &repo, known.as_ref(), needs);
         }
@@ -190,12 +192,12 @@ impl ModelHub {
                 self.client.file_address(model, &model.revision, file)
             )
         };
-        on_disk(&mut DiskModelFiles::new(folder, &hint), needs, model.file.as_deref(), identity)
+        gather_local_files(&mut DiskModelFiles::new(folder, &hint), needs, model.file.as_deref(), identity)
     }
 }
 
 /// A model on this machine. If no identity is given, it is computed from the files.
-fn on_disk(
+fn gather_local_files(
     files: &mut DiskModelFiles<'_>,
     needs: &NeededFiles,
     file: Option<&str>,

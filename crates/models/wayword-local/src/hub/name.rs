@@ -111,7 +111,7 @@ fn parse_source(text: &str) -> Result<ModelSource, &'static str> {
     let (repo, file) = rest.split_once(':').map_or((rest, None), |(repo, file)| (repo, Some(file)));
     let (repo, revision) = repo.split_once('@').unwrap_or((repo, DEFAULT_REVISION));
     let (org, name) = repo.split_once('/').ok_or("it has no organisation before the model's name")?;
-    if !is_part(org) || !is_part(name) {
+    if !is_name_part(org) || !is_name_part(name) {
         return Err(
             "organisation and name may have letters, digits, and single '-', '_' and '.' between them, at most 96 characters",
         );
@@ -141,7 +141,7 @@ fn parse_local(path: &str) -> Result<ModelSource, &'static str> {
 
 /// Whether a text may be an organisation or a name, by the hub's rule. Two dashes in a row would make the names of the
 /// cache's folders ambiguous.
-pub(super) fn is_part(part: &str) -> bool {
+pub(super) fn is_name_part(part: &str) -> bool {
     let inner = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     let edge = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphanumeric() || c == '_');
     part.len() <= MAX_PART_BYTES

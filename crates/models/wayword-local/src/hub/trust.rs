@@ -51,11 +51,11 @@ pub(super) fn check_file(
         let is_given = given.trim().eq_ignore_ascii_case(&found);
         return if is_given { Ok(()) } else { Err(wrong_hash(given, "which was given")) };
     }
-    let file = path_name(name).unwrap_or_default();
+    let file = checkpoint_file_name(name).unwrap_or_default();
     if let Some((_, published)) = PUBLISHED_SHA256.iter().find(|(published, _)| *published == file) {
         return if *published == found { Ok(()) } else { Err(wrong_hash(published, "which is the published one")) };
     }
-    let kept = hash_path(config, name, path);
+    let kept = kept_hash_path(config, name, path);
     match read_hash(&kept) {
         Some(first) if first == found => Ok(()),
         Some(first) => {
@@ -73,7 +73,7 @@ pub(super) fn check_file(
 }
 
 /// The file name of the checkpoint that a model's name refers to.
-fn path_name(name: &ModelName) -> Option<&str> {
+fn checkpoint_file_name(name: &ModelName) -> Option<&str> {
     match &name.source {
         ModelSource::Hub(model) => model.file.as_deref().and_then(|file| file.rsplit('/').next()),
         ModelSource::File(path) => path.file_name()?.to_str(),
@@ -82,7 +82,7 @@ fn path_name(name: &ModelName) -> Option<&str> {
 }
 
 /// The path of a kept hash: in the model's folder of the cache, or, for the user's own file, by the hash of its path.
-fn hash_path(config: &HubConfig, name: &ModelName, path: &Path) -> PathBuf {
+fn kept_hash_path(config: &HubConfig, name: &ModelName, path: &Path) -> PathBuf {
     match &name.source {
         ModelSource::Hub(model) => {
             let folder = config.cache.join(format!("models--{}--{}", model.org, model.name)).join(".trust");

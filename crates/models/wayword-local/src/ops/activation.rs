@@ -1,6 +1,6 @@
 //! Activation functions. On the CPU this crate computes them in parallel; candle computes the rest.
 
-use super::kernels::{PIECE_NUMBERS, contiguous_slice, is_ours};
+use super::kernels::{PIECE_NUMBERS, contiguous_slice, is_cpu_f32};
 use candle_core::{CpuStorage, CustomOp1, Layout, Result, Shape, Tensor};
 use rayon::prelude::*;
 use rten_simd::SimdUnaryOp;
@@ -34,7 +34,7 @@ impl Activation {
     /// Applies the function to each number of a tensor.
     pub(crate) fn apply_to(self, x: &Tensor) -> Result<Tensor> {
         // Tensors that this crate's kernels can compute go there; candle computes the others.
-        if is_ours(x) {
+        if is_cpu_f32(x) {
             return x.contiguous()?.apply_op1_no_bwd(&self);
         }
         match self {

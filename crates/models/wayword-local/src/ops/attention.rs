@@ -5,8 +5,8 @@
 //! never stored.
 
 use super::{
-    kernels::{ProductOptions, contiguous_slice, is_ours, pack_matrix, write_product},
-    rows::with_spare,
+    kernels::{ProductOptions, contiguous_slice, is_cpu_f32, pack_matrix, write_product},
+    rows::with_spare_memory,
     softmax::replace_by_exponentials,
 };
 use candle_core::{CpuStorage, CustomOp3, Device, Layout, Result, Shape, Tensor, bail};
@@ -37,7 +37,7 @@ impl MultiHeadAttention<'_> {
     /// The states [batch, queries, heads * size] for queries of the same shape, and keys and values [batch, keys, heads
     /// * size]. The inputs may be parts of a wider tensor along its last axis.
     pub(crate) fn attend_to(&self, q: &Tensor, k: &Tensor, v: &Tensor) -> Result<Tensor> {
-        if is_ours(q) {
+        if is_cpu_f32(q) {
             return match self.bias {
                 None => q.apply_op3_no_bwd(k, v, &CpuAttention { heads: self.heads, scale: self.scale, bias: None }),
                 Some(bias) => {
@@ -156,8 +156,8 @@ impl CpuAttention<'_> {
     ) -> Result<()> {
         let (width, keys) = (inputs.v.width, inputs.k.count);
         let (size, queries) = (width / self.heads, mixed.len() / width.max(1));
-        with_spare(queries * keys, |scores| {
-            with_spare(queries * size, |states| {
+        with_spare_memory(queries * keys, |scores| {
+            with_spare_memory(queries * size, |states| {
                 for head in 0..self.heads {
                     let at = batch * self.heads + head;
                     let q = GemmInputA::Unpacked(inputs.q.head_rows(batch, head, self.heads, from..from + queries)?);
@@ -215,7 +215,7 @@ struct AttentionInputs<'a> {
 impl AttentionInputs<'_> {
     /// The number of queries of a batch that a thread takes at a time: so few that their scores stay in the cache, and
     /// that every thread has work.
-    fn at_a_time(&self) -> usize {
+    fn queries_per_piece(&self) -> usize {
         let min_pieces = rayon::current_num_threads().div_ceil(self.q.batch.max(1));
         (MAX_SCORES_AT_A_TIME / self.k.count.max(1))
             .clamp(MIN_PACKED_QUERIES, MAX_QUERIES_AT_A_TIME)
@@ -249,7 +249,7 @@ impl CustomOp3 for CpuAttention<'_> {
             bail!("queries {:?}, keys {:?} and values {:?} do not fit together", q_layout, k_layout, v_layout);
         }
         let mut mixed = vec![0.0; q.batch * q.count * v.width];
-        let queries = inputs.at_a_time();
+        let queries = inputs.queries_per_piece();
         let packed = self.pack_heads(&inputs, queries)?;
         let batches = mixed.par_chunks_mut((q.count * v.width).max(1)).enumerate();
         let pieces = batches.flat_map(|(batch, mixed)| {

@@ -7,7 +7,7 @@
 
 use super::{
     LinearLayer,
-    kernels::{is_ours, with_numbers},
+    kernels::{is_cpu_f32, with_f32_slice},
     tiles::{each_tile, split_memory},
 };
 use crate::{LocalError, weights::WeightScope};
@@ -136,13 +136,13 @@ impl Conv3Layer {
         corners: impl Fn(usize, usize) -> TapCorners + Sync,
     ) -> Result<FeatureMap> {
         let count = height * width;
-        if !is_ours(&map.x) {
-            let x = self.linear.apply_to(&on_device(map, count, used, corners)?)?;
+        if !is_cpu_f32(&map.x) {
+            let x = self.linear.apply_to(&gather_taps_on_device(map, count, used, corners)?)?;
             return Ok(FeatureMap { x, height, width });
         }
         let (inputs, taps_length) = (self.inputs, KERNEL_TAPS * self.inputs);
         let mut y = vec![0.0; count * self.outputs];
-        with_numbers(&map.x, |x| {
+        with_f32_slice(&map.x, |x| {
             each_tile(&mut y, self.outputs, |from, y, memory| {
                 let [taps] = split_memory(memory, [y.len() / self.outputs * taps_length]);
                 for (at, taps) in taps.chunks_exact_mut(taps_length).enumerate() {
@@ -199,7 +199,7 @@ pub(crate) fn mix_rows(x: &[f32], width: usize, corners: &[(usize, f32)], into: 
 }
 
 /// The taps of each position side by side, [positions, taps * channels], with candle's operators.
-fn on_device(
+fn gather_taps_on_device(
     map: &FeatureMap,
     count: usize,
     used: usize,
@@ -208,13 +208,13 @@ fn on_device(
     let device = map.x.device();
     let tap = |tap: usize| {
         let all: Vec<TapCorners> = (0..count).map(|position| corners(position, tap)).collect();
-        rows_between(&map.x, &all, used, device)
+        mix_rows_on_device(&map.x, &all, used, device)
     };
     Tensor::cat(&(0..KERNEL_TAPS).map(tap).collect::<Result<Vec<_>>>()?, 1)
 }
 
 /// The weighted sum of four rows of x for each point, with candle's operators.
-pub(crate) fn rows_between(
+pub(crate) fn mix_rows_on_device(
     x: &Tensor,
     points: &[[(usize, f32); 4]],
     used: usize,

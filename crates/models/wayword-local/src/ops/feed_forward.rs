@@ -2,9 +2,9 @@
 
 use super::{
     Activation, LayerNorm, LinearLayer,
-    kernels::{contiguous_slice, is_ours, row_shape},
+    kernels::{contiguous_slice, is_cpu_f32, row_shape},
     packed::PackedMatrix,
-    rows::{by_rows, with_spare},
+    rows::{for_row_pieces, with_spare_memory},
 };
 use candle_core::{CpuStorage, CustomOp1, Layout, Result, Shape, Tensor, bail};
 
@@ -26,10 +26,10 @@ impl FeedForward<'_> {
     /// The output for x [.., size].
     pub(crate) fn apply_to(&self, x: &Tensor) -> Result<Tensor> {
         match (self.wide.packed_matrix(), self.narrow.packed_matrix()) {
-            (Some(_), Some(_)) if is_ours(x) => x.contiguous()?.apply_op1_no_bwd(self),
+            (Some(_), Some(_)) if is_cpu_f32(x) => x.contiguous()?.apply_op1_no_bwd(self),
             _ => {
                 let normed = self.before.map_or(Ok(x.clone()), |before| before.apply_to(x))?;
-                let y = self.narrow.apply_onto(&self.wide.apply_then(&normed, self.activation)?, x)?;
+                let y = self.narrow.apply_and_add(&self.wide.apply_and_activate(&normed, self.activation)?, x)?;
                 self.after.map_or(Ok(y.clone()), |after| after.apply_to(&y))
             }
         }
@@ -44,10 +44,10 @@ impl FeedForward<'_> {
         y: &mut [f32],
     ) -> Result<()> {
         let inner_count = y.len() / self.narrow.output_count().max(1) * self.wide.output_count();
-        with_spare(inner_count, |inner_states| {
+        with_spare_memory(inner_count, |inner_states| {
             match self.before {
                 None => wide.multiply_rows(x, biases[0], inner_states, false)?,
-                Some(before) => with_spare(x.len(), |normed| {
+                Some(before) => with_spare_memory(x.len(), |normed| {
                     before.write_rows(x, normed)?;
                     wide.multiply_rows(normed, biases[0], inner_states, false)
                 })?,
@@ -76,7 +76,9 @@ impl CustomOp1 for FeedForward<'_> {
         let mut y = x.to_vec();
         self.wide.with_bias(|first| {
             self.narrow.with_bias(|second| {
-                by_rows((x, size), (&mut y, size), |x, y| self.add_to_rows((wide, narrow), [first, second], x, y))
+                for_row_pieces((x, size), (&mut y, size), |x, y| {
+                    self.add_to_rows((wide, narrow), [first, second], x, y)
+                })
             })
         })?;
         Ok((CpuStorage::F32(y), layout.shape().clone()))

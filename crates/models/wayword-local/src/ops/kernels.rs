@@ -54,7 +54,7 @@ pub(super) fn row_shape(layout: &Layout) -> Result<(usize, usize)> {
 
 /// Whether this crate's own operators can compute with a tensor: 32 bits on the CPU. For all others candle's operators
 /// are used.
-pub(crate) fn is_ours(tensor: &Tensor) -> bool {
+pub(crate) fn is_cpu_f32(tensor: &Tensor) -> bool {
     tensor.device().is_cpu() && tensor.dtype() == candle_core::DType::F32
 }
 
@@ -64,7 +64,7 @@ pub(super) fn rows_per_piece(row: usize) -> usize {
 }
 
 /// Calls `then` with the numbers of a tensor in 32 bits on the CPU.
-pub(crate) fn with_numbers<T>(x: &Tensor, then: impl FnOnce(&[f32]) -> Result<T>) -> Result<T> {
+pub(crate) fn with_f32_slice<T>(x: &Tensor, then: impl FnOnce(&[f32]) -> Result<T>) -> Result<T> {
     let x = x.contiguous()?;
     let (storage, layout) = x.storage_and_layout();
     let candle_core::Storage::Cpu(storage) = &*storage else { bail!("a tensor is on another device") };

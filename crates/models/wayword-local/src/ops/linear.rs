@@ -3,9 +3,9 @@
 use super::{
     Activation, LayerNorm,
     half::HalfMatrix,
-    kernels::{contiguous_slice, is_ours, row_shape},
+    kernels::{contiguous_slice, is_cpu_f32, row_shape},
     packed::PackedMatrix,
-    rows::{by_rows, with_spare},
+    rows::{for_row_pieces, with_spare_memory},
 };
 use candle_core::{CpuStorage, CustomOp1, CustomOp2, DType, Layout, Result, Shape, Tensor, bail};
 
@@ -51,7 +51,7 @@ impl LinearLayer {
     }
 
     /// The layer's output for x, after an activation.
-    pub(crate) fn apply_then(&self, x: &Tensor, activation: Activation) -> Result<Tensor> {
+    pub(crate) fn apply_and_activate(&self, x: &Tensor, activation: Activation) -> Result<Tensor> {
         self.apply_with(x, None, Some(activation))
     }
 
@@ -61,21 +61,21 @@ impl LinearLayer {
     }
 
     /// The layer's output for x [.., inputs], plus y [.., outputs].
-    pub(crate) fn apply_onto(&self, x: &Tensor, y: &Tensor) -> Result<Tensor> {
-        if self.packed_matrix().is_some() && is_ours(y) && is_ours(x) {
+    pub(crate) fn apply_and_add(&self, x: &Tensor, y: &Tensor) -> Result<Tensor> {
+        if self.packed_matrix().is_some() && is_cpu_f32(y) && is_cpu_f32(x) {
             return x.contiguous()?.apply_op2_no_bwd(&y.contiguous()?, &AddedProduct { layer: self, after: None });
         }
         self.apply_to(x)? + y
     }
 
     /// The norm of the layer's output for x [.., inputs], plus y [.., outputs].
-    pub(crate) fn apply_onto_then(&self, x: &Tensor, y: &Tensor, after: &LayerNorm) -> Result<Tensor> {
-        if self.packed_matrix().is_some() && is_ours(y) && is_ours(x) {
+    pub(crate) fn apply_add_and_norm(&self, x: &Tensor, y: &Tensor, after: &LayerNorm) -> Result<Tensor> {
+        if self.packed_matrix().is_some() && is_cpu_f32(y) && is_cpu_f32(x) {
             return x
                 .contiguous()?
                 .apply_op2_no_bwd(&y.contiguous()?, &AddedProduct { layer: self, after: Some(after) });
         }
-        after.apply_to(&self.apply_onto(x, y)?)
+        after.apply_to(&self.apply_and_add(x, y)?)
     }
 
     /// The layer's output for x, with a norm before the layer and an activation after it.
@@ -153,7 +153,7 @@ impl LinearProduct<'_> {
     fn write_piece(&self, packed: &PackedMatrix, bias: Option<&[f32]>, x: &[f32], y: &mut [f32]) -> Result<()> {
         match self.norm {
             None => packed.multiply_rows(x, bias, y, false)?,
-            Some(norm) => with_spare(x.len(), |normed| {
+            Some(norm) => with_spare_memory(x.len(), |normed| {
                 norm.write_rows(x, normed)?;
                 packed.multiply_rows(normed, bias, y, false)
             })?,
@@ -177,7 +177,7 @@ impl CustomOp1 for LinearProduct<'_> {
         let mut y = vec![0.0; count * outputs];
         self.layer.with_bias(|bias| match &self.layer.matrix {
             LinearMatrix::Packed(packed) => {
-                by_rows((x, inputs), (&mut y, outputs), |x, y| self.write_piece(packed, bias, x, y))
+                for_row_pieces((x, inputs), (&mut y, outputs), |x, y| self.write_piece(packed, bias, x, y))
             }
             LinearMatrix::Half(half) => {
                 half.multiply_rows(x, inputs, bias, &mut y)?;
@@ -218,7 +218,7 @@ impl CustomOp2 for AddedProduct<'_> {
             bail!("{:?} cannot be added to {} rows of {}", onto_layout.shape(), count, layer.outputs);
         }
         layer.with_bias(|bias| {
-            by_rows((x, inputs), (&mut y, layer.outputs), |x, y| {
+            for_row_pieces((x, inputs), (&mut y, layer.outputs), |x, y| {
                 packed.multiply_rows(x, bias, y, true)?;
                 self.after.map_or(Ok(()), |after| after.replace_rows(y))
             })

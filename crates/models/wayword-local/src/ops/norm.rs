@@ -1,6 +1,6 @@
 //! Layer norms and root-mean-square norms over the last axis.
 
-use super::kernels::{contiguous_slice, is_ours, row_shape, rows_per_piece, with_numbers};
+use super::kernels::{contiguous_slice, is_cpu_f32, row_shape, rows_per_piece, with_f32_slice};
 use candle_core::{CpuStorage, CustomOp2, CustomOp3, Layout, Result, Shape, Tensor};
 use rayon::prelude::*;
 use rten_simd::SimdOp;
@@ -26,7 +26,7 @@ impl LayerNorm {
 
     /// The norm of x [.., size].
     pub(crate) fn apply_to(&self, x: &Tensor) -> Result<Tensor> {
-        if is_ours(x) {
+        if is_cpu_f32(x) {
             return x.contiguous()?.apply_op3_no_bwd(&self.weight, &self.bias, &RowStandardiser(self.epsilon));
         }
         candle_nn::ops::layer_norm(&x.contiguous()?, &self.weight, &self.bias, self.epsilon as f32)
@@ -40,8 +40,8 @@ impl LayerNorm {
 
     /// Replaces the rows of y by their norms, on the CPU.
     pub(super) fn replace_rows(&self, y: &mut [f32]) -> Result<()> {
-        with_numbers(&self.weight, |weight| {
-            with_numbers(&self.bias, |bias| {
+        with_f32_slice(&self.weight, |weight| {
+            with_f32_slice(&self.bias, |bias| {
                 let standard = RowStandardiser(self.epsilon);
                 y.chunks_exact_mut(weight.len().max(1)).for_each(|row| standard.standardise_row(row, weight, bias));
                 Ok(())
@@ -57,7 +57,7 @@ impl RmsNorm {
 
     /// The norm of x [.., size].
     pub(crate) fn apply_to(&self, x: &Tensor) -> Result<Tensor> {
-        if is_ours(x) {
+        if is_cpu_f32(x) {
             return x.contiguous()?.apply_op2_no_bwd(&self.weight, &RootMeanSquare(self.epsilon));
         }
         candle_nn::ops::rms_norm(&x.contiguous()?, &self.weight, self.epsilon as f32)

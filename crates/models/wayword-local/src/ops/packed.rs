@@ -2,7 +2,7 @@
 
 use super::{
     kernels::{ProductOptions, pack_weight, write_product},
-    rows::with_spare,
+    rows::with_spare_memory,
 };
 use candle_core::{Result, bail};
 use rten_gemm::{BiasVector, GemmInputA, GemmInputB, PackedBMatrix};
@@ -28,7 +28,7 @@ pub(super) struct PackedMatrix {
 
 impl PackedMatrix {
     pub(super) fn new(weight: &[f32], outputs: usize, inputs: usize) -> Self {
-        let columns = at_a_time(outputs, rayon::current_num_threads());
+        let columns = columns_per_piece(outputs, rayon::current_num_threads());
         let pieces = weight.chunks((columns * inputs).max(1));
         let piece = |weight: &[f32]| {
             let columns = weight.len() / inputs.max(1);
@@ -55,7 +55,7 @@ impl PackedMatrix {
         }
         let mut from = 0;
         for (matrix, columns) in &self.pieces {
-            with_spare(count * columns, |piece| {
+            with_spare_memory(count * columns, |piece| {
                 part(matrix, from, *columns, piece, false)?;
                 for (y, piece) in y.chunks_mut(self.outputs).zip(piece.chunks(*columns)) {
                     let y = &mut y[from..from + columns];
@@ -73,7 +73,7 @@ impl PackedMatrix {
 }
 
 /// The number of columns of a piece, so that all threads have work until the end.
-fn at_a_time(outputs: usize, threads: usize) -> usize {
+fn columns_per_piece(outputs: usize, threads: usize) -> usize {
     let pieces = outputs.div_ceil(threads * MAX_COLUMNS_PER_THREAD);
     if threads < 2 || pieces < 2 {
         outputs
@@ -97,7 +97,7 @@ mod tests {
             (5, 2, 5),
             (2049, 2, 1088),
         ] {
-            assert_eq!(at_a_time(outputs, threads), columns, "{outputs} on {threads}");
+            assert_eq!(columns_per_piece(outputs, threads), columns, "{outputs} on {threads}");
         }
     }
 

@@ -21,7 +21,7 @@ thread_local! {
 }
 
 /// Calls `each` with some rows of x, of length `inputs`, and the same rows of y, of length `outputs`, on all threads.
-pub(super) fn by_rows(
+pub(super) fn for_row_pieces(
     (x, inputs): (&[f32], usize),
     (y, outputs): (&mut [f32], usize),
     each: impl Fn(&[f32], &mut [f32]) -> Result<()> + Sync,
@@ -29,7 +29,7 @@ pub(super) fn by_rows(
     if inputs == 0 || outputs == 0 {
         return each(x, y);
     }
-    match at_a_time(x.len() / inputs, rayon::current_num_threads()) {
+    match rows_per_thread(x.len() / inputs, rayon::current_num_threads()) {
         None => each(x, y),
         Some(rows) => {
             let parts = y.par_chunks_mut(rows * outputs).zip(x.par_chunks(rows * inputs));
@@ -40,7 +40,7 @@ pub(super) fn by_rows(
 
 /// The number of rows, of `count`, that a thread takes at a time, so that all threads end at about the same time.
 /// `None` if there are too few rows to distribute.
-fn at_a_time(count: usize, threads: usize) -> Option<usize> {
+fn rows_per_thread(count: usize, threads: usize) -> Option<usize> {
     if threads < 2 || count < threads * MIN_ROWS_PER_THREAD {
         return (threads < 2 && count > MAX_ROWS_PER_THREAD).then_some(MAX_ROWS_PER_THREAD);
     }
@@ -52,7 +52,7 @@ fn at_a_time(count: usize, threads: usize) -> Option<usize> {
 }
 
 /// Calls `then` with memory for `length` numbers. Their values are leftovers of earlier uses.
-pub(super) fn with_spare<T>(length: usize, then: impl FnOnce(&mut [f32]) -> T) -> T {
+pub(super) fn with_spare_memory<T>(length: usize, then: impl FnOnce(&mut [f32]) -> T) -> T {
     let mut spare = SPARE.with(|spare| spare.borrow_mut().pop()).unwrap_or_default();
     if spare.len() < length {
         spare.resize(length, 0.0);
@@ -68,9 +68,9 @@ mod tests {
 
     #[test]
     fn all_threads_end_at_about_the_same_time() {
-        assert_eq!([at_a_time(95, 2), at_a_time(700, 16), at_a_time(144, 1)], [None; 3]);
+        assert_eq!([rows_per_thread(95, 2), rows_per_thread(700, 16), rows_per_thread(144, 1)], [None; 3]);
         for (count, threads) in [(96, 2), (400, 2), (3601, 2), (3601, 16), (830, 2), (3601, 1)] {
-            let rows = at_a_time(count, threads).unwrap();
+            let rows = rows_per_thread(count, threads).unwrap();
             let longest = count.div_ceil(rows).div_ceil(threads) * rows;
             assert!(
                 longest * threads < count + count / 12 + KERNEL_TILE_ROWS * threads,
@@ -88,16 +88,16 @@ mod tests {
                 y.iter_mut().zip(x.chunks(2)).for_each(|(y, x)| *y += x[0] + x[1]);
                 Ok(())
             };
-            by_rows((&x, 2), (&mut y, 1), sum).unwrap();
+            for_row_pieces((&x, 2), (&mut y, 1), sum).unwrap();
             assert!(y.iter().enumerate().all(|(at, &y)| y == (4 * at + 1) as f32));
         }
     }
 
     #[test]
     fn spare_memory_may_be_asked_for_within_itself() {
-        let sum = with_spare(3, |outer| {
+        let sum = with_spare_memory(3, |outer| {
             outer.fill(1.0);
-            with_spare(5, |inner| inner.fill(2.0));
+            with_spare_memory(5, |inner| inner.fill(2.0));
             outer.iter().sum::<f32>()
         });
         assert_eq!(sum, 3.0);

@@ -111,8 +111,8 @@ fn fused_operators_agree_with_single_ones() {
             agree(&wide.apply_to_normed(&x, &norm).unwrap(), &wide.apply_to(&normed).unwrap(), 1e-5);
             let thought = Activation::QuickGelu.apply_to(&wide.apply_to(&normed).unwrap()).unwrap();
             let one_by_one = (narrow.apply_to(&thought).unwrap() + &x).unwrap();
-            agree(&narrow.apply_onto(&thought, &x).unwrap(), &one_by_one, 1e-4);
-            agree(&narrow.apply_onto_then(&thought, &x, &norm).unwrap(), &norm.apply_to(&one_by_one).unwrap(), 1e-4);
+            agree(&narrow.apply_and_add(&thought, &x).unwrap(), &one_by_one, 1e-4);
+            agree(&narrow.apply_add_and_norm(&thought, &x, &norm).unwrap(), &norm.apply_to(&one_by_one).unwrap(), 1e-4);
             let then = |before, after| {
                 let activation = Activation::QuickGelu;
                 FeedForward { before, wide: &wide, activation, narrow: &narrow, after }.apply_to(&x).unwrap()

@@ -110,8 +110,8 @@ impl BoxHead {
 
     /// The boxes of patches [1, patches, size]: centre, width and height, from 0 to 1, as shares of the square's edge.
     pub(super) fn predict_boxes(&self, patches: &Tensor) -> Result<Vec<[f32; 4]>> {
-        let x = self.first.apply_then(patches, Activation::Gelu)?;
-        let x = self.last.apply_to(&self.second.apply_then(&x, Activation::Gelu)?)?;
+        let x = self.first.apply_and_activate(patches, Activation::Gelu)?;
+        let x = self.last.apply_to(&self.second.apply_and_activate(&x, Activation::Gelu)?)?;
         let boxes = candle_nn::ops::sigmoid(&(x.squeeze(0)?.to_dtype(DType::F32)? + &self.bias)?)?;
         let flat = boxes.flatten_all()?.to_vec1::<f32>()?;
         Ok(flat.chunks_exact(4).map(|numbers| std::array::from_fn(|at| numbers[at])).collect())

@@ -100,7 +100,7 @@ impl OwlDetector {
             vision: VisionTower::from_weights(&weights.scope_under("owlv2.vision_model"), vision, "pre_layernorm")?,
             text: TextTower::from_weights(&weights.scope_under("owlv2.text_model"), text)?,
             text_projection: all.read_linear("owlv2.text_projection", text_width, text_width)?,
-            patch_norm: all.layer_norm("layer_norm", vision_width, vision.layers.layer_norm_eps)?,
+            patch_norm: all.read_layer_norm("layer_norm", vision_width, vision.layers.layer_norm_eps)?,
             classes: ClassHead::from_weights(&weights.scope_under("class_head"), vision_width, text_width)?,
             boxes: BoxHead::from_weights(&weights.scope_under("box_head"), vision_width, side, &device.0)?,
             edge: vision.image_size,

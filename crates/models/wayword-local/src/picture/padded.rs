@@ -46,7 +46,7 @@ impl PaddedPictureProcessor {
     }
 
     /// The most pixels of a picture for the model.
-    pub(crate) fn most_pixels(&self) -> usize {
+    pub(crate) fn max_pixels(&self) -> usize {
         self.short.next_multiple_of(self.multiple) * self.long.next_multiple_of(self.multiple)
     }
 

@@ -111,19 +111,19 @@ pub(crate) fn resample_picture(rgb: &[u8], down: &ResampleAxis, across: &Resampl
     let row = across.windows.len() * 3;
     let mut narrow = vec![0; source_rows.len() * row];
     let rows = rgb.chunks(across.from * 3).skip(source_rows.start).take(source_rows.len()).collect::<Vec<_>>();
-    narrow.par_chunks_mut(row.max(1)).zip(rows).for_each(|(to, from)| across_row(from, to, across));
+    narrow.par_chunks_mut(row.max(1)).zip(rows).for_each(|(to, from)| resample_row(from, to, across));
     let mut resized = vec![0; down.to * across.to * 3];
     let rows = resized.par_chunks_mut(across.to * 3).skip(down.first).zip(&down.windows);
     rows.for_each(|(to, window)| {
         let from = (window.start - source_rows.start) * row;
         let to = &mut to[across.first * 3..][..row];
-        down_row(&narrow[from..from + window.weights.len() * row], to, window);
+        mix_source_rows(&narrow[from..from + window.weights.len() * row], to, window);
     });
     resized
 }
 
 /// Resizes one row of pixels.
-fn across_row(from: &[u8], to: &mut [u8], across: &ResampleAxis) {
+fn resample_row(from: &[u8], to: &mut [u8], across: &ResampleAxis) {
     for (pixel, window) in to.chunks_exact_mut(3).zip(&across.windows) {
         let mut sums = [1 << (WEIGHT_FRACTION_BITS - 1); 3];
         for (pixel, &weight) in from[window.start * 3..].chunks_exact(3).zip(&window.weights) {
@@ -138,7 +138,7 @@ fn across_row(from: &[u8], to: &mut [u8], across: &ResampleAxis) {
 }
 
 /// Mixes the rows of a window to one new row.
-fn down_row(from: &[u8], to: &mut [u8], window: &ResampleWindow) {
+fn mix_source_rows(from: &[u8], to: &mut [u8], window: &ResampleWindow) {
     let mut sums = vec![1 << (WEIGHT_FRACTION_BITS - 1); to.len()];
     for (row, &weight) in from.chunks_exact(to.len().max(1)).zip(&window.weights) {
         for (sum, &byte) in sums.iter_mut().zip(row) {

@@ -5,7 +5,7 @@ use crate::{
     LocalError,
     ops::{
         MultiHeadAttention,
-        kernels::{ProductOptions, with_numbers, write_product},
+        kernels::{ProductOptions, with_f32_slice, write_product},
     },
     weights::WeightScope,
 };
@@ -46,12 +46,12 @@ impl WindowAttention {
 
     /// The states [places, channels] after attention, in the order of the windows. `qkv` has queries, keys and values
     /// [positions, 3 * channels] of a map, and `of_padding` those of padding [3 * channels].
-    pub(super) fn on_processor(&self, qkv: &Tensor, of_padding: &Tensor, windows: &MapWindows) -> Result<Tensor> {
+    pub(super) fn attend_on_cpu(&self, qkv: &Tensor, of_padding: &Tensor, windows: &MapWindows) -> Result<Tensor> {
         let width = qkv.dim(1)? / 3;
         let mut mixed = vec![0.0; windows.positions.len() * width];
-        with_numbers(qkv, |qkv| {
-            with_numbers(of_padding, |of_padding| {
-                with_numbers(&self.bias, |bias| {
+        with_f32_slice(qkv, |qkv| {
+            with_f32_slice(of_padding, |of_padding| {
+                with_f32_slice(&self.bias, |bias| {
                     let attend = WindowPass { qkv, padding_qkv: of_padding, bias, windows, width, heads: self.heads };
                     let each = mixed.par_chunks_mut(windows.size * width).enumerate();
                     each.try_for_each_init(Vec::new, |room, (window, mixed)| attend.attend_window(window, mixed, room))
@@ -61,8 +61,8 @@ impl WindowAttention {
         Tensor::from_vec(mixed, (windows.positions.len(), width), qkv.device())
     }
 
-    /// Like [`WindowAttention::on_processor`], with candle's operators.
-    pub(super) fn on_device(&self, qkv: &Tensor, of_padding: &Tensor, windows: &MapWindows) -> Result<Tensor> {
+    /// Like [`WindowAttention::attend_on_cpu`], with candle's operators.
+    pub(super) fn attend_on_device(&self, qkv: &Tensor, of_padding: &Tensor, windows: &MapWindows) -> Result<Tensor> {
         let width = qkv.dim(1)? / 3;
         let (count, size, device) = (windows.window_count(), windows.size, qkv.device());
         let padding = qkv.dim(0)? as u32;
@@ -73,7 +73,7 @@ impl WindowAttention {
         let part = |at: usize| all.narrow(2, at * width, width);
         let mut hidden_scores = vec![0.0_f32; count * size * size];
         for (window, hidden_scores) in hidden_scores.chunks_mut(size * size).enumerate() {
-            let Some(regions) = windows.regions_of(window) else { continue };
+            let Some(regions) = windows.window_regions(window) else { continue };
             for (pair, hidden_scores) in hidden_scores.iter_mut().enumerate() {
                 *hidden_scores = if regions[pair / size] == regions[pair % size] { 0.0 } else { HIDDEN_SCORE };
             }
@@ -115,7 +115,7 @@ impl WindowPass<'_> {
                 &self.qkv[from..from + row]
             });
         }
-        let regions = self.windows.regions_of(window);
+        let regions = self.windows.window_regions(window);
         let scale = 1.0 / (head_width as f32).sqrt();
         for head in 0..self.heads {
             let part = |at: usize| {

@@ -10,7 +10,7 @@ use crate::{
     LocalError,
     ops::{
         Activation, LayerNorm, LinearLayer,
-        kernels::{is_ours, with_numbers},
+        kernels::{is_cpu_f32, with_f32_slice},
         tiles::{TILE_ROWS, each_tile, split_memory},
     },
     weights::WeightScope,
@@ -39,18 +39,18 @@ impl SwinBlock {
         config: &SwinConfig,
         stage: usize,
     ) -> std::result::Result<Self, LocalError> {
-        let (width, epsilon) = (config.width_of(stage), config.epsilon);
+        let (width, epsilon) = (config.stage_width(stage), config.epsilon);
         let (inner, layer_width) = (width * config.widening, 3 * width / names.qkv.len());
         let biases = names.qkv.iter().map(|layer| weights.sub_scope(layer).read_state("bias", &[layer_width]));
         let biases: Vec<Tensor> = biases.collect::<std::result::Result<_, _>>()?;
         let of_padding = Tensor::cat(&biases, 0).map_err(|error| weights.tensor_error(names.qkv[0], &error))?;
         Ok(Self {
-            attention_norm: weights.layer_norm(names.attention_norm, width, epsilon)?,
+            attention_norm: weights.read_layer_norm(names.attention_norm, width, epsilon)?,
             qkv: weights.read_joined_linears(names.qkv, width, layer_width)?,
             padding_qkv: of_padding,
             attention: WindowAttention::from_weights(weights, names.positions, config.heads[stage], config.window)?,
             mixed: weights.read_linear(names.mixed, width, width)?,
-            feed_forward_norm: weights.layer_norm(names.feed_forward_norm, width, epsilon)?,
+            feed_forward_norm: weights.read_layer_norm(names.feed_forward_norm, width, epsilon)?,
             wide: weights.read_linear(names.wide, width, inner)?,
             narrow: weights.read_linear(names.narrow, inner, width)?,
             inner,
@@ -62,28 +62,28 @@ impl SwinBlock {
         let (batch, height, width, channels) = x.dims4()?;
         let apply_one = |at: usize| {
             let x = x.get(at)?.reshape((height * width, channels))?;
-            if is_ours(&x) { self.on_processor(&x, windows) } else { self.on_device(&x, windows) }
+            if is_cpu_f32(&x) { self.apply_on_cpu(&x, windows) } else { self.apply_on_device(&x, windows) }
         };
         let all = (0..batch).map(apply_one).collect::<Result<Vec<_>>>()?;
         Tensor::stack(&all, 0)?.reshape((batch, height, width, channels))
     }
 
     /// The output for x [positions, channels], with candle's operators.
-    pub(super) fn on_device(&self, x: &Tensor, windows: &MapWindows) -> Result<Tensor> {
+    pub(super) fn apply_on_device(&self, x: &Tensor, windows: &MapWindows) -> Result<Tensor> {
         let qkv = self.qkv.apply_to(&self.attention_norm.apply_to(x)?)?;
-        let mixed = self.attention.on_device(&qkv, &self.padding_qkv, windows)?;
+        let mixed = self.attention.attend_on_device(&qkv, &self.padding_qkv, windows)?;
         let places = Tensor::from_slice(&windows.places, windows.places.len(), x.device())?;
         let x = (self.mixed.apply_to(&mixed.index_select(&places, 0)?)? + x)?;
-        let wide = self.wide.apply_then(&self.feed_forward_norm.apply_to(&x)?, Activation::Gelu)?;
+        let wide = self.wide.apply_and_activate(&self.feed_forward_norm.apply_to(&x)?, Activation::Gelu)?;
         self.narrow.apply_to(&wide)? + x
     }
 
     /// The output for x [positions, channels] on the processor. A tile of positions at a time goes through the layers,
     /// so that the numbers between two layers stay in the cache.
-    fn on_processor(&self, x: &Tensor, windows: &MapWindows) -> Result<Tensor> {
+    fn apply_on_cpu(&self, x: &Tensor, windows: &MapWindows) -> Result<Tensor> {
         let (count, width) = x.dims2()?;
         let mut qkv = vec![0.0; count * 3 * width];
-        with_numbers(x, |x| {
+        with_f32_slice(x, |x| {
             each_tile(&mut qkv, 3 * width, |from, qkv, memory| {
                 let rows = qkv.len() / (3 * width);
                 let [normed] = split_memory(memory, [rows * width]);
@@ -92,10 +92,10 @@ impl SwinBlock {
             })
         })?;
         let qkv = Tensor::from_vec(qkv, (count, 3 * width), x.device())?;
-        let mixed = self.attention.on_processor(&qkv, &self.padding_qkv, windows)?;
+        let mixed = self.attention.attend_on_cpu(&qkv, &self.padding_qkv, windows)?;
         drop(qkv);
         let mut y = vec![0.0; count * width];
-        with_numbers(x, |x| with_numbers(&mixed, |mixed| self.feed_forward(x, mixed, windows, &mut y)))?;
+        with_f32_slice(x, |x| with_f32_slice(&mixed, |mixed| self.feed_forward(x, mixed, windows, &mut y)))?;
         Tensor::from_vec(y, (count, width), x.device())
     }
 

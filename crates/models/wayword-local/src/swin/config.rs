@@ -44,7 +44,7 @@ impl SwinConfig {
     }
 
     /// Channels of a stage.
-    pub(crate) fn width_of(&self, stage: usize) -> usize {
+    pub(crate) fn stage_width(&self, stage: usize) -> usize {
         self.width << stage
     }
 
@@ -70,9 +70,13 @@ impl SwinConfig {
         if let Some(depth) = self.depths.iter().find(|depth| !(1..=MAX_STAGE_BLOCKS).contains(*depth)) {
             return Some(format!("depths: {depth} is not from 1 to {MAX_STAGE_BLOCKS}"));
         }
-        let uneven = |(stage, heads): &(usize, &usize)| **heads == 0 || !self.width_of(*stage).is_multiple_of(**heads);
+        let uneven =
+            |(stage, heads): &(usize, &usize)| **heads == 0 || !self.stage_width(*stage).is_multiple_of(**heads);
         if let Some((stage, heads)) = self.heads.iter().enumerate().find(uneven) {
-            return Some(format!("heads: {heads} does not divide the width {} of stage {stage}", self.width_of(stage)));
+            return Some(format!(
+                "heads: {heads} does not divide the width {} of stage {stage}",
+                self.stage_width(stage)
+            ));
         }
         let outside = self.outputs.iter().find(|output| **output >= stages);
         outside.map(|output| format!("outputs: there is no stage {output}"))

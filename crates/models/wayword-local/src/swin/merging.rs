@@ -20,7 +20,7 @@ impl PatchMerging {
         epsilon: f64,
     ) -> std::result::Result<Self, LocalError> {
         Ok(Self {
-            norm: weights.layer_norm("norm", 4 * width, epsilon)?,
+            norm: weights.read_layer_norm("norm", 4 * width, epsilon)?,
             reduction: weights.read_linear("reduction", 4 * width, 2 * width)?,
         })
     }

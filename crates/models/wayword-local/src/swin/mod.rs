@@ -57,7 +57,7 @@ impl SwinBackbone {
         let stage = |at| SwinStage::from_weights(weights, names, config, at);
         Ok(Self {
             patch: linear.map_err(|error| patch.tensor_error("weight", &error))?,
-            patch_norm: weights.layer_norm(names.patch_norm, config.width, config.epsilon)?,
+            patch_norm: weights.read_layer_norm(names.patch_norm, config.width, config.epsilon)?,
             stages: (0..config.depths.len()).map(stage).collect::<std::result::Result<_, _>>()?,
             window: config.window,
         })
@@ -94,13 +94,13 @@ impl SwinStage {
         at: usize,
     ) -> std::result::Result<Self, LocalError> {
         let stage = weights.sub_scope(names.stages).sub_scope(at);
-        let width = config.width_of(at);
+        let width = config.stage_width(at);
         let block = |block| SwinBlock::from_weights(&stage.sub_scope("blocks").sub_scope(block), names, config, at);
         let out = config.outputs.contains(&at);
         let merges = at + 1 < config.depths.len();
         Ok(Self {
             blocks: (0..config.depths[at]).map(block).collect::<std::result::Result<_, _>>()?,
-            out: out.then(|| weights.layer_norm(&(names.out_norm)(at), width, config.epsilon)).transpose()?,
+            out: out.then(|| weights.read_layer_norm(&(names.out_norm)(at), width, config.epsilon)).transpose()?,
             merging: merges
                 .then(|| PatchMerging::from_weights(&stage.sub_scope("downsample"), width, config.epsilon))
                 .transpose()?,

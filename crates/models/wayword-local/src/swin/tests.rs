@@ -44,7 +44,7 @@ fn candles_operators_give_the_same_block() {
         let windows = MapWindows::new(7, 11, 3, by);
         let block = &swin.stages[0].blocks[0];
         let ours = block.apply_to(&x.reshape((1, 7, 11, 4)).unwrap(), &windows).unwrap().reshape((77, 4)).unwrap();
-        let off = off(&ours, &block.on_device(&x, &windows).unwrap());
+        let off = off(&ours, &block.apply_on_device(&x, &windows).unwrap());
         assert!(off < 1e-5, "{off}");
     }
 }
@@ -58,7 +58,7 @@ fn windows_contain_each_position_once_and_separate_distant_cells() {
     }
     let padding = windows.positions.iter().filter(|&&position| position == MapWindows::PADDING_POSITION).count();
     assert_eq!(padding, 36 - 20);
-    assert!(windows.regions_of(0).is_none() && windows.regions_of(3).is_some());
+    assert!(windows.window_regions(0).is_none() && windows.window_regions(3).is_some());
     // A map that is a single window is moved too, as in the original.
     let one = MapWindows::new(3, 3, 3, 1);
     assert_eq!(one.positions, [4, 5, 3, 7, 8, 6, 1, 2, 0]);

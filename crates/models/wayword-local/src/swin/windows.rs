@@ -52,7 +52,7 @@ impl MapWindows {
     }
 
     /// The regions of the places of a window. `None` if all are neighbours on the map.
-    pub(super) fn regions_of(&self, window: usize) -> Option<&[u8]> {
+    pub(super) fn window_regions(&self, window: usize) -> Option<&[u8]> {
         let regions = self.regions.get(window * self.size..(window + 1) * self.size)?;
         regions.iter().any(|region| *region != regions[0]).then_some(regions)
     }

@@ -94,7 +94,7 @@ impl CheckpointWeights {
     ///
     /// # Errors
     /// When it is missing or damaged.
-    pub(crate) fn of_file(path: &Path, device: &ModelDevice, precision: WeightPrecision) -> Result<Self, LocalError> {
+    pub(crate) fn open_file(path: &Path, device: &ModelDevice, precision: WeightPrecision) -> Result<Self, LocalError> {
         let is_safe = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("safetensors"));
         let file = if is_safe {
             SafeFile::open(path).map(WeightFile::Safe)

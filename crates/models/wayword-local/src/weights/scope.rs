@@ -76,13 +76,13 @@ impl<'a> WeightScope<'a> {
     }
 
     /// Reads a layer norm: `weight` and `bias` [size].
-    pub(crate) fn layer_norm(&self, layer: &str, size: usize, epsilon: f64) -> Result<LayerNorm, LocalError> {
+    pub(crate) fn read_layer_norm(&self, layer: &str, size: usize, epsilon: f64) -> Result<LayerNorm, LocalError> {
         let layer = self.sub_scope(layer);
         Ok(LayerNorm::new(layer.read_tensor("weight", &[size])?, layer.read_tensor("bias", &[size])?, epsilon))
     }
 
     /// Reads a root-mean-square norm: `weight` [size].
-    pub(crate) fn rms_norm(&self, layer: &str, size: usize, epsilon: f64) -> Result<RmsNorm, LocalError> {
+    pub(crate) fn read_rms_norm(&self, layer: &str, size: usize, epsilon: f64) -> Result<RmsNorm, LocalError> {
         Ok(RmsNorm::new(self.sub_scope(layer).read_tensor("weight", &[size])?, epsilon))
     }
 

@@ -69,7 +69,7 @@ fn a_detector_is_loaded_once_and_looked_for_without_loading() {
     let ledger = Ledger::open(&folder.path().join("ledger.db")).unwrap();
     let models = models(run(&ledger, "run"), None, None);
     let name = name(&fixture("owl"));
-    models.detector_at_hand(&name).unwrap();
+    models.ensure_detector_files(&name).unwrap();
     assert!(Arc::ptr_eq(&models.get_detector(&name).unwrap(), &models.get_detector(&name).unwrap()));
 }
 
@@ -85,7 +85,7 @@ fn a_model_that_is_no_detector_is_refused_before_loading() {
         ("openai/gpt".to_owned(), vec!["does not begin with hf/"]),
         ("hf/a/b:c.gguf".to_owned(), vec!["GGUF"]),
     ] {
-        let at_hand = models.detector_at_hand(&name).unwrap_err().to_string();
+        let at_hand = models.ensure_detector_files(&name).unwrap_err().to_string();
         let loaded = refused(models.get_detector(&name));
         for error in [at_hand, loaded] {
             assert!(told.iter().all(|told| error.contains(told)), "{error}");

@@ -198,7 +198,7 @@ impl CloudBucket {
     }
 
     /// The content of an object of at most `most` bytes.
-    async fn bytes_of(&self, name: &str, object: GetResult, most: u64) -> Result<Vec<u8>, CloudError> {
+    async fn read_bytes(&self, name: &str, object: GetResult, most: u64) -> Result<Vec<u8>, CloudError> {
         let too_large = |bytes| CloudError::TooLarge { at: self.shown_address(name), bytes, most };
         if object.meta.size > most {
             return Err(too_large(object.meta.size));

@@ -12,7 +12,7 @@ const MAX_NAME_BYTES: usize = 1024;
 const MAX_PART_BYTES: usize = 200;
 
 /// The problem of a name, as the end of a sentence; `None` if the name can be used.
-fn problem_of(name: &str) -> Option<&'static str> {
+fn name_problem(name: &str) -> Option<&'static str> {
     if name.is_empty() {
         return Some("is empty");
     }
@@ -56,7 +56,7 @@ pub(super) fn path_below(prefix: &Path, name: &str) -> Result<Path, CloudError> 
 }
 
 /// The file that an object becomes, relative to a folder.
-pub(super) fn file_of(name: &str) -> Result<PathBuf, CloudError> {
+pub(super) fn local_file_path(name: &str) -> Result<PathBuf, CloudError> {
     check_name(name)?;
     // A drive letter or a stream of a file on Windows.
     if cfg!(windows) && name.contains(':') {

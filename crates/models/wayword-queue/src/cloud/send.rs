@@ -121,7 +121,7 @@ fn read_piece(mut file: &File, item: &OutgoingFile, length: u64) -> Result<Vec<u
 }
 
 /// Checks that a file was read to its end: it is longer than its listed size if it grew meanwhile.
-fn is_at_end(mut file: &File, item: &OutgoingFile) -> Result<(), CloudError> {
+fn check_at_end(mut file: &File, item: &OutgoingFile) -> Result<(), CloudError> {
     match file.read(&mut [0]).map_err(CloudError::for_local_file(&item.path, "read"))? {
         0 => Ok(()),
         _ => Err(CloudError::Changed { at: item.path.display().to_string() }),
@@ -129,12 +129,12 @@ fn is_at_end(mut file: &File, item: &OutgoingFile) -> Result<(), CloudError> {
 }
 
 /// Whether a file is the index or an unfinished file of a fetch into the folder. `is_top` is whether it lies in the folder itself.
-fn is_of_fetch(name: &str, is_top: bool) -> bool {
+fn is_fetch_file(name: &str, is_top: bool) -> bool {
     name.ends_with(UNFINISHED_SUFFIX) || (is_top && name.starts_with(FETCH_INDEX_FILE))
 }
 
 /// The plain files below a folder, in the order of their names.
-fn files_of(local: &Path, name: &str) -> Result<Vec<OutgoingFile>, CloudError> {
+fn list_files(local: &Path, name: &str) -> Result<Vec<OutgoingFile>, CloudError> {
     let mut items = Vec::new();
     let mut folders = vec![(local.to_owned(), name.to_owned())];
     while let Some((folder, prefix)) = folders.pop() {

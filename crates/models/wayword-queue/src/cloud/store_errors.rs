@@ -79,7 +79,7 @@ pub(super) fn from_store_error(at: &str, doing: &'static str, error: &object_sto
 }
 
 /// The error of a store that could not be opened. Opening sends no request, so a setting is wrong.
-pub(super) fn of_settings(at: &str, error: &object_store::Error) -> CloudError {
+pub(super) fn from_settings_error(at: &str, error: &object_store::Error) -> CloudError {
     let text = format!("{error} {error:?}");
     if NO_CREDENTIALS.iter().any(|known| text.contains(known)) {
         return CloudError::Credentials { at: at.to_owned(), answer: "none are set".to_owned() };

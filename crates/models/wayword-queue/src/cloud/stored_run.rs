@@ -194,14 +194,14 @@ impl CloudRun {
 }
 
 /// The name that a file of the run has in the store.
-fn name_in(folder: &Path, path: &Path) -> String {
+fn stored_name(folder: &Path, path: &Path) -> String {
     let parts = path.strip_prefix(folder).unwrap_or(path).components();
     parts.map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/")
 }
 
 /// The number of a try of a shard, which has no claims: microseconds since 1970. Two workers of one part cannot see each other in a
 /// store; with these numbers they get two prefixes for their results.
-fn new_try() -> i64 {
+fn new_try_number() -> i64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     i64::try_from(since.as_micros()).unwrap_or(i64::MAX).max(FIRST_TRY)
 }
@@ -210,12 +210,12 @@ fn new_try() -> i64 {
 const MIN_TRY_NUMBER: i64 = 1 << 40;
 
 /// Whether this is the number of a try, and not the claim of a queue.
-fn is_try(epoch: i64) -> bool {
+fn is_try_number(epoch: i64) -> bool {
     epoch >= FIRST_TRY
 }
 
 /// The claim as the board behind a [`SendingBoard`] knows it: with epoch 0 if the board is a shard, which has no tries.
-fn on_board(claimed: ChunkClaim) -> ChunkClaim {
+fn board_claim(claimed: ChunkClaim) -> ChunkClaim {
     if is_try(claimed.epoch) { ChunkClaim { epoch: 0, ..claimed } } else { claimed }
 }
 

@@ -139,7 +139,7 @@ fn kept(table: &mut postgres::Client, run: &str) -> Vec<ChunkRow<String>> {
 /// Checks that exactly the finished chunks have a mark, each with the number of the claim that counted.
 fn assert_marks(folder: &Path, rows: &[ChunkRow<String>]) {
     for (chunk, row) in rows.iter().enumerate() {
-        let mark = wayword_queue::done_of(folder, chunk).unwrap();
+        let mark = wayword_queue::read_done_mark(folder, chunk).unwrap();
         let expected = (row.state == ChunkState::Done).then_some(row.epoch);
         assert_eq!(mark.map(|done| done.epoch), expected, "chunk {chunk}");
     }

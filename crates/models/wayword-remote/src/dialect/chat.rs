@@ -43,11 +43,11 @@ pub(super) fn tools_json(request: DialectRequest<'_>) -> Vec<Value> {
 /// The tools that a reply calls, each as a line.
 pub(super) fn tool_calls(body: &Value) -> Vec<String> {
     let message = body.get("choices").and_then(|choices| choices.get(0)?.get("message"));
-    message.map(calls_of).unwrap_or_default()
+    message.map(message_tool_calls).unwrap_or_default()
 }
 
 /// The tools that a message calls, each as a line, in the form that this dialect and Ollama's share.
-pub(super) fn calls_of(message: &Value) -> Vec<String> {
+pub(super) fn message_tool_calls(message: &Value) -> Vec<String> {
     let calls = message.get("tool_calls").and_then(Value::as_array);
     let function = |call: &Value| {
         let function = call.get("function")?;

@@ -49,7 +49,7 @@ pub(super) fn to_wire(request: DialectRequest<'_>) -> WireRequest {
         body.insert("tools".to_owned(), json!([{ "functionDeclarations": tools }]));
         body.insert("toolConfig".to_owned(), json!({ "functionCallingConfig": { "mode": "ANY" } }));
     }
-    WireRequest { path: format!("/models/{}:generateContent", in_path(request.model)), body: body.into() }
+    WireRequest { path: format!("/models/{}:generateContent", encode_model_name(request.model)), body: body.into() }
 }
 
 /// Rewrites a JSON schema into the subset of OpenAPI that the service reads: types in capitals, and no
@@ -78,7 +78,7 @@ fn message_json(line: &RemoteMessage) -> Value {
 }
 
 /// A model's name, encoded as a part of an address.
-fn in_path(model: &str) -> String {
+fn encode_model_name(model: &str) -> String {
     let keep = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~".contains(&byte);
     let model = model.strip_prefix("models/").unwrap_or(model);
     model.bytes().map(|byte| if keep(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") }).collect()

@@ -124,7 +124,7 @@ impl ServiceDialect {
             Self::Ollama => ollama::tool_calls(body),
             Self::Completions => Vec::new(),
         };
-        let words = after_thinking(&reply.text).trim();
+        let words = strip_thinking(&reply.text).trim();
         let lines: Vec<&str> = [words].into_iter().chain(calls.iter().map(String::as_str)).collect();
         reply.text = lines.join("\n").trim().to_owned();
         Ok(reply)
@@ -181,7 +181,7 @@ impl ServiceDialect {
 /// A text without the thinking that a model writes before its answer, as in `<think>...</think>A door.`
 ///
 /// Some servers put the opening tag into their prompt template, so that the text has only the closing tag.
-fn after_thinking(text: &str) -> &str {
+fn strip_thinking(text: &str) -> &str {
     const OPENING_TAG: &str = "<think>";
     const CLOSING_TAG: &str = "</think>";
     let text = text.trim_start();

@@ -32,7 +32,7 @@ pub(super) fn to_wire(request: DialectRequest<'_>) -> WireRequest {
 
 /// The tools that a reply calls, each as a line.
 pub(super) fn tool_calls(body: &Value) -> Vec<String> {
-    body.get("message").map(chat::calls_of).unwrap_or_default()
+    body.get("message").map(chat::message_tool_calls).unwrap_or_default()
 }
 
 /// A message in the form of this API.

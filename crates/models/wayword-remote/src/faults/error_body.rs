@@ -26,13 +26,13 @@ impl ServiceErrorBody {
     /// Reads an error's body.
     pub(super) fn from_body(body: &[u8]) -> Self {
         match serde_json::from_slice::<Value>(body) {
-            Ok(value) => Self::of_json(&value),
+            Ok(value) => Self::from_json(&value),
             Err(_) => Self { message: String::from_utf8_lossy(body).into_owned(), ..Self::default() },
         }
     }
 
     /// Reads an error's body that is JSON.
-    pub(super) fn of_json(value: &Value) -> Self {
+    pub(super) fn from_json(value: &Value) -> Self {
         // Some of Gemini's endpoints put the error into a list.
         let value = value.get(0).unwrap_or(value);
         // If its own provider fails, OpenRouter puts the error into the choice.
@@ -70,19 +70,19 @@ impl ServiceErrorBody {
     }
 
     /// Whether the account is empty or its limit is reached, so that waiting does not help.
-    pub(super) fn out_of_money(&self) -> bool {
+    pub(super) fn is_out_of_money(&self) -> bool {
         self.has_mark(&["insufficient_quota", "billing_hard_limit_reached", "billing_not_active", "billing_error"])
             || self.mentions_any(&["credit balance is too low", "insufficient balance", "insufficient credits"])
             || self.mentions_any(&["used all available credits", "billing hard limit"])
     }
 
     /// Whether a quota per day is used up.
-    pub(super) fn day_is_over(&self) -> bool {
+    pub(super) fn is_daily_quota_used_up(&self) -> bool {
         self.marks.iter().any(|mark| mark.contains("perday")) || self.mentions_any(&["free-models-per-day"])
     }
 
     /// Whether the key is invalid, although the status is not 401.
-    pub(super) fn bad_key(&self) -> bool {
+    pub(super) fn has_bad_key(&self) -> bool {
         self.has_mark(&["api_key_invalid", "invalid_api_key"])
             || self.mentions_any(&["api key not valid", "api key expired"])
     }

@@ -91,12 +91,12 @@ impl RemoteFault {
 }
 
 /// Whether a JSON body that is not an answer reports an error.
-pub(crate) fn error_inside(body: &serde_json::Value) -> bool {
-    ServiceErrorBody::of_json(body).is_error()
+pub(crate) fn reports_error(body: &serde_json::Value) -> bool {
+    ServiceErrorBody::from_json(body).is_error()
 }
 
 /// The fault of a response that is not an answer, by its status or its body. Dates in headers are compared with `now`.
-pub(crate) fn of_response(
+pub(crate) fn fault_from_response(
     status: u16,
     headers: &HeaderMap,
     body: &[u8],
@@ -142,13 +142,13 @@ fn overload_fault(reason: String, after: Option<Duration>, context: FaultContext
 
 /// A hint for the user, if the service will answer no further request.
 fn stop_hint(status: u16, service_error: &ServiceErrorBody, context: FaultContext<'_>) -> Option<String> {
-    if service_error.out_of_money() || status == 402 {
+    if service_error.is_out_of_money() || status == 402 {
         return Some(format!(
             "pay for more at {}, or wait until its quota is renewed; then run the same command to continue",
             context.provider
         ));
     }
-    if service_error.day_is_over() {
+    if service_error.is_daily_quota_used_up() {
         return Some(
             "today's quota is used up: run the same command tomorrow to continue, or choose another model".to_owned(),
         );
@@ -157,7 +157,7 @@ fn stop_hint(status: u16, service_error: &ServiceErrorBody, context: FaultContex
         // The moderation of one request has the same status as a key without permission.
         403 if service_error.is_moderated() => None,
         401 | 403 => Some(context.key_hint()),
-        400 if service_error.bad_key() => Some(context.key_hint()),
+        400 if service_error.has_bad_key() => Some(context.key_hint()),
         300..=399 => Some(format!(
             "redirects are not followed, because the key would be sent along: set base_url under [providers.{}] to the address that the redirect leads to",
             context.provider
@@ -190,7 +190,7 @@ fn unsupported_field_hint(message: &str) -> &'static str {
 }
 
 /// The fault of a request without a complete response. `answered` is the status, if one came.
-pub(crate) fn of_transport(
+pub(crate) fn fault_from_transport(
     error: &ureq::Error,
     answered: Option<u16>,
     url: &str,

@@ -6,7 +6,7 @@ fn who(secret: Option<&ServiceSecret>) -> FaultContext<'_> {
 }
 
 fn fault(status: u16, body: &str) -> RemoteFault {
-    of_response(status, &HeaderMap::new(), body.as_bytes(), SystemTime::UNIX_EPOCH, who(None))
+    fault_from_response(status, &HeaderMap::new(), body.as_bytes(), SystemTime::UNIX_EPOCH, who(None))
 }
 
 /// A fault's kind in the table below: again, load (over), paid, final or stop.
@@ -78,7 +78,7 @@ fn every_status_and_body_has_its_meaning() {
 fn of_response_stops_on_a_long_wait_and_retries_after_a_short_one() {
     let with = |status, wait: &'static str| {
         let headers = HeaderMap::from_iter([(ureq::http::header::RETRY_AFTER, HeaderValue::from_static(wait))]);
-        of_response(status, &headers, b"", SystemTime::UNIX_EPOCH, who(None))
+        fault_from_response(status, &headers, b"", SystemTime::UNIX_EPOCH, who(None))
     };
     assert!(matches!(with(429, "86400"), RemoteFault::Stop { reason, .. } if reason.contains("1440 minutes")));
     assert!(
@@ -92,7 +92,8 @@ fn fault_reasons_are_short_and_contain_no_key() {
     let secret = ServiceSecret::new("sk-0123456789abcdef").unwrap();
     let body = format!(r#"{{"error":{{"message":"Incorrect API key sk-0123456789abcdef {}"}}}}"#, "x".repeat(5000));
     for status in [200, 400, 401, 429, 500] {
-        let fault = of_response(status, &HeaderMap::new(), body.as_bytes(), SystemTime::UNIX_EPOCH, who(Some(&secret)));
+        let fault =
+            fault_from_response(status, &HeaderMap::new(), body.as_bytes(), SystemTime::UNIX_EPOCH, who(Some(&secret)));
         let text = format!("{fault:?}");
         assert!(text.contains("***") && !text.contains("0123456789"), "{text}");
         assert!(fault.reason().chars().count() < 400);
@@ -110,7 +111,7 @@ fn fault_reasons_name_the_setting_for_an_unknown_field() {
 #[test]
 fn of_transport_distinguishes_faults_before_and_after_sending() {
     let io = |kind| ureq::Error::Io(std::io::Error::new(kind, "x"));
-    let of = |error: ureq::Error| of_transport(&error, None, "http://h", who(None));
+    let of = |error: ureq::Error| fault_from_transport(&error, None, "http://h", who(None));
     assert_eq!(kind(&of(io(ErrorKind::ConnectionRefused))), "again");
     assert_eq!(kind(&of(io(ErrorKind::ConnectionReset))), "paid");
     assert_eq!(kind(&of(ureq::Error::HostNotFound)), "again");
@@ -129,7 +130,7 @@ fn no_part_of_a_key_stays_where_a_reason_is_cut() {
         let far = format!("{}sk-0123456789abcdef", " ".repeat(3700 + before));
         for body in [format!(r#"{{"error":{{"message":"{long}"}}}}"#), long, far] {
             let who = who(Some(&secret));
-            let fault = of_response(500, &HeaderMap::new(), body.as_bytes(), SystemTime::UNIX_EPOCH, who);
+            let fault = fault_from_response(500, &HeaderMap::new(), body.as_bytes(), SystemTime::UNIX_EPOCH, who);
             assert!(!fault.reason().contains("0123"), "{}", fault.reason());
         }
     }

@@ -174,13 +174,13 @@ impl RequestGate {
         let slow = self.slow.count_request(matches!(outcome, RequestOutcome::Burdened { load: ServiceLoad::Slow, .. }));
         match outcome {
             RequestOutcome::Answered { tokens: used } => {
-                self.pace.let_in(ticket.sent_s);
+                self.pace.note_accepted(ticket.sent_s);
                 self.note_answer(ticket.sent_at, now);
                 if let Some(bucket) = &mut self.tokens {
                     bucket.take_amount(used as f64 - ticket.tokens as f64);
                 }
             }
-            RequestOutcome::Failed => self.pace.let_in(ticket.sent_s),
+            RequestOutcome::Failed => self.pace.note_accepted(ticket.sent_s),
             RequestOutcome::Burdened { load: ServiceLoad::Slow, .. } if slow < CHANCE_SHARE => {}
             RequestOutcome::Burdened { load: ServiceLoad::Over, .. } if over < CHANCE_SHARE => {}
             RequestOutcome::Burdened { load, after } => self.note_burden(ticket.sent_at, now, load, after),

@@ -113,7 +113,7 @@ impl SendingPace {
     }
 
     /// Notes that the service accepted a request that was sent at `left_s`, whatever its result.
-    pub(super) fn let_in(&mut self, left_s: f64) {
+    pub(super) fn note_accepted(&mut self, left_s: f64) {
         if self.accepted_s.len() >= MAX_REMEMBERED_REQUESTS {
             self.accepted_s.pop_front();
         }
@@ -123,7 +123,7 @@ impl SendingPace {
     /// Notes that a request was refused as too much. `first` is false if another request in flight at the same time was
     /// refused before.
     pub(super) fn note_refusal(&mut self, first: bool) {
-        let let_in_per_s = if first { self.let_in_per_s() } else { None };
+        let let_in_per_s = if first { self.accepted_per_s() } else { None };
         let Some(let_in_per_s) = let_in_per_s else { return };
         let careful = let_in_per_s * CAUTION_SHARE;
         // A pace far above the rate of requests was never tried, so it is no evidence of the limit.
@@ -150,7 +150,7 @@ impl SendingPace {
     }
 
     /// The rate of the requests that were accepted lately, if there were enough.
-    fn let_in_per_s(&self) -> Option<f64> {
+    fn accepted_per_s(&self) -> Option<f64> {
         let mut sent: Vec<f64> = self.accepted_s.iter().copied().collect();
         sent.sort_by(f64::total_cmp);
         let newest = *sent.last()?;

@@ -102,7 +102,7 @@ impl ComparisonEstimate {
                 let requests = rehearse_route(&agent_view, &item.start, &text.text, names_object, sight, route)?;
                 for (at, request) in requests.iter().enumerate() {
                     let before = load.tokens_in;
-                    load.add_call(&words_of(request), REPLY_TOKENS);
+                    load.add_call(&request_text(request), REPLY_TOKENS);
                     self.most_tokens_in = self.most_tokens_in.max(load.tokens_in - before);
                     // The first request has no pictures, because the agent has not looked around yet.
                     let is_shown = looks_at_pictures && at > 0;
@@ -121,7 +121,7 @@ impl ComparisonEstimate {
 }
 
 /// All text of a request, including the descriptions of its tools.
-fn words_of(request: &ModelRequest) -> String {
+fn request_text(request: &ModelRequest) -> String {
     let messages = request.messages.iter().map(|message| message.text.as_str());
     messages.chain(request.tools.iter().flat_map(|tool| [tool.name, tool.does, tool.arguments])).collect()
 }

@@ -66,7 +66,7 @@ pub(super) fn load_items(
     for (name, source) in &config.instructions {
         // The texts of the episodes are read like any set, because styles must not be mixed there either.
         let source = if source.is_empty() { config.episodes.to_string_lossy().into_owned() } else { source.clone() };
-        let mut texts = texts_of(&source)?;
+        let mut texts = read_set_texts(&source)?;
         texts.retain(|item, texts| ids.contains(item) && !texts.is_empty());
         sets.push((name, texts));
     }
@@ -110,7 +110,7 @@ pub(super) fn describe_sets(
     config.instructions.iter().zip(sizes).map(describe).collect()
 }
 
-fn texts_of(source: &str) -> Result<BTreeMap<String, Vec<String>>, CommandError> {
+fn read_set_texts(source: &str) -> Result<BTreeMap<String, Vec<String>>, CommandError> {
     Ok(text_sets::read_text_set(source, None, TextPairing::Item)?
         .into_iter()
         .map(|(item, texts)| (item, texts.texts))

@@ -11,14 +11,14 @@ use wayword_core::{Platform, PlatformError, RecentCache, SceneId, seeded_rng};
 use wayword_navigation::{
     AgentView, ThingSource, WalkError,
     agents::{
-        AgentWalk, MapReader, MappedScene, last_room_in, nearest_room, walk_by_phrases, walk_by_reading, walk_by_tools,
-        walk_randomly, walk_shortest_path, walk_straight,
+        AgentWalk, MapReader, MappedScene, last_room_in, walk_by_phrases, walk_by_reading, walk_by_tools,
+        walk_randomly, walk_shortest_path, walk_straight, walk_to_nearest_room,
     },
     comparison::UNREAD_SET_NAME,
     directions::{InstructionSplitter, SplitInstruction},
     walk::AgentWalkRecord,
 };
-use wayword_run::parallel::at_once;
+use wayword_run::parallel::make_in_parallel;
 use wayword_world::survey_scene;
 
 /// Makes the walks of items with the agents and models of a comparison.
@@ -99,7 +99,7 @@ impl ItemWalkMaker<'_> {
                     }
                 }
                 WalkingAgent::Tools => {
-                    for (text, walked) in self.by_tools(agent, item)? {
+                    for (text, walked) in self.make_tool_walks(agent, item)? {
                         add(text, None, walked);
                     }
                 }
@@ -114,7 +114,8 @@ impl ItemWalkMaker<'_> {
                 }
                 WalkingAgent::NearestRoom => {
                     for text in agent.texts_of_item(item) {
-                        let walked = nearest_room(self.platform, &item.start, last_room_in(&text.text).as_deref())?;
+                        let walked =
+                            walk_to_nearest_room(self.platform, &item.start, last_room_in(&text.text).as_deref())?;
                         add(text, None, walked);
                     }
                 }
@@ -127,7 +128,7 @@ impl ItemWalkMaker<'_> {
     }
 
     /// Makes the walks of the agent `tools`, several at a time.
-    fn by_tools<'i>(
+    fn make_tool_walks<'i>(
         &self,
         agent: &WalkingAgent,
         item: &'i ComparisonItem,
@@ -142,7 +143,7 @@ impl ItemWalkMaker<'_> {
                 .map(|walked| (*text, walked))
         };
         let texts: Vec<&ComparisonText> = agent.texts_of_item(item).collect();
-        at_once(&texts, toolbox.at_once, walk, |walked| walked.as_ref().is_err_and(WalkError::ends_run))
+        make_in_parallel(&texts, toolbox.at_once, walk, |walked| walked.as_ref().is_err_and(WalkError::ends_run))
             .into_iter()
             .collect()
     }

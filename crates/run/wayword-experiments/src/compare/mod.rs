@@ -45,7 +45,7 @@ use wayword_run::{
     settings_file,
 };
 
-pub use page::{is_comparison, write_of_folder};
+pub use page::{is_comparison, write_page_from_folder};
 pub(crate) use settings::ComparisonSettings;
 
 /// Names of the files in a comparison's folder, except `config.toml`.
@@ -113,7 +113,7 @@ pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit
     // the memory leaves no folder.
     run_folder::refuse_file(&args.out)?;
     let old_folder_lock = run_folder::is_begun(&args.out).then(|| begin_folder(&args.out, &config)).transpose()?;
-    let id = run_folder::id_of(&args.out, "compare")?;
+    let id = run_folder::run_id_or_fresh(&args.out, "compare")?;
     let calls = models.open_calls(&id, output)?;
     let grounders = grounders.with_detector(&config, calls.as_ref())?;
     let splitter = open_splitter(&config.split, calls.as_ref())?;
@@ -188,7 +188,7 @@ fn walk_all(
     calls: Option<&ModelCalls>,
     output: &CommandOutput,
 ) -> Result<usize, CommandError> {
-    let mut walks = Journal::open(&folder.join(file::WALKS), key_of)?;
+    let mut walks = Journal::open(&folder.join(file::WALKS), walk_line_key)?;
     let is_done = |item: &&ComparisonItem| {
         let mut names = walk_maker.walk_names(item).into_iter();
         names
@@ -202,7 +202,7 @@ fn walk_all(
             count_phrase(items.len(), "item")
         ));
     }
-    let _interrupt_guard = interrupt::finish_first(calls);
+    let _interrupt_guard = interrupt::finish_items_first(calls);
     let bar = output.progress_bar(items.len(), "items");
     bar.set_position((items.len() - unwalked.len()) as u64);
     bar.reset_eta();
@@ -216,7 +216,7 @@ fn walk_all(
         |item| walk_maker.make_walks(item),
         |item, made| {
             bar.inc(1);
-            let is_service_gone = losses.are_enough(made.as_ref().err().and_then(model_failure));
+            let is_service_gone = losses.ends_command(made.as_ref().err().and_then(model_failure));
             match made {
                 Ok(made) => {
                     walked += 1;
@@ -224,10 +224,10 @@ fn walk_all(
                 }
                 // The service is gone: the other items would wait for it too.
                 Err(error) if is_service_gone => return Err(error.into()),
-                Err(error) if is_of_item(&error) && walked == 0 && failed + 1 == MAX_FRUITLESS_ITEMS => {
+                Err(error) if concerns_one_item(&error) && walked == 0 && failed + 1 == MAX_FRUITLESS_ITEMS => {
                     return Err(error.into());
                 }
-                Err(error) if is_of_item(&error) => {
+                Err(error) if concerns_one_item(&error) => {
                     failed += 1;
                     output.say(format_args!("item {}: {error}", item.episode.id));
                 }
@@ -256,12 +256,12 @@ fn model_failure(error: &WalkError) -> Option<FailureKind> {
 }
 
 /// Whether a failure concerns one item only, so that the others may still be walked.
-fn is_of_item(error: &WalkError) -> bool {
+fn concerns_one_item(error: &WalkError) -> bool {
     matches!(error, WalkError::Model(ModelError::Failed { .. } | ModelError::Lost { .. }))
 }
 
 /// The key of a walk's line.
-fn key_of(line: &serde_json::Value) -> Option<String> {
+fn walk_line_key(line: &serde_json::Value) -> Option<String> {
     let text = |field: &str| line.get(field)?.as_str();
     Some(walk_key(text("agent")?, text("set")?, text("item")?, line.get("text_index")?.as_u64()?))
 }

@@ -18,15 +18,19 @@ use wayword_run::{error::CommandError, run_folder, text_file};
 
 /// Whether a folder holds a comparison, finished or not.
 pub fn is_comparison(folder: &Path) -> bool {
-    run_folder::table_of(folder).is_ok_and(|config| config.contains_key("agents"))
+    run_folder::read_config_table(folder).is_ok_and(|config| config.contains_key("agents"))
 }
 
 /// Writes the page of a finished comparison from its folder. It needs the platform and the episodes, but not the sets of instructions.
 ///
 /// # Errors
 /// When the folder, the platform or the episodes cannot be read, or the page cannot be written.
-pub fn write_of_folder(folder: &Path, out: &Path, max_replays: usize) -> Result<WrittenComparison, CommandError> {
-    let config: ComparisonSettings = run_folder::config_of(folder)?;
+pub fn write_page_from_folder(
+    folder: &Path,
+    out: &Path,
+    max_replays: usize,
+) -> Result<WrittenComparison, CommandError> {
+    let config: ComparisonSettings = run_folder::read_config(folder)?;
     let path = folder.join(file::COMPARISON);
     if !path.is_file() {
         let problem = format!("{} holds a comparison that was not finished", folder.display());

@@ -129,7 +129,7 @@ impl ComparisonSettings {
                 ));
             }
             if !source.is_empty() {
-                inputs.insert(format!("instructions {name}"), hash_of_file(&crate::text_sets::file_of(&source))?);
+                inputs.insert(format!("instructions {name}"), hash_of_file(&crate::text_sets::text_set_file(&source))?);
             }
             instructions.push((name, source));
         }
@@ -185,7 +185,7 @@ impl ComparisonSettings {
 }
 
 /// Whether a set can have this name: it becomes part of a file name, and some names have a meaning of their own.
-fn is_name(name: &str) -> bool {
+fn is_free_set_name(name: &str) -> bool {
     let is_plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.');
     let is_taken = [ORIGINAL_SET_NAME, UNREAD_SET_NAME].contains(&name.to_lowercase().as_str());
     name.starts_with(char::is_alphanumeric) && name.chars().all(is_plain) && !is_taken
@@ -262,7 +262,9 @@ fn parse_named_set(set: &str) -> Result<(String, String), CommandError> {
         return Ok((set.to_owned(), String::new()));
     }
     match set.split_once('=') {
-        Some((name, source)) if is_name(name) && !source.is_empty() => Ok((name.to_owned(), source.to_owned())),
+        Some((name, source)) if is_free_set_name(name) && !source.is_empty() => {
+            Ok((name.to_owned(), source.to_owned()))
+        }
         _ => Err(CommandError::usage(
             format!("--instructions {set}: this does not name a set"),
             "give `original` or NAME=RUN#STYLE, as in --instructions central=runs/central#reverie",

@@ -47,7 +47,7 @@ pub(super) fn read_thresholds(
     }
     let mut thresholds = AgentThresholds::default();
     for name in names {
-        let default = PhraseWalkParameters::default_of(name, scored_by(name, grounder, detector));
+        let default = PhraseWalkParameters::default_of(name, scorer_name(name, grounder, detector));
         let user_values = tables.remove(name);
         if name == TOOLS_AGENT_NAME {
             let limits = user_values.map_or(Ok(ToolWalkLimits::default()), parse_tool_limits);
@@ -81,7 +81,7 @@ pub(super) fn read_thresholds(
 
 /// The name of the scorer for which an agent's default thresholds are looked up. It is the detector for an agent that walks by
 /// boxes, and the grounder for the others.
-pub(super) fn scored_by<'a>(agent: &str, grounder: &'a str, detector: Option<&str>) -> &'a str {
+pub(super) fn scorer_name<'a>(agent: &str, grounder: &'a str, detector: Option<&str>) -> &'a str {
     let by_boxes = agent == GLIP_NAV_AGENT_NAME && detector.is_some();
     if by_boxes || detector == Some(grounder) { DETECTOR_GROUNDER_NAME } else { grounder }
 }

@@ -20,7 +20,7 @@ use wayword_run::{
     settings::{RolePlayer, RunRoles, RunSettings},
     team::RoleTeam,
 };
-use wayword_synthesis::observe::talk_about;
+use wayword_synthesis::observe::caption_view;
 
 /// The agent `tools` with its model, the model's price, its eyes and its limits.
 pub(super) struct AgentToolbox {
@@ -113,7 +113,7 @@ impl ToolboxSight {
 
 impl ViewDescriber for TeamCaptions {
     fn describe_view(&self, view: &View) -> Result<String, ModelError> {
-        Ok(talk_about(view, self.0.observers())?.text)
+        Ok(caption_view(view, self.0.observers())?.text)
     }
 }
 

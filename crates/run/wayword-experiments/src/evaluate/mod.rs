@@ -10,7 +10,7 @@ use crate::{
     judge::{SubmissionScores, TrajectoryJudge},
 };
 use figures::{SubmissionReport, SubmissionResampling};
-use refusal::{SubmissionRefusal, no_submission};
+use refusal::{SubmissionRefusal, wrong_file_error};
 use std::{collections::BTreeSet, fs, path::Path};
 use wayword_formats::{
     Episode,
@@ -46,7 +46,7 @@ pub fn run_evaluate(args: &Args, output: &CommandOutput) -> Result<Exit, Command
     let limit = args.limit.map_or(usize::MAX, |limit| limit as usize).min(episodes.len());
     let (episodes, later_episodes) = episodes.split_at(limit);
     let reading = submission::read_submission(&args.submission);
-    if let Some(error) = no_submission(&args.submission, &reading) {
+    if let Some(error) = wrong_file_error(&args.submission, &reading) {
         return Err(error);
     }
     let judge = TrajectoryJudge::new(episodes, platform.as_ref())?;
@@ -68,7 +68,7 @@ pub fn run_evaluate(args: &Args, output: &CommandOutput) -> Result<Exit, Command
     }
     let rules = success_rules(args, &scores)?;
     if let Some(file) = &args.per_item {
-        write_each(file, &scores)?;
+        write_score_lines(file, &scores)?;
     }
     let drawn = SubmissionResampling { resamples: args.resamples as usize, seed: args.seed };
     let covered = SubmissionCoverage { instructions: judge.instruction_count(), items: judge.item_count(), left_out };
@@ -107,7 +107,7 @@ fn success_rules(args: &Args, scores: &SubmissionScores) -> Result<Vec<Trajector
 }
 
 /// Writes the figures of each instruction to the file of `--per-item`, one JSON object per line.
-fn write_each(file: &Path, scores: &SubmissionScores) -> Result<(), CommandError> {
+fn write_score_lines(file: &Path, scores: &SubmissionScores) -> Result<(), CommandError> {
     let mut lines = String::new();
     for line in scores.score_records() {
         let line = serde_json::to_string(&line).map_err(|error| CommandError::io(file, "write")(error.into()))?;

@@ -45,7 +45,7 @@ impl SubmissionRefusal {
 }
 
 /// The error for a file that is not a submission, but a folder or a dataset that this program can read.
-pub(super) fn no_submission(file: &Path, reading: &SubmissionReading) -> Option<CommandError> {
+pub(super) fn wrong_file_error(file: &Path, reading: &SubmissionReading) -> Option<CommandError> {
     const HINT: &str = "give what an agent walked: a JSON list of {\"instr_id\": ..., \"trajectory\": [...]}, see \
                         `wayword evaluate --help`";
     if file.is_dir() {

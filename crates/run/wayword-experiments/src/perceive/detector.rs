@@ -65,7 +65,7 @@ pub fn measure_detector(
         let Some(path) = item_path(item, &plan.job.settings, &world)? else { continue };
         let Some(labelled) = look_along_path(plan, &world, &path)? else { continue };
         let listed = landmark_names(&labelled);
-        let names = looked_for(&listed, &nouns, &labelled, plan.job.settings.seed);
+        let names = names_to_look_for(&listed, &nouns, &labelled, plan.job.settings.seed);
         count_finds(&mut figures, &labelled, &names, lookout)?;
         let looked_at = labelled.views.iter().map(Vec::len).sum::<usize>();
         views += looked_at;
@@ -118,7 +118,7 @@ fn is_landmark(name: &str) -> bool {
 }
 
 /// The names of the things that the labels list, and as many names of things that they do not list.
-fn looked_for(listed: &BTreeSet<String>, nouns: &[String], labelled: &LabelledPath, seed: u64) -> Vec<String> {
+fn names_to_look_for(listed: &BTreeSet<String>, nouns: &[String], labelled: &LabelledPath, seed: u64) -> Vec<String> {
     let is_listed = |noun: &&String| listed.iter().any(|name| names_agree(name, noun));
     let mut absent: Vec<&String> = nouns.iter().filter(|noun| !is_listed(noun)).collect();
     absent.shuffle(&mut seeded_rng(seed, &["detector", labelled.scene.as_str(), &labelled.id]));

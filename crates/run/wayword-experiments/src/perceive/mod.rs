@@ -31,8 +31,8 @@ use wayword_run::{
     team::RoleTeam,
 };
 use wayword_synthesis::{
-    detection::{CaptionDetector, seek_in},
-    observe::talk_about,
+    detection::{CaptionDetector, seek_in_view},
+    observe::caption_view,
     perception::{CaptionScore, score_caption},
 };
 
@@ -132,7 +132,7 @@ pub fn measure_perception(
     let plan = RunPlan::for_looking(job, platform)?;
     let views = labelled_views(&plan, extent.views)?;
     let calls = plan.models.open_calls(&fresh_id("perceive"), output)?;
-    let _interrupt_guard = interrupt::finish_first(calls.as_ref());
+    let _interrupt_guard = interrupt::finish_items_first(calls.as_ref());
     let mut measured = PerceptionMeasurement {
         platform: job.settings.platform.clone(),
         views: views.len(),
@@ -200,11 +200,11 @@ fn caption_views(
     let calls_before = calls_so_far();
     let bar = output.progress_bar(views.len(), "views");
     let mut captions = Vec::new();
-    let make = |view: &LabelledView| talk_about(&view.view, team.observers());
+    let make = |view: &LabelledView| caption_view(&view.view, team.observers());
     let mut losses = LossCounter::default();
     in_order(views, calls.map_or_else(core_count, ModelCalls::worker_count), make, |view, caption| {
         bar.inc(1);
-        if losses.are_enough(caption.as_ref().err().map(ModelError::failure_kind))
+        if losses.ends_command(caption.as_ref().err().map(ModelError::failure_kind))
             && let Err(error) = caption
         {
             // The model does not answer any more.
@@ -232,7 +232,7 @@ fn correct_captions(
     for (at, view) in views.iter().enumerate() {
         for (captions, scores) in by_way.iter().zip(&mut scores) {
             let Some(ScoredCaption { caption, .. }) = captions.get(at).and_then(Option::as_ref) else { continue };
-            let corrected = seek_in(&view.view, caption.clone(), seeker)?;
+            let corrected = seek_in_view(&view.view, caption.clone(), seeker)?;
             scores.push(score_caption(&corrected.text, &view.labels));
         }
         bar.inc(1);

@@ -16,7 +16,7 @@ use wayword_report::pages::robustness::results::{
 use wayword_robustness::{
     Change, TextAgreement, TextFacts, WholeChange,
     metamorphic::{self, AnnotatedText, ChangedThing, ExpectationOutcome},
-    ratio::{BootstrapOptions, PathAgreements, dose_slope, falls_at, robustness_ratios},
+    ratio::{BootstrapOptions, PathAgreements, dose_slope, falling_doses, robustness_ratios},
 };
 
 /// A change matters if its R (1: no more than asking again, 0: as much as another path) is below this.
@@ -208,7 +208,7 @@ fn dose_curves(measured: &[(&Change, ChangeResults)]) -> Vec<DoseCurve> {
         let known: Vec<(f64, f64)> =
             curve.points.iter().filter_map(|(dose, r)| r.map(|r: MeanEstimate| (*dose, r.mean))).collect();
         curve.slope = dose_slope(&known);
-        curve.falls_at = falls_at(&known, curve.unchanged, MIN_HARMLESS_R);
+        curve.falls_at = falling_doses(&known, curve.unchanged, MIN_HARMLESS_R);
     }
     curves
 }

@@ -119,7 +119,7 @@ pub fn run_robustness(args: &RobustnessArgs, output: &CommandOutput) -> Result<E
     let job = job_with_service(args, &base.settings)?;
     ModelCalls::check_ready(&job, output)?;
     let platform = platforms::open_platform(&job.settings)?;
-    let (changes, refused) = sorted_out(changes, &change_setting(&base, platform.as_ref(), eye.is_some())?);
+    let (changes, refused) = sort_changes(changes, &change_setting(&base, platform.as_ref(), eye.is_some())?);
     for RefusedChange { reason, .. } in &refused {
         output.say(format_args!("not made: {reason}"));
     }
@@ -127,7 +127,7 @@ pub fn run_robustness(args: &RobustnessArgs, output: &CommandOutput) -> Result<E
         return Err(CommandError::usage("no change is left to make", "see `wayword robustness --list`"));
     }
     let _folder_lock = begin_folder(args, &base, out)?;
-    let id = run_folder::id_of(out, "robustness")?;
+    let id = run_folder::run_id_or_fresh(out, "robustness")?;
     let calls = JobModels::for_job(&job)?.open_calls(&id, output)?;
     if calls.is_some() {
         run_folder::keep_id(out, &id)?;
@@ -195,7 +195,7 @@ fn change_setting<'a>(
 }
 
 /// Separates the changes that can be made from the refused ones, which get a reason.
-fn sorted_out(changes: Vec<Change>, setting: &ChangeSetting<'_>) -> (Vec<Change>, Vec<RefusedChange>) {
+fn sort_changes(changes: Vec<Change>, setting: &ChangeSetting<'_>) -> (Vec<Change>, Vec<RefusedChange>) {
     let (mut made, mut refused) = (Vec::new(), Vec::new());
     for change in changes {
         let platform_reason =
@@ -237,19 +237,19 @@ fn make_texts(
 ) -> Result<usize, CommandError> {
     let settings = &base.settings;
     let out = args.out.as_deref().unwrap_or(FilePath::new("."));
-    let labels = RememberingPlatform::labels_of(platform);
+    let labels = RememberingPlatform::for_labels(platform);
     // If no model takes part, no pictures are needed, and all views of the run fit into memory.
     let world: &dyn Platform = if settings.roles.model_names().is_empty() { &labels } else { platform };
     let team = |sample| {
         let lookout = DetectorLookout::from_settings(settings, calls, &base.styles)?;
-        Ok::<_, CommandError>(RoleTeam::of_sample(settings, calls, platform, sample)?.with_lookout(lookout))
+        Ok::<_, CommandError>(RoleTeam::for_sample(settings, calls, platform, sample)?.with_lookout(lookout))
     };
     let (team, again) = (team(0)?, team(1)?);
     let threads = calls.map_or(1, |calls| calls.views_at_once(base.paths.len()));
     let text_writer =
         ArmTextWriter { base, platform: world, team: &team, again: &again, eye, seed: args.seed, threads };
     let mut journal = Journal::open(&out.join(file::TEXTS), ArmPathRecord::key_of)?;
-    let _interrupt_guard = interrupt::finish_first(calls);
+    let _interrupt_guard = interrupt::finish_items_first(calls);
     let workers = calls.map_or_else(core_count, ModelCalls::worker_count);
     let arms = RobustnessArm::for_changes(changes);
     let names = scene_names::parse_names(&args.scene_name)?;

@@ -2,7 +2,7 @@
 
 use crate::{
     demands::{PlatformDemands, SAME_GOAL_M},
-    episodes::nearest_along,
+    episodes::viewpoints_along_path,
 };
 use wayword_core::{Path, Platform};
 use wayword_navigation::{
@@ -29,7 +29,7 @@ pub(super) fn reader_arrives(
     if !path.motion.is_known() || platform.graph_for_scene(&path.scene)?.is_empty() {
         return Ok(None);
     }
-    let viewpoints = nearest_along(platform, path)?;
+    let viewpoints = viewpoints_along_path(platform, path)?;
     let (Some(first), Some(goal), Some(frame)) = (viewpoints.first(), viewpoints.last(), path.frames.first()) else {
         return Ok(None);
     };

@@ -50,7 +50,7 @@ pub(super) fn world_for_arm<'a>(
         Change::By(DoseKind::HeadingNoise, deg) => altered_world(platform, HeadingNoise { deg: *deg, seed }, path),
         Change::By(DoseKind::FrameSpacing, spacing_m) => same_platform(paths::space_frames(path, *spacing_m)),
         Change::By(DoseKind::DroppedFrames, percent) => same_platform(paths::drop_frames(path, *percent, seed)),
-        Change::By(DoseKind::StartHeading, deg) => same_platform(paths::start_heading(path, *deg)),
+        Change::By(DoseKind::StartHeading, deg) => same_platform(paths::turn_start_heading(path, *deg)),
         Change::By(DoseKind::Pitch, deg) => tilted_world(platform, path, CameraTilt::new(*deg, 0.0))?,
         Change::By(DoseKind::Roll, deg) => tilted_world(platform, path, CameraTilt::new(0.0, *deg))?,
         other => match pixel_change(other, seed) {

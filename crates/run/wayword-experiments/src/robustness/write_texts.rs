@@ -231,7 +231,7 @@ impl ArmTextWriter<'_> {
                 (Box::new(AlteredPlatform::new(self.platform, recoloured)), edit(thing, colours))
             }
             _ => {
-                let (thing, added) = path_labels.with_one_more(path_text.path, self.seed)?;
+                let (thing, added) = path_labels.add_thing(path_text.path, self.seed)?;
                 (Box::new(AlteredPlatform::new(self.platform, added)), edit(thing, None))
             }
         })

@@ -164,7 +164,7 @@ impl fmt::Display for TextMetricsReport {
             write!(f, "\n{pictures}")?;
         }
         writeln!(f, "\n{:<44} {:>8} {:>8}", "diversity", "A", "B")?;
-        let [a, b] = [&self.diversity.a, &self.diversity.b].map(of_diversity);
+        let [a, b] = [&self.diversity.a, &self.diversity.b].map(diversity_rows);
         let rows: Vec<String> = a
             .iter()
             .zip(&b)
@@ -194,7 +194,7 @@ impl fmt::Display for MetricProtocol {
 }
 
 /// The rows of the table of diversity: each figure with its name.
-fn of_diversity(diversity: &TextDiversity) -> [(&'static str, Option<f64>); 6] {
+fn diversity_rows(diversity: &TextDiversity) -> [(&'static str, Option<f64>); 6] {
     let [one, two, three] = diversity.distinct;
     [
         ("self-BLEU-4 (less is more diverse)", diversity.self_bleu_4),

@@ -55,8 +55,8 @@ pub(super) fn measure_pictures(
     drawing: &ResamplingOptions,
     output: &CommandOutput,
 ) -> Result<Option<PictureAgreementReport>, CommandError> {
-    let runs: Vec<_> = [&args.a, &args.b].into_iter().filter_map(|name| text_sets::run_of(name)).collect();
-    let Some(critic) = PictureCritic::open(&args.pictured, &runs, &text_sets::file_of(&args.a), output)? else {
+    let runs: Vec<_> = [&args.a, &args.b].into_iter().filter_map(|name| text_sets::text_set_run(name)).collect();
+    let Some(critic) = PictureCritic::open(&args.pictured, &runs, &text_sets::text_set_file(&args.a), output)? else {
         return Ok(None);
     };
     let mut common: Vec<CommonItem<'_>> = Vec::new();

@@ -19,7 +19,7 @@ use wayword_metrics::SceneDistances;
 use wayword_navigation::swap::{SwapCandidate, other_path};
 use wayword_run::{count::count_phrase, error::CommandError, output::CommandOutput};
 use wayword_study::{ConditionKind, StudyCondition, StudyTask, StudyText};
-use wayword_world::path_of;
+use wayword_world::path_for_episode;
 
 /// The names of the two control conditions: texts that people wrote, and texts of other paths.
 const PEOPLE_CONDITION: &str = "people";
@@ -229,7 +229,7 @@ fn read_candidates(
     mode: StudyTask,
     platform: &dyn Platform,
 ) -> Result<Vec<CandidatePath>, CommandError> {
-    let file: PathBuf = args.episodes.clone().unwrap_or_else(|| text_sets::file_of(&args.run[0].source));
+    let file: PathBuf = args.episodes.clone().unwrap_or_else(|| text_sets::text_set_file(&args.run[0].source));
     let is_walked = mode == StudyTask::Follow;
     if detect_format(&file)? != DatasetFormat::Wayword {
         let read = if is_walked {
@@ -239,8 +239,14 @@ fn read_candidates(
         };
         let to_candidate = |episode: wayword_formats::Episode| {
             let object = episode.target_object.as_ref();
-            let path =
-                path_of(platform, &*episode.id, &episode.scene, &episode.viewpoints, episode.start_heading, object)?;
+            let path = path_for_episode(
+                platform,
+                &*episode.id,
+                &episode.scene,
+                &episode.viewpoints,
+                episode.start_heading,
+                object,
+            )?;
             let name = episodes::episode_path_name(&episode);
             Ok(CandidatePath {
                 id: episode.id,

@@ -3,7 +3,7 @@
 use super::choose_paths::StudyWalk;
 use std::collections::BTreeSet;
 use wayword_core::{Path, Platform};
-use wayword_run::{check::doubts_of, error::CommandError, output::CommandOutput};
+use wayword_run::{check::find_text_doubts, error::CommandError, output::CommandOutput};
 use wayword_study::{StudyCondition, StudyText, TextMark};
 
 /// Finds the words to doubt in the texts of the conditions that show them, and marks them. Texts are checked in the open world,
@@ -30,7 +30,7 @@ pub(super) fn mark_doubts(
         return Ok(());
     }
     // The doubts come in the order of the texts, which is that of the loop below.
-    let mut doubts = doubts_of(texts, platform, output)?.into_iter();
+    let mut doubts = find_text_doubts(texts, platform, output)?.into_iter();
     for text in walks
         .iter_mut()
         .flat_map(|walk| &mut walk.condition_texts)

@@ -49,7 +49,7 @@ impl fmt::Display for NewStudySummary {
 }
 
 pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), CommandError> {
-    let _interrupt_guard = interrupt::finish_first(None);
+    let _interrupt_guard = interrupt::finish_items_first(None);
     let mode = match args.mode {
         StudyMode::Follow => StudyTask::Follow,
         StudyMode::Rate => StudyTask::Rate,
@@ -78,7 +78,7 @@ pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), 
         StudyTask::Follow => pictures::draw_scenes(&walks, &*platform, &folder, output)?,
         StudyTask::Rate | StudyTask::Pair => Vec::new(),
     };
-    let study_routes = routes_of(&walks, mode, &*platform, &folder, output)?;
+    let study_routes = draw_routes(&walks, mode, &*platform, &folder, output)?;
     let pictures = scenes.iter().map(|scene| scene.places.len()).sum::<usize>()
         + study_routes.iter().map(|route| route.film.len()).sum::<usize>();
     let items = study_items(&walks, mode, has_practice);
@@ -117,7 +117,7 @@ fn check_pictures(args: &StudyNew, mode: StudyTask, platform: &dyn Platform) -> 
 }
 
 /// The routes of the study. The last one is for practice.
-fn routes_of(
+fn draw_routes(
     walks: &[StudyWalk],
     mode: StudyTask,
     platform: &dyn Platform,

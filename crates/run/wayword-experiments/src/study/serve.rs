@@ -22,7 +22,7 @@ struct ServedSite {
 }
 
 pub(super) fn run_serve(args: &StudyServe, output: &CommandOutput) -> Result<Exit, CommandError> {
-    let _interrupt_guard = interrupt::finish_first(None);
+    let _interrupt_guard = interrupt::finish_items_first(None);
     let study = Study::open(&args.study)?;
     let security = match &args.tls {
         Some(files) => SiteSecurity::Tls { certificate: files[0].clone(), key: files[1].clone() },
@@ -38,7 +38,7 @@ pub(super) fn run_serve(args: &StudyServe, output: &CommandOutput) -> Result<Exi
     let announced_study = study.clone();
     let mut announced = Ok(());
     let started = |started: &SiteAddress| announced = announce_site(&announced_study, started, args, output);
-    serve_study(study, &listen, started, interrupt::is_asked)?;
+    serve_study(study, &listen, started, interrupt::is_interrupted)?;
     announced?;
     output.say("stopped; the same command goes on");
     Ok(Exit::Done)

@@ -30,7 +30,7 @@ pub(super) fn write_duet(
 ) -> Result<(), CommandError> {
     items::refuse_without_poses(ExportFormat::Duet, records)?;
     refuse_without_viewpoints(records)?;
-    let splits = splits::of_records(args, records)?;
+    let splits = splits::splits_of_records(args, records)?;
     let dataset = args.dataset.unwrap_or_else(|| usual_dataset(records));
     let EncodedInstructions { is_xlm, ids } = encode_instructions(args.tokenizer.as_deref(), records, output)?;
     if dataset == AgentDataset::Rxr && !is_xlm {
@@ -132,7 +132,7 @@ fn encode_instructions(
     output: &CommandOutput,
 ) -> Result<EncodedInstructions, CommandError> {
     use wayword_local::{InstructionTokenizer, TokenizerKind};
-    let file = file_of(tokenizer.ok_or_else(no_tokenizer)?, output)?;
+    let file = find_tokenizer_file(tokenizer.ok_or_else(no_tokenizer)?, output)?;
     let tokenizer = InstructionTokenizer::load(&file)?;
     let ids =
         records.iter().map(|record| tokenizer.instruction_ids(&record.instruction.text)).collect::<Result<_, _>>()?;
@@ -141,7 +141,7 @@ fn encode_instructions(
 
 /// The file of a tokenizer. If a model is named instead of a file, its tokenizer is downloaded unless it is on this machine already.
 #[cfg(feature = "local")]
-fn file_of(tokenizer: &str, output: &CommandOutput) -> Result<PathBuf, CommandError> {
+fn find_tokenizer_file(tokenizer: &str, output: &CommandOutput) -> Result<PathBuf, CommandError> {
     use wayword_local::{HubConfig, ModelHub, ModelName, NeededFiles};
     use wayword_run::download_bar::DownloadBar;
     let path = Path::new(tokenizer);

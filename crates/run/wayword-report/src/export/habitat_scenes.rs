@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use wayword_core::{DVec3, Path as Walk, Platform, PlatformError, SceneId};
 use wayword_formats::{Episode, InHabitat, jsonl::InstructionRecord};
 use wayword_house::seed_of;
-use wayword_run::{error::CommandError, platforms, run_folder::settings_of, stores};
+use wayword_run::{error::CommandError, platforms, run_folder::read_run_settings, stores};
 
 /// The folder in which habitat-lab keeps scenes; a `scene_id` is a path below it.
 const SCENES_FOLDER: &str = "scene_datasets";
@@ -39,7 +39,7 @@ impl HabitatSceneSource {
         let scene = &record.path.scene;
         match (record.platform.as_str(), &self.scenes) {
             ("habitat", Some((platform, data))) => {
-                if let Err(error) = tell_of_scene(&**platform, data, &record.path, episode) {
+                if let Err(error) = add_scene_fields(&**platform, data, &record.path, episode) {
                     self.first_problem.get_or_insert_with(|| first_line(&error));
                     episode.in_habitat = without_scene(scene);
                 }
@@ -48,7 +48,7 @@ impl HabitatSceneSource {
             ("matterport", _) => {}
             ("house", _) => {
                 if let Some(houses) = &self.houses
-                    && let Ok(path) = around_corners(&**houses, &record.path, episode)
+                    && let Ok(path) = path_with_corners(&**houses, &record.path, episode)
                 {
                     episode.floor_positions = path;
                 }
@@ -72,7 +72,7 @@ impl HabitatSceneSource {
 
 /// The scenes that a run was made in, and where they come from.
 fn open_scenes(run: &Path) -> Result<(Box<dyn Platform>, PathBuf), CommandError> {
-    let settings = settings_of(run)?;
+    let settings = read_run_settings(run)?;
     let platform = platforms::open_platform(&settings)?;
     let data = settings.data.as_deref().map(stores::local_data).transpose()?.unwrap_or_default().into_owned();
     Ok((platform, data))
@@ -84,14 +84,14 @@ fn first_line(error: &impl ToString) -> String {
 }
 
 /// Adds file, corners and distance of a Habitat scene to an episode. On an error the positions on the floor are unchanged.
-fn tell_of_scene(
+fn add_scene_fields(
     platform: &dyn Platform,
     data: &Path,
     walk: &Walk,
     episode: &mut Episode,
 ) -> Result<(), PlatformError> {
     let file = platform.files().scene_file(&walk.scene)?;
-    let path = around_corners(platform, walk, episode)?;
+    let path = path_with_corners(platform, walk, episode)?;
     episode.in_habitat.geodesic_m = geodesic_m(platform, walk)?;
     episode.floor_positions = path;
     episode.in_habitat.scene_id = file.map(|file| below_scenes(&file, data));
@@ -139,7 +139,7 @@ fn in_foreign_scene(platform: &str, scene: &SceneId) -> InHabitat {
 
 /// The path of an episode with every corner of the way between two frames, so that each hop is a straight walk. It is
 /// as before if the platform knows no ways.
-fn around_corners(platform: &dyn Platform, walk: &Walk, episode: &Episode) -> Result<Vec<DVec3>, PlatformError> {
+fn path_with_corners(platform: &dyn Platform, walk: &Walk, episode: &Episode) -> Result<Vec<DVec3>, PlatformError> {
     let floors = &episode.floor_positions;
     let mut path: Vec<DVec3> = floors.first().copied().into_iter().collect();
     for (frames, floor) in walk.frames.windows(2).zip(floors.iter().skip(1)) {

@@ -16,7 +16,7 @@ use wayword_run::{
     count::count_phrase,
     error::{CommandError, Exit},
     output::CommandOutput,
-    run_folder::{file, settings_of},
+    run_folder::{file, read_run_settings},
     settings::{AskedPlatform, AskedSettings},
 };
 
@@ -63,7 +63,7 @@ impl fmt::Display for WrittenHighlights {
 
 pub(super) fn write_highlights(args: &ExportArgs, name: &Path, output: &CommandOutput) -> Result<Exit, CommandError> {
     let highlights = find_highlights(args, output)?;
-    let [page, file] = ["html", "json"].map(|end| file_of(name, end));
+    let [page, file] = ["html", "json"].map(|end| file_with_ending(name, end));
     for old in [&page, &file].into_iter().filter(|old| old.exists()) {
         output.say(format_args!("overwriting the old file {}", old.display()));
     }
@@ -84,7 +84,7 @@ pub(super) fn write_highlights(args: &ExportArgs, name: &Path, output: &CommandO
 }
 
 /// The file with this name and ending. The user may have typed one of the two endings already; it is replaced.
-fn file_of(name: &Path, end: &str) -> PathBuf {
+fn file_with_ending(name: &Path, end: &str) -> PathBuf {
     let is_page = name.extension().is_some_and(|end| end == "html" || end == "json");
     let stem = if is_page { name.file_stem() } else { name.file_name() };
     let mut file = stem.unwrap_or_default().to_owned();
@@ -95,7 +95,7 @@ fn file_of(name: &Path, end: &str) -> PathBuf {
 
 /// Checks the chosen texts, of a run or of a file, and returns their doubts.
 fn find_highlights(args: &ExportArgs, output: &CommandOutput) -> Result<DoubtHighlights, CommandError> {
-    refuse_what_datasets_bear(args)?;
+    refuse_dataset_flags(args)?;
     let options = CheckOptions { world: args.world, doubts: true, ..CheckOptions::default() };
     let report = match (&args.texts, &args.run[..]) {
         (Some(texts), []) => {
@@ -103,9 +103,9 @@ fn find_highlights(args: &ExportArgs, output: &CommandOutput) -> Result<DoubtHig
             check_file(texts, &settings, options, output)?
         }
         (None, [run]) => {
-            refuse_a_platform(args)?;
+            refuse_platform_flags(args)?;
             let options = CheckOptions { captions: Some(run), ..options };
-            check_file(&run.join(file::INSTRUCTIONS), &settings_of(run)?, options, output)?
+            check_file(&run.join(file::INSTRUCTIONS), &read_run_settings(run)?, options, output)?
         }
         _ => {
             let problem = "--highlight takes the texts of one run, or of one file";
@@ -123,7 +123,7 @@ fn find_highlights(args: &ExportArgs, output: &CommandOutput) -> Result<DoubtHig
     Ok(highlights)
 }
 
-fn refuse_what_datasets_bear(args: &ExportArgs) -> Result<(), CommandError> {
+fn refuse_dataset_flags(args: &ExportArgs) -> Result<(), CommandError> {
     if args.format.is_some() || args.out.is_some() || args.val_share.is_some() {
         let problem = "--highlight writes no dataset, so --format, --out and --val-share say nothing";
         return Err(CommandError::usage(problem, "leave them out, or export the dataset by itself"));
@@ -131,7 +131,7 @@ fn refuse_what_datasets_bear(args: &ExportArgs) -> Result<(), CommandError> {
     Ok(())
 }
 
-fn refuse_a_platform(args: &ExportArgs) -> Result<(), CommandError> {
+fn refuse_platform_flags(args: &ExportArgs) -> Result<(), CommandError> {
     if args.platform == AskedPlatform::default() {
         return Ok(());
     }
@@ -145,7 +145,8 @@ mod tests {
 
     #[test]
     fn file_of_replaces_an_ending_that_the_user_typed() {
-        let names = |name: &str| ["html", "json"].map(|end| file_of(Path::new(name), end).display().to_string());
+        let names =
+            |name: &str| ["html", "json"].map(|end| file_with_ending(Path::new(name), end).display().to_string());
         assert_eq!(names("a/doubts"), ["a/doubts.html", "a/doubts.json"]);
         assert_eq!(names("a/doubts.html"), ["a/doubts.html", "a/doubts.json"]);
         assert_eq!(names("v1.2"), ["v1.2.html", "v1.2.json"]);

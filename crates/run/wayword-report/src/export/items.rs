@@ -84,7 +84,7 @@ pub fn episode_names(records: &[InstructionRecord]) -> Vec<String> {
     let mut taken = std::collections::BTreeSet::new();
     let name = |record: &InstructionRecord| match texts.get(record.path.id.as_str()) {
         Some(1) => record.path.id.clone(),
-        _ => format!("{}-{}", record.path.id, wayword_run::run_folder::name_of_text(record)),
+        _ => format!("{}-{}", record.path.id, wayword_run::run_folder::text_file_name(record)),
     };
     let free = |name: String| {
         let other = (2..).map(|number| format!("{name}_{number}"));
@@ -146,8 +146,8 @@ fn join_episodes(item: &mut Episode, other: Episode) {
 
 /// A record as an item of a dataset. Provenance is a list, one entry for each instruction.
 fn episode_from_record(record: &InstructionRecord, with_provenance: bool) -> Episode {
-    let mut episode =
-        Episode::from_path(&record.path, vec![record.instruction.text.clone()]).on_floor_of(&record.path, EYE_HEIGHT_M);
+    let mut episode = Episode::from_path(&record.path, vec![record.instruction.text.clone()])
+        .with_floor_positions(&record.path, EYE_HEIGHT_M);
     episode.path_id = record.path_id();
     if with_provenance {
         episode.extra.insert("wayword".into(), json!([provenance_json(record)]));

@@ -87,7 +87,7 @@ pub fn run_export(args: &ExportArgs, output: &CommandOutput) -> Result<Exit, Com
         ExportFormat::Hf => table::publish_tables(args, out, &records, output)?,
         ExportFormat::Steps => return steps::write_steps(args, out, &records, output),
         ExportFormat::R2r | ExportFormat::Reverie | ExportFormat::Rxr | ExportFormat::Vlnce | ExportFormat::Wayword => {
-            one_file(args, format, out, &records, output)?;
+            write_one_file(args, format, out, &records, output)?;
         }
     }
     Ok(Exit::Done)
@@ -167,7 +167,7 @@ fn read_records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<Instruction
 }
 
 /// Writes a format that is one file.
-fn one_file(
+fn write_one_file(
     args: &ExportArgs,
     format: ExportFormat,
     out: &Path,
@@ -211,7 +211,7 @@ fn splits_of(
     output: &CommandOutput,
 ) -> Result<Vec<String>, CommandError> {
     if format.names_splits() || args.split.is_some() {
-        return splits::of_records(args, records);
+        return splits::splits_of_records(args, records);
     }
     if args.val_share.is_none() {
         splits::tell_held_out(records, output);

@@ -31,7 +31,7 @@ type DeclaredSplits = BTreeMap<(String, String), String>;
 /// # Errors
 /// When a name is no name of a split, a scene that is officially held out would come into another split, or the run's files
 /// cannot be read.
-pub(super) fn of_records(args: &ExportArgs, records: &[InstructionRecord]) -> Result<Vec<String>, CommandError> {
+pub(super) fn splits_of_records(args: &ExportArgs, records: &[InstructionRecord]) -> Result<Vec<String>, CommandError> {
     let declared = match args.split {
         Some(_) => DeclaredSplits::new(),
         None => read_declared_splits(&args.run, records)?,
@@ -97,10 +97,10 @@ fn read_declared_splits(runs: &[PathBuf], records: &[InstructionRecord]) -> Resu
     let mut declared = DeclaredSplits::new();
     for run in runs {
         // A run folder that a user put together has no settings.
-        let episodes = run_folder::settings_of(run).ok().and_then(|settings| settings.episodes);
+        let episodes = run_folder::read_run_settings(run).ok().and_then(|settings| settings.episodes);
         let Some(episodes) = episodes else { continue };
-        let by_item = of_items(&episodes);
-        let split_of_file = of_file_name(&episodes);
+        let by_item = splits_in_file(&episodes);
+        let split_of_file = split_in_file_name(&episodes);
         let run_records = match runs {
             [_] => records.to_vec(),
             _ => jsonl::read_records(&run.join(file::INSTRUCTIONS))?,
@@ -115,7 +115,7 @@ fn read_declared_splits(runs: &[PathBuf], records: &[InstructionRecord]) -> Resu
 }
 
 /// The split of each item of a file; empty if the file is gone or its format has no field for splits.
-fn of_items(episodes: &Path) -> BTreeMap<String, String> {
+fn splits_in_file(episodes: &Path) -> BTreeMap<String, String> {
     let has_splits =
         matches!(wayword_formats::detect_format(episodes), Ok(DatasetFormat::Rxr | DatasetFormat::Wayword));
     let read = has_splits.then(|| wayword_formats::read_any_format(episodes).ok()).flatten().unwrap_or_default();
@@ -123,7 +123,7 @@ fn of_items(episodes: &Path) -> BTreeMap<String, String> {
 }
 
 /// The split in a file's name: `val_seen` of `R2R_val_seen.json`, `train` of `rxr_train_guide.jsonl.gz`.
-fn of_file_name(file: &Path) -> Option<&'static str> {
+fn split_in_file_name(file: &Path) -> Option<&'static str> {
     let name = file.file_name()?.to_string_lossy().to_lowercase().replace('-', "_");
     let stem = format!("_{}_", name.split('.').next()?);
     KNOWN_SPLITS.into_iter().find(|split| stem.contains(&format!("_{split}_")))
@@ -145,7 +145,7 @@ mod tests {
             ("restrained.json", None),
             ("", None),
         ] {
-            assert_eq!(of_file_name(Path::new(file)), split, "{file}");
+            assert_eq!(split_in_file_name(Path::new(file)), split, "{file}");
         }
     }
 

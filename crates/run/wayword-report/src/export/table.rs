@@ -20,7 +20,7 @@ pub(super) fn write_table(
     records: &[InstructionRecord],
     output: &CommandOutput,
 ) -> Result<(), CommandError> {
-    let splits = splits::of_records(args, records)?;
+    let splits = splits::splits_of_records(args, records)?;
     tell_overwriting(out, output);
     let rows: Vec<ParquetRow<'_>> =
         records.iter().zip(&splits).map(|(record, split)| ParquetRow { record, split }).collect();
@@ -38,7 +38,7 @@ pub(super) fn publish_tables(
     output: &CommandOutput,
 ) -> Result<(), CommandError> {
     check_terms(args, records)?;
-    let splits = splits::of_records(args, records)?;
+    let splits = splits::splits_of_records(args, records)?;
     check_folder(out)?;
     let card = card::card_text(args, out, records, &splits)?;
     let data = out.join("data");

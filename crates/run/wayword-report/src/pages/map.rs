@@ -89,7 +89,7 @@ impl MapView {
         }
         let stops: Vec<DVec3> = path.frames.iter().take(frames).map(|frame| frame.pose.position).collect();
         let start = path.frames.first()?.pose.heading;
-        Self::draw_trail(map, &MapTrail::of_frames(&stops, start))
+        Self::draw_trail(map, &MapTrail::from_frames(&stops, start))
     }
 
     /// The map of a trail, or `None` if its positions cannot be drawn.
@@ -138,7 +138,7 @@ pub(crate) struct MapTrail<'a> {
 
 impl<'a> MapTrail<'a> {
     /// The frames of a path, numbered from 0 as in run folders and on the terminal.
-    pub(crate) fn of_frames(stops: &'a [DVec3], start: Heading) -> Self {
+    pub(crate) fn from_frames(stops: &'a [DVec3], start: Heading) -> Self {
         Self { stops, start, backs: &[], annotated: &[], first_number: 0, is_numbered_once: false }
     }
 }

@@ -18,7 +18,7 @@ use wayword_run::{
     run_folder::{
         FailedItem, RejectedText, WalkRecord, file,
         lines::{self, RecordLine},
-        settings_of,
+        read_run_settings,
     },
     settings::RunSettings,
 };
@@ -89,7 +89,7 @@ impl ReportRecords {
     /// When it is not a run folder, a file cannot be read, or a line is not of its kind.
     pub(super) fn read_run(run: &Path, most_items: usize) -> Result<Self, CommandError> {
         let mut records = Self {
-            settings: settings_of(run)?,
+            settings: read_run_settings(run)?,
             items: Vec::new(),
             left_out: 0,
             failed: Vec::new(),

@@ -113,7 +113,7 @@ impl<'a> ReportFiles<'a> {
     /// # Errors
     /// When one of them would be replaced.
     pub(super) fn refuse_to_replace_others(&self) -> Result<(), CommandError> {
-        let is_other = |file: &PathBuf| fs::symlink_metadata(file).is_ok() && !self.is_ours(file);
+        let is_other = |file: &PathBuf| fs::symlink_metadata(file).is_ok() && !self.is_page_of_this_report(file);
         match (1..=self.page_count()).map(|page| self.page_file(page)).find(is_other) {
             Some(file) => Err(CommandError::usage(
                 format!("{}: it exists, and is not a page of this report", file.display()),
@@ -128,14 +128,17 @@ impl<'a> ReportFiles<'a> {
     /// # Errors
     /// When one cannot be removed.
     pub(super) fn remove_older_pages(&self) -> Result<(), CommandError> {
-        for file in (self.page_count() + 1..).map(|page| self.page_file(page)).take_while(|file| self.is_ours(file)) {
+        for file in (self.page_count() + 1..)
+            .map(|page| self.page_file(page))
+            .take_while(|file| self.is_page_of_this_report(file))
+        {
             fs::remove_file(&file).map_err(CommandError::io(&file, "remove the older page"))?;
         }
         Ok(())
     }
 
     /// Whether a file carries the mark of this report, so that it is one of the report's pages of paths.
-    fn is_ours(&self, file: &Path) -> bool {
+    fn is_page_of_this_report(&self, file: &Path) -> bool {
         let mut beginning = Vec::new();
         let read = File::open(file).and_then(|file| file.take(MARK_SEARCH_BYTES).read_to_end(&mut beginning));
         read.is_ok() && String::from_utf8_lossy(&beginning).contains(&page_mark(&self.page_of))

@@ -71,7 +71,7 @@ impl TextList {
     pub(super) fn from_records(records: &ReportRecords, href: impl Fn(usize) -> String) -> Self {
         let mut rows: Vec<TextRow> = records.failed.iter().map(failed_row).collect();
         for (at, item) in records.items.iter().enumerate() {
-            rows.extend(of_item(item, &href(at)));
+            rows.extend(rows_for_item(item, &href(at)));
         }
         rows.sort_by_key(|row| row.state);
         let styles = choices_among(rows.iter().map(|row| row.style.as_str()));
@@ -116,7 +116,7 @@ fn failed_row(failed: &FailedItem) -> TextRow {
 }
 
 /// The rows of an item: one for each of its texts, or a single one if it has none.
-fn of_item(item: &ItemRecord, href: &str) -> Vec<TextRow> {
+fn rows_for_item(item: &ItemRecord, href: &str) -> Vec<TextRow> {
     let row = |state, style: &str, text: &str, reason: Option<&str>| TextRow {
         state,
         href: Some(href.to_owned()),

@@ -17,8 +17,8 @@ pub(super) fn refuse_gguf(name: &str) -> Option<CommandError> {
     Path::new(rest).extension().filter(|ending| ending.eq_ignore_ascii_case("gguf"))?;
     let is_path = rest.starts_with(['/', '.']);
     let servers = match rest.split_once(':').filter(|_| !is_path) {
-        Some((repo, file)) => on_hub(repo.split_once('@').map_or(repo, |(repo, _)| repo), file),
-        None => on_disk(rest),
+        Some((repo, file)) => hub_file_commands(repo.split_once('@').map_or(repo, |(repo, _)| repo), file),
+        None => local_file_commands(rest),
     };
     let problem = format!("{name:?} is a GGUF file, and this program runs no GGUF files in process");
     Some(CommandError::usage(
@@ -28,7 +28,7 @@ pub(super) fn refuse_gguf(name: &str) -> Option<CommandError> {
 }
 
 /// The commands for a file of a repository on Hugging Face, which both servers fetch by themselves.
-fn on_hub(repo: &str, file: &str) -> String {
+fn hub_file_commands(repo: &str, file: &str) -> String {
     let alias = model_alias(file);
     let mut servers = String::new();
     // Ollama takes no tag that has to be escaped, or that names a file in a folder.
@@ -41,7 +41,7 @@ fn on_hub(repo: &str, file: &str) -> String {
 }
 
 /// The commands for a file on this machine.
-fn on_disk(path: &str) -> String {
+fn local_file_commands(path: &str) -> String {
     let (alias, path) = (model_alias(path), quote_for_shell(path));
     let create_command = format!("echo FROM {path} > {alias}.Modelfile && ollama create {alias} -f {alias}.Modelfile");
     let start_command = format!("llama-server -m {path} --alias {alias}");

@@ -35,7 +35,7 @@ impl LocalCalls {
 
     /// Makes sure that a model's files are on this machine.
     pub(super) fn model_ready(&self, name: &str) -> Result<(), CommandError> {
-        Ok(self.models.at_hand(name)?)
+        Ok(self.models.ensure_model_files(name)?)
     }
 
     /// Loads a model, once.
@@ -51,7 +51,7 @@ impl LocalCalls {
 
     /// Makes sure that a detector's files are on this machine.
     pub(super) fn detector_ready(&self, name: &str) -> Result<(), CommandError> {
-        Ok(self.models.detector_at_hand(name)?)
+        Ok(self.models.ensure_detector_files(name)?)
     }
 
     /// Loads a detector, once.
@@ -79,7 +79,7 @@ impl LocalCalls {
                 "{name} answers about pictures and writes no texts\nhint: use it with --see"
             )));
         }
-        findings.extend(ServiceFinding::of_seeing(model.as_ref()));
+        findings.extend(ServiceFinding::check_seeing(model.as_ref()));
         findings
     }
 }

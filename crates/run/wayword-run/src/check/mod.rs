@@ -34,7 +34,7 @@ use wayword_checks::{
 use wayword_core::{CheckFinding, Platform};
 #[cfg(feature = "study")]
 use wayword_core::{Path, TextDoubt};
-use worlds::world_of;
+use worlds::choose_world;
 
 pub use report::{AmbiguousText, CheckReport, CheckedText, DoubtedText, VerdictCounts};
 
@@ -69,7 +69,7 @@ pub fn check_texts(args: &Args, output: &CommandOutput) -> Result<CheckReport, C
     let settings = AskedSettings::from(args.platform.clone()).resolve()?;
     let lookout = detecting::open_lookout(&args.detecting, output)?;
     let sources = args.detecting.evidence.unwrap_or(EvidenceSources::usual_sources(true));
-    check_by(&args.file, &settings, how, (lookout.as_ref(), sources), output)
+    check_with_lookout(&args.file, &settings, how, (lookout.as_ref(), sources), output)
 }
 
 /// How the texts of a file are checked.
@@ -104,10 +104,10 @@ pub fn check_file(
     how: CheckOptions<'_>,
     output: &CommandOutput,
 ) -> Result<CheckReport, CommandError> {
-    check_by(file, settings, how, (None, EvidenceSources::default()), output)
+    check_with_lookout(file, settings, how, (None, EvidenceSources::default()), output)
 }
 
-fn check_by(
+fn check_with_lookout(
     file: &FilePath,
     settings: &RunSettings,
     how: CheckOptions<'_>,
@@ -136,7 +136,7 @@ fn check_by(
 /// # Errors
 /// When the platform cannot give the views along a path.
 #[cfg(feature = "study")]
-pub fn doubts_of(
+pub fn find_text_doubts(
     texts: Vec<(Path, String)>,
     platform: &dyn Platform,
     output: &CommandOutput,
@@ -222,9 +222,9 @@ impl TextChecker<'_> {
         };
         let captions = || self.captions.get(&walk.path.id).cloned();
         let known = labels.or(detected).or_else(captions);
-        let mut evidence = known.unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
+        let mut evidence = known.unwrap_or_else(|| Evidence::for_path_alone(&walk.path));
         let source = evidence.source;
-        let text_world = |text: &FileText| world_of(text, how.world, platform.name(), source);
+        let text_world = |text: &FileText| choose_world(text, how.world, platform.name(), source);
         let some_are_open = walk.texts.iter().any(|text| text_world(text) == CheckWorld::Open);
         let scene = Some(self.scenes.get_or_survey(platform, &walk.path.scene)?);
         evidence.beyond = scene.as_ref().map(|scene| scene.inventory.beyond_end(&walk.path)).unwrap_or_default();
@@ -239,7 +239,7 @@ impl TextChecker<'_> {
         };
         let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
         let checked = walk.texts.iter().zip(&testimonies).map(|(text, own_testimony)| {
-            let check_style = self.styles.style_of(text);
+            let check_style = self.styles.style_or_any(text);
             let follower = followed.as_ref().map(|followed| match followed {
                 Ok(followed) => followed.follow_text(&text.words, text.tag.as_deref()),
                 Err(why) => FollowerFindings::not_followed(why),

@@ -7,7 +7,7 @@ use wayword_formats::{
     DatasetFormat,
     jsonl::{self, InstructionRecord},
 };
-use wayword_world::path_of;
+use wayword_world::path_for_episode;
 
 /// A path with every text about it, so that the views along the path are looked up once for all of them.
 pub(super) struct PathTexts {
@@ -33,7 +33,7 @@ pub(super) struct FileText {
 
 impl FileText {
     /// A text of a dataset, which has no provenance.
-    fn of_dataset(path: &Path, words: String, tag: Option<String>) -> Self {
+    fn from_dataset(path: &Path, words: String, tag: Option<String>) -> Self {
         Self { at: 0, path: path.id.clone(), words, style: None, tag, origin: None }
     }
 }
@@ -49,7 +49,7 @@ pub(super) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
     let mut walks = PathTextIndex::default();
     if wayword_formats::detect_format(file)? == DatasetFormat::Wayword {
         for InstructionRecord { path, instruction, platform: made_on, .. } in jsonl::read_records(file)? {
-            let path = on_graph(platform, path)?;
+            let path = with_platform_poses(platform, path)?;
             let text = FileText {
                 at: 0,
                 path: path.id.clone(),
@@ -67,7 +67,7 @@ pub(super) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
     }
     for episode in wayword_formats::read_any_format(file)? {
         // The check ends with an error at the first missing scene.
-        let path = path_of(
+        let path = path_for_episode(
             platform,
             &episode.id,
             &episode.scene,
@@ -77,7 +77,7 @@ pub(super) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
         )?;
         for (at, words) in episode.instructions.iter().enumerate() {
             let tag = episode.language_of(at).map(str::to_owned);
-            walks.add_text(path.clone(), FileText::of_dataset(&path, words.clone(), tag));
+            walks.add_text(path.clone(), FileText::from_dataset(&path, words.clone(), tag));
         }
     }
     Ok(walks.all)
@@ -88,7 +88,7 @@ pub(super) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
 pub(super) fn gather_by_path(texts: Vec<(Path, String)>) -> Vec<PathTexts> {
     let mut walks = PathTextIndex::default();
     for (path, words) in texts {
-        let text = FileText::of_dataset(&path, words, None);
+        let text = FileText::from_dataset(&path, words, None);
         walks.add_text(path, text);
     }
     walks.all
@@ -125,7 +125,7 @@ impl PathTextIndex {
 }
 
 /// A record's path, with the platform's own poses and storeys if its frames are viewpoints. Those in the file are not trusted.
-fn on_graph(platform: &dyn Platform, path: Path) -> Result<Path, CommandError> {
+fn with_platform_poses(platform: &dyn Platform, path: Path) -> Result<Path, CommandError> {
     let viewpoints: Option<Vec<_>> = path.frames.iter().map(|frame| frame.viewpoint.clone()).collect();
     let Some(viewpoints) = viewpoints else { return Ok(path) };
     // Names of pictures are not viewpoints. Whether the scene has viewpoints is decided by the platform, and not by the file.
@@ -134,7 +134,7 @@ fn on_graph(platform: &dyn Platform, path: Path) -> Result<Path, CommandError> {
     }
     let heading = path.frames.first().map(|frame| frame.pose.heading);
     let object = path.target.as_ref().map(|target| &target.object);
-    Ok(path_of(platform, &path.id, &path.scene, &viewpoints, heading, object)?)
+    Ok(path_for_episode(platform, &path.id, &path.scene, &viewpoints, heading, object)?)
 }
 
 #[cfg(test)]
@@ -153,7 +153,7 @@ mod tests {
         let mut walks = PathTextIndex::default();
         for (id, end_m) in [("1_7", 2.0), ("2", 4.0), ("1_7", 2.0), ("1_9", 2.0)] {
             let path = path(id, end_m);
-            walks.add_text(path.clone(), FileText::of_dataset(&path, "Stop.".into(), None));
+            walks.add_text(path.clone(), FileText::from_dataset(&path, "Stop.".into(), None));
         }
         let texts: Vec<Vec<(usize, &str)>> = walks
             .all
@@ -163,7 +163,7 @@ mod tests {
         assert_eq!(texts, [vec![(0, "1_7"), (2, "1_7"), (3, "1_9")], vec![(1, "2")]]);
         let mut other = path("1_7", 2.0);
         other.motion = PathMotion::Unknown;
-        walks.add_text(other.clone(), FileText::of_dataset(&other, "Stop.".into(), None));
+        walks.add_text(other.clone(), FileText::from_dataset(&other, "Stop.".into(), None));
         assert_eq!(walks.all.len(), 3, "texts are checked against the motion too");
     }
 }

@@ -9,11 +9,11 @@ use super::{
 use crate::{
     check::args::AskedWorld,
     error::CommandError,
-    run_folder::{WalkRecord, file, lines, settings_of},
+    run_folder::{WalkRecord, file, lines, read_run_settings},
 };
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::Path as FilePath};
-use wayword_checks::{CheckSubject, Evidence, TurnJudge, WorldReach, check_own};
+use wayword_checks::{CheckSubject, Evidence, TurnJudge, WorldReach, check_own_text};
 use wayword_core::{CheckFinding, ObjectId, Path, SceneId, ViewpointId};
 use wayword_formats::{DatasetFormat, jsonl};
 use wayword_synthesis::walk::ObservedWalk;
@@ -38,7 +38,7 @@ enum RunPathKey {
 /// # Errors
 /// When the file or the run cannot be read, or a text is about a path that the run does not have.
 pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: CheckOptions<'_>) -> Result<CheckReport, CommandError> {
-    let styles = CheckStyles::of_run(how.style, &settings_of(run)?)?;
+    let styles = CheckStyles::for_run(how.style, &read_run_settings(run)?)?;
     // The finds of a detector are part of the captions.
     let captions_were_evidence = matches!(checked_against(run)?.as_deref(), Some("captions" | "detector"));
     let mut wanted: Vec<Option<RunText>> = read_texts(texts)?.into_iter().map(Some).collect();
@@ -54,14 +54,14 @@ pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: CheckOptions<'_>
             return Ok(());
         }
         let walk = ObservedWalk::new(record.path, record.observations);
-        let evidence = walk.evidence().unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
+        let evidence = walk.evidence().unwrap_or_else(|| Evidence::for_path_alone(&walk.path));
         let source = evidence.source.name();
         if !report.checked_against.iter().any(|other| other == source) {
             report.checked_against.push(source.to_owned());
         }
         for RunText { text, .. } in path_texts {
             styles.count_text(&text, &mut report);
-            let check_style = styles.style_of(&text);
+            let check_style = styles.style_or_any(&text);
             let target = walk.path.target.as_ref();
             // If labels were the evidence, the captions show less than the texts were written from, so the world is open.
             let is_closed = match how.world {
@@ -76,7 +76,7 @@ pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: CheckOptions<'_>
             };
             let turns = TurnJudge::NotJudged("without the platform the text is not followed");
             let subject = CheckSubject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&check_style.copies) };
-            let checked = check_own(&text.words, subject);
+            let checked = check_own_text(&text.words, subject);
             checked_texts.push((text.at, CheckedText::from_text(&text, &checked), checked.findings));
         }
         Ok(())

@@ -59,7 +59,7 @@ impl CheckStyles {
     }
 
     /// As [`Self::for_style`], with the styles of a run in addition, as far as their files are still there.
-    pub(super) fn of_run(style: Option<&str>, run: &RunSettings) -> Result<Self, CommandError> {
+    pub(super) fn for_run(style: Option<&str>, run: &RunSettings) -> Result<Self, CommandError> {
         let mut check_styles = Self::for_style(style)?;
         let run_styles = styles::find_styles(&run.style).unwrap_or_default();
         check_styles.sole = (run_styles.len() == 1).then_some(check_styles.known.len());
@@ -68,7 +68,7 @@ impl CheckStyles {
     }
 
     /// The style of a text, or one without constraints.
-    pub(super) fn style_of(&self, text: &FileText) -> &CheckStyle {
+    pub(super) fn style_or_any(&self, text: &FileText) -> &CheckStyle {
         self.find_style(text).unwrap_or(&self.any)
     }
 

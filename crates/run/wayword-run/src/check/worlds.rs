@@ -7,10 +7,12 @@ use wayword_checks::{CheckWorld, EvidenceSource};
 /// The world in which a text is checked. With `--world auto` it is closed for a record with the same platform and
 /// source of evidence as in this check, because such a text was written from this evidence, and open for every other
 /// text.
-pub(super) fn world_of(text: &FileText, asked: AskedWorld, platform: &str, source: EvidenceSource) -> CheckWorld {
+pub(super) fn choose_world(text: &FileText, asked: AskedWorld, platform: &str, source: EvidenceSource) -> CheckWorld {
     match (asked, &text.origin) {
         (AskedWorld::Open, _) | (AskedWorld::Auto, None) => CheckWorld::Open,
         (AskedWorld::Closed, _) => CheckWorld::Closed,
-        (AskedWorld::Auto, Some((made_on, provenance))) => CheckWorld::of_record(provenance, made_on, platform, source),
+        (AskedWorld::Auto, Some((made_on, provenance))) => {
+            CheckWorld::for_record(provenance, made_on, platform, source)
+        }
     }
 }

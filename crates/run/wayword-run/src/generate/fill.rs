@@ -106,7 +106,8 @@ impl ItemWorkshop<'_> {
         thread::scope(|scope| {
             if let Some(calls) = calls {
                 let (pace, bar) = (&pace, &bar);
-                let print_line = |text: &str| output.in_lines(format_args!("{}/{all} items, {text}", bar.position()));
+                let print_line =
+                    |text: &str| output.print_progress_line(format_args!("{}/{all} items, {text}", bar.position()));
                 scope.spawn(move || {
                     pace.watch_calls(|| calls.spent_so_far(), |text| bar.set_message(text.to_owned()), print_line);
                 });
@@ -115,7 +116,7 @@ impl ItemWorkshop<'_> {
                 let fate = keep_item(run, world, item, made, styles)?;
                 span.end_with(&fate);
                 pace.item_is_done();
-                progress.takes_note(run, fate)
+                progress.count_item(run, fate)
             });
             pace.end_watch();
             kept

@@ -31,7 +31,7 @@ pub(super) fn keep_item(
     made: Result<MadeItem, CommandError>,
     styles: &[MeasuredStyle],
 ) -> Result<ItemFate, CommandError> {
-    match made.and_then(|made| made_item(run, world, item, made, styles)) {
+    match made.and_then(|made| write_made_item(run, world, item, made, styles)) {
         Ok(()) => Ok(ItemFate::Made),
         Err(error) => match error.item_failure() {
             Some(failure) => {
@@ -46,7 +46,7 @@ pub(super) fn keep_item(
 }
 
 /// Writes an item that was made: its path with its pictures, then a line for each text.
-fn made_item(
+fn write_made_item(
     run: &mut RunFolder,
     world: RunPlatform<'_>,
     item: &RunItem,

@@ -20,7 +20,7 @@ use crate::{
     output::CommandOutput,
     plan::RunPlan,
     platforms::has_hops,
-    run_folder::{RunFolder, WorldData, continued_settings, id_of, is_begun, keep_id, refuse_file},
+    run_folder::{RunFolder, WorldData, continued_settings, is_begun, keep_id, refuse_file, run_id_or_fresh},
     settings::{RunJob, RunSettings},
     settings_file, stores,
     team::RoleTeam,
@@ -109,8 +109,8 @@ pub fn generate_into(folder: &Path, job: &RunJob, output: &CommandOutput) -> Res
     // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.
     refuse_file(folder)?;
     let begun = is_begun(folder).then(|| RunFolder::open(folder, settings)).transpose()?;
-    let id = id_of(folder, "run")?;
-    watch::is_of_run(&id);
+    let id = run_id_or_fresh(folder, "run")?;
+    watch::record_run_id(&id);
     let calls = plan.models.open_calls(&id, output)?;
     let RunPlan { items, styles, .. } = plan;
     let lookout = DetectorLookout::from_settings(settings, calls.as_ref(), styles)?;
@@ -123,7 +123,7 @@ pub fn generate_into(folder: &Path, job: &RunJob, output: &CommandOutput) -> Res
     let data = WorldData::from_folder(folder)?;
 
     let shop = ItemWorkshop { plan, settings, calls: calls.as_ref(), team: &team, scenes: KnownScenes::new() };
-    let _graceful = interrupt::finish_first(calls.as_ref());
+    let _graceful = interrupt::finish_items_first(calls.as_ref());
     let stopped = shop.fill_folder(&mut run, &data, items, output)?;
     if let Some(calls) = &calls {
         calls.write_recording()?;

@@ -86,7 +86,7 @@ impl PreparedRun {
         let plan = self.plan_run(output)?;
         let settings = plan.settings_with_hashes()?;
         if self.is_new {
-            scene_selection::tell_of_episodes(&settings, &plan.items, self.platform.as_ref(), output)?;
+            scene_selection::report_unusable_scenes(&settings, &plan.items, self.platform.as_ref(), output)?;
             refuse_impossible_paths(&plan.items, &settings, self.platform.as_ref())?;
         }
         Ok((plan, settings))

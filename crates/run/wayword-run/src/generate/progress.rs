@@ -51,7 +51,7 @@ impl<'a> RunProgress<'a> {
         lookout: Option<&'a DetectorLookout>,
     ) -> Self {
         // With models an item may take minutes, so calls are a better measure of the progress.
-        let bar = if calls.is_some() { output.progress_by_calls(items) } else { output.progress_bar(items, "items") };
+        let bar = if calls.is_some() { output.call_progress_bar(items) } else { output.progress_bar(items, "items") };
         bar.set_position((items - left) as u64);
         // Items of earlier commands must not count for the pace.
         bar.reset_eta();
@@ -73,7 +73,7 @@ impl<'a> RunProgress<'a> {
     }
 
     /// Counts an item by its outcome. Returns whether the run goes on.
-    pub(super) fn takes_note(&mut self, run: &mut RunFolder, fate: ItemFate) -> Result<bool, CommandError> {
+    pub(super) fn count_item(&mut self, run: &mut RunFolder, fate: ItemFate) -> Result<bool, CommandError> {
         let failed = match fate {
             ItemFate::Stopped(error) => {
                 // A call that an interrupt cut off looks like one that the ledger refused to send.
@@ -95,8 +95,8 @@ impl<'a> RunProgress<'a> {
             run.sync()?;
             self.unflushed = 0;
         }
-        let is_lost = self.losses.are_enough(failed.as_ref().map(|(failure, _)| *failure));
-        let lacks = run.walks.is_empty() && self.lacks_for_all(failed.as_ref());
+        let is_lost = self.losses.ends_command(failed.as_ref().map(|(failure, _)| *failure));
+        let lacks = run.walks.is_empty() && self.all_lack_same_thing(failed.as_ref());
         self.stop = interrupt_stop().filter(|_| self.left > 0).or_else(|| {
             let (_, reason) = failed?;
             let (what, exit) = match (is_lost, lacks) {
@@ -114,7 +114,7 @@ impl<'a> RunProgress<'a> {
 
     /// Whether the first items of a run all failed because the same thing is missing (for example a model that sees), so that
     /// the other items would fail too.
-    fn lacks_for_all(&mut self, failed: Option<&(FailureKind, String)>) -> bool {
+    fn all_lack_same_thing(&mut self, failed: Option<&(FailureKind, String)>) -> bool {
         self.same_lack = match (self.same_lack.take(), failed) {
             (Some((_, 0)), Some((FailureKind::Missing, reason))) => Some((reason.clone(), 1)),
             (Some((same, number)), Some((FailureKind::Missing, reason))) if same == *reason => Some((same, number + 1)),
@@ -143,5 +143,5 @@ impl<'a> RunProgress<'a> {
 
 fn interrupt_stop() -> Option<RunStop> {
     let reason = "interrupted\nhint: give the same command again; it keeps the finished items and makes the others";
-    interrupt::is_asked().then(|| RunStop { reason: reason.to_owned(), exit: Exit::Interrupted })
+    interrupt::is_interrupted().then(|| RunStop { reason: reason.to_owned(), exit: Exit::Interrupted })
 }

@@ -71,7 +71,7 @@ pub fn sample_claims(
                 let make_sample = |claim: PlaceClaim, wrong: bool| {
                     let mut sight = see(&claim);
                     if let ClaimSight::Missed(missed) = &mut sight {
-                        missed.keep_company(sights[..place].iter().chain(&sights[place + 1..]));
+                        missed.add_company_features(sights[..place].iter().chain(&sights[place + 1..]));
                     }
                     ClaimSample { walk: at, text: number, claim, wrong, sight }
                 };
@@ -98,8 +98,8 @@ pub fn sample_claims(
                 }
                 let pool = if rng.random_bool(0.5) { &by_scene[&walk.path.scene] } else { &all };
                 let mut drawn = (0..MAX_DRAWS).filter_map(|_| pool.choose(&mut rng));
-                let drawn = drawn.find(|(from, other)| *from != at && is_other(claim, other));
-                samples.extend(drawn.map(|(_, other)| make_sample(place_claim(claim, other), true)));
+                let drawn = drawn.find(|(from, other)| *from != at && can_replace(claim, other));
+                samples.extend(drawn.map(|(_, other)| make_sample(move_claim(claim, other), true)));
             }
         }
     }
@@ -113,13 +113,13 @@ pub fn is_known(claim: &PlaceClaim) -> bool {
 }
 
 /// Whether a claim may replace another one and has another name.
-fn is_other(claim: &PlaceClaim, other: &PlaceClaim) -> bool {
+fn can_replace(claim: &PlaceClaim, other: &PlaceClaim) -> bool {
     let same = names_agree(&claim.name, &other.name) || same_room(&claim.name, &other.name);
     claim.is_only_room() == other.is_only_room() && !same
 }
 
 /// The claim `other`, put into the place of `claim` in its text.
-fn place_claim(claim: &PlaceClaim, other: &PlaceClaim) -> PlaceClaim {
+fn move_claim(claim: &PlaceClaim, other: &PlaceClaim) -> PlaceClaim {
     PlaceClaim { event: claim.event, span: claim.span, relation: claim.relation, ..other.clone() }
 }
 

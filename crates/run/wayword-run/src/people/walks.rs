@@ -14,7 +14,7 @@ use wayword_language::{
     lexicon::normalise_name,
     reading::{TextReading, read_instruction},
 };
-use wayword_world::{path_of, survey_scene};
+use wayword_world::{path_for_episode, survey_scene};
 
 /// The surveys of the scenes.
 pub type SceneSurveys = BTreeMap<SceneId, ViewpointSurvey>;
@@ -75,9 +75,10 @@ pub fn read_people_walks(
     let buildings: BTreeMap<&SceneId, Arc<BuildingInventory>> =
         surveys.iter().map(|(scene, survey)| (scene, Arc::new(BuildingInventory::from_survey(survey)))).collect();
     let walk = |episode: &Episode| {
-        let path = path_of(platform, &episode.id, &episode.scene, &episode.viewpoints, episode.start_heading, None)?;
+        let path =
+            path_for_episode(platform, &episode.id, &episode.scene, &episode.viewpoints, episode.start_heading, None)?;
         let views = path_panoramas(platform, &path)?;
-        let evidence = Evidence::from_labels(&path, &views).unwrap_or_else(|| Evidence::of_path_alone(&path));
+        let evidence = Evidence::from_labels(&path, &views).unwrap_or_else(|| Evidence::for_path_alone(&path));
         let around = PathSurroundings::around_path(&buildings[&episode.scene], &path);
         let things =
             evidence.frames.iter().flat_map(|frame| frame.things.iter().map(|thing| normalise_name(&thing.name)));

@@ -92,7 +92,7 @@ impl RunEstimate {
     /// The estimate for the whole run. With `chunk`, the number of items in a chunk, it includes the surplus of shards over a
     /// queue.
     pub(super) fn for_plan(plan: &RunPlan<'_>, chunk: Option<usize>) -> Result<Self, CommandError> {
-        Self::of_items(plan, plan.items.iter(), chunk)
+        Self::for_items(plan, plan.items.iter(), chunk)
     }
 
     /// All calls, where a detector makes `per_view` of them for each view.
@@ -101,7 +101,7 @@ impl RunEstimate {
     }
 
     /// The estimate for some of the items.
-    pub(super) fn of_items<'i>(
+    pub(super) fn for_items<'i>(
         plan: &RunPlan<'_>,
         items: impl Iterator<Item = &'i RunItem>,
         chunk: Option<usize>,

@@ -78,7 +78,7 @@ impl<'a> RunPlan<'a> {
     /// When a prompt cannot be used.
     pub fn calls_per_item(&self, items: &[&RunItem], lookout: Option<&DetectorLookout>) -> Result<f64, CommandError> {
         let sampled = &items[..items.len().min(SAMPLED_ITEMS)];
-        let calls = RunEstimate::of_items(self, sampled.iter().copied(), None)?
+        let calls = RunEstimate::for_items(self, sampled.iter().copied(), None)?
             .call_count(lookout.map_or(0, DetectorLookout::calls_per_view));
         Ok(calls as f64 / sampled.len().max(1) as f64)
     }

@@ -29,7 +29,7 @@ pub(super) fn open_tdw(package: Option<&Path>, at: Option<&str>) -> Result<Box<d
     let platform = TdwPlatform::new(options).map_err(|error| {
         CommandError::usage(error.to_string(), "free the port, or name another with --at 127.0.0.1:1072")
     })?;
-    Ok(Box::new(platform.heard_by(Arc::new(output::pass_on))))
+    Ok(Box::new(platform.heard_by(Arc::new(output::print_foreign_line))))
 }
 
 /// Connects to the VirtualHome executable at an address.
@@ -43,7 +43,7 @@ pub(super) fn open_virtualhome(at: Option<&str>) -> Result<Box<dyn Platform>, Co
         options.url = at.to_owned();
     }
     refuse_closed_port(&options.url)?;
-    Ok(Box::new(VirtualHomePlatform::new(options).heard_by(Arc::new(output::pass_on))))
+    Ok(Box::new(VirtualHomePlatform::new(options).heard_by(Arc::new(output::print_foreign_line))))
 }
 
 /// Refuses a closed port before a run begins.

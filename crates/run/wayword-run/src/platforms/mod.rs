@@ -23,7 +23,7 @@ use wayword_recording::RecordingPlatform;
 
 pub(crate) use listing::platform_names;
 pub use listing::{PLATFORMS, PlatformListing};
-pub use python_worlds::{forget_inside, put_inside};
+pub use python_worlds::{register_world, unregister_world};
 pub use remembering::RememberingPlatform;
 
 /// Number of scene surveys that a command keeps in memory.
@@ -85,7 +85,7 @@ pub fn open_and_warn(name: &str, place: PlatformPlace<'_>) -> Result<Box<dyn Pla
         && let Some(data) = place.data
         && let Some(lack) = MatterportPlatform::lack_of_objects(&stores::local_data(data)?)
     {
-        output::pass_on(&lack);
+        output::print_foreign_line(&lack);
     }
     Ok(platform)
 }
@@ -123,7 +123,7 @@ pub fn open_at(name: &str, place: PlatformPlace<'_>) -> Result<Box<dyn Platform>
             "give one of them",
         ));
     }
-    let data = || data.ok_or_else(|| no_data(name)).and_then(stores::local_data);
+    let data = || data.ok_or_else(|| missing_data_error(name)).and_then(stores::local_data);
     match name {
         "house" => Ok(Box::new(HousePlatform::default())),
         "matterport" => Ok(Box::new(MatterportPlatform::open(&data()?)?)),
@@ -132,13 +132,13 @@ pub fn open_at(name: &str, place: PlatformPlace<'_>) -> Result<Box<dyn Platform>
         "habitat" => {
             let connectivity = connectivity.map(Path::to_owned);
             let options = HabitatOptions { island, connectivity, ..HabitatOptions::default() };
-            Ok(Box::new(HabitatPlatform::open(&data()?, options, Arc::new(output::pass_on))?))
+            Ok(Box::new(HabitatPlatform::open(&data()?, options, Arc::new(output::print_foreign_line))?))
         }
         #[cfg(feature = "live")]
         "tdw" => live::open_tdw(place.data, place.at),
         #[cfg(feature = "live")]
         "virtualhome" => live::open_virtualhome(place.at),
-        "recording" => Ok(Box::new(RecordingPlatform::open(&data()?, Arc::new(output::pass_on))?)),
+        "recording" => Ok(Box::new(RecordingPlatform::open(&data()?, Arc::new(output::print_foreign_line))?)),
         absent if PLATFORMS.iter().any(|platform| platform.name == absent) => {
             Err(CommandError::not_built(format!("this build has no platform {absent}")))
         }
@@ -152,12 +152,12 @@ pub fn open_at(name: &str, place: PlatformPlace<'_>) -> Result<Box<dyn Platform>
 /// A platform that is another program, or an object of the program that this one runs in. If this program is killed, a second
 /// copy of it ends the other program.
 fn open_child(file: &Path) -> Result<Box<dyn Platform>, CommandError> {
-    if let Some(options) = python_worlds::find_inside(file)? {
-        return Ok(Box::new(process::ProcessPlatform::start(options, Arc::new(output::pass_on))?));
+    if let Some(options) = python_worlds::find_registered_world(file)? {
+        return Ok(Box::new(process::ProcessPlatform::start(options, Arc::new(output::print_foreign_line))?));
     }
     let options =
         process::ProcessOptions { guard: process::this_program(), ..process::ProcessOptions::read_world_file(file)? };
-    Ok(Box::new(process::ProcessPlatform::start(options, Arc::new(output::pass_on))?))
+    Ok(Box::new(process::ProcessPlatform::start(options, Arc::new(output::print_foreign_line))?))
 }
 
 /// The flag that a platform does not use, and one of the platforms that use it. Otherwise `--data` without `--platform`
@@ -173,7 +173,7 @@ fn unused_flag(name: &str, place: PlatformPlace<'_>) -> Option<(&'static str, &'
 }
 
 /// The error for a platform that was asked for without its data.
-pub fn no_data(name: &str) -> CommandError {
+pub fn missing_data_error(name: &str) -> CommandError {
     let needs = PLATFORMS.into_iter().find(|platform| platform.name == name).map_or("", |platform| platform.needs);
     CommandError::usage(format!("platform {name} needs --data"), format!("give {needs}"))
 }

@@ -16,14 +16,14 @@ static INSIDE_WORLDS: Mutex<BTreeMap<String, ProcessOptions>> = Mutex::new(BTree
 
 /// Registers a world under a name, and replaces an older one of that name. Returns the value of `--data` for it.
 #[must_use]
-pub fn put_inside(name: &str, options: ProcessOptions) -> PathBuf {
+pub fn register_world(name: &str, options: ProcessOptions) -> PathBuf {
     let data = format!("{PYTHON_SCHEME}{name}");
     lock_worlds().insert(data.clone(), options);
     data.into()
 }
 
 /// Forgets a world.
-pub fn forget_inside(data: &Path) {
+pub fn unregister_world(data: &Path) {
     lock_worlds().remove(&*data.to_string_lossy());
 }
 
@@ -31,7 +31,7 @@ pub fn forget_inside(data: &Path) {
 ///
 /// # Errors
 /// When no world of that name is registered.
-pub(super) fn find_inside(data: &Path) -> Result<Option<ProcessOptions>, CommandError> {
+pub(super) fn find_registered_world(data: &Path) -> Result<Option<ProcessOptions>, CommandError> {
     let data = data.to_string_lossy();
     let Some(name) = data.strip_prefix(PYTHON_SCHEME) else { return Ok(None) };
     lock_worlds().get(&*data).cloned().map(Some).ok_or_else(|| {
@@ -67,12 +67,12 @@ mod tests {
 
     #[test]
     fn find_inside_opens_a_world_until_it_is_forgotten() {
-        let data = put_inside("Yard", ProcessOptions::for_inside_world("Yard", InsideWorld::new(answer)));
+        let data = register_world("Yard", ProcessOptions::for_inside_world("Yard", InsideWorld::new(answer)));
         let yard = open_named("process", Some(&data), None, None).unwrap();
         assert_eq!(yard.list_scenes().unwrap()[0].as_str(), "yard");
         let refused = yard.graph_for_scene(&yard.list_scenes().unwrap()[0]).err().unwrap().to_string();
         assert!(refused.contains("graph") && refused.contains("Yard"), "{refused}");
-        forget_inside(&data);
+        unregister_world(&data);
         let gone = open_named("process", Some(&data), None, None).err().unwrap().to_string();
         assert!(gone.contains("Yard") && gone.contains("hint: "), "{gone}");
     }

@@ -28,7 +28,7 @@ impl<'a> RememberingPlatform<'a> {
 
     /// The same without pictures, for callers that read only labels. The labels of all views of a run fit into memory.
     #[must_use]
-    pub fn labels_of(platform: &'a dyn Platform) -> Self {
+    pub fn for_labels(platform: &'a dyn Platform) -> Self {
         Self { has_pictures: false, ..Self::new(platform) }
     }
 

@@ -20,7 +20,7 @@ where
     if !path.exists() {
         return write_config(&path, settings);
     }
-    let before: S = config_of(folder)?;
+    let before: S = read_config(folder)?;
     if before == *settings { Ok(()) } else { Err(other_settings(folder, &before, settings)) }
 }
 
@@ -43,7 +43,7 @@ pub(super) fn keep_settings(folder: &Path, settings: &RunSettings) -> Result<(),
     if !path.exists() {
         return keep_config(folder, settings);
     }
-    let before: RunSettings = config_of(folder)?;
+    let before: RunSettings = read_config(folder)?;
     if settings.paths < before.paths {
         let problem =
             format!("{} holds a run of {} paths, but {} are asked for", folder.display(), before.paths, settings.paths);
@@ -102,7 +102,7 @@ pub fn continued_settings(folder: &Path, settings: &RunSettings) -> Result<RunSe
     if !is_begun(folder) {
         return Ok(settings.clone());
     }
-    let RunSettings { raised_from, left_out, .. } = config_of::<RunSettings>(folder)?.raised_to(settings);
+    let RunSettings { raised_from, left_out, .. } = read_config::<RunSettings>(folder)?.raised_to(settings);
     Ok(RunSettings { raised_from, left_out, ..settings.clone() })
 }
 
@@ -110,13 +110,13 @@ pub fn continued_settings(folder: &Path, settings: &RunSettings) -> Result<RunSe
 ///
 /// # Errors
 /// When the folder is not a run folder.
-pub fn settings_of(folder: &Path) -> Result<RunSettings, CommandError> {
+pub fn read_run_settings(folder: &Path) -> Result<RunSettings, CommandError> {
     refuse_unmerged(folder)?;
-    config_of(folder)
+    read_config(folder)
 }
 
 /// The table in `config.toml` of a folder, whatever its format.
-pub fn table_of(folder: &Path) -> Result<toml::Table, CommandError> {
+pub fn read_config_table(folder: &Path) -> Result<toml::Table, CommandError> {
     let path = folder.join(file::CONFIG);
     let text = text_file::read_text_file(&path, "read the folder's settings")?;
     toml::from_str(&text).map_err(|error| {
@@ -143,7 +143,7 @@ pub fn refuse_other_format<S: OwnFormat>(folder: &Path) -> Result<(), CommandErr
 }
 
 /// Reads `config.toml` of a folder.
-pub fn config_of<S: OwnFormat>(folder: &Path) -> Result<S, CommandError> {
+pub fn read_config<S: OwnFormat>(folder: &Path) -> Result<S, CommandError> {
     let path = folder.join(file::CONFIG);
     let text = text_file::read_text_file(&path, "read the run's settings")?;
     own_format::parse_document(&text).map_err(|unread| {

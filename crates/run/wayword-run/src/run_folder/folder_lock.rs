@@ -46,11 +46,11 @@ struct FolderOwner {
 /// # Errors
 /// When another process works in the folder, or may do so.
 pub fn lock_folder(folder: &Path) -> Result<FolderLock, CommandError> {
-    hold_on(folder, wayword_ledger::network_at(folder))
+    lock_on_file_system(folder, wayword_ledger::network_at(folder))
 }
 
 /// Locks a folder. `network` is the kind of its network file system; `None` on a disk of this machine.
-fn hold_on(folder: &Path, network: Option<&'static str>) -> Result<FolderLock, CommandError> {
+fn lock_on_file_system(folder: &Path, network: Option<&'static str>) -> Result<FolderLock, CommandError> {
     let path = folder.join(file::LOCK);
     let lock = File::options()
         .create(true)
@@ -85,7 +85,7 @@ impl OwnerMark {
                     file.write_all(text.as_bytes()).map_err(CommandError::io(&path, "write"))?;
                     return Ok(Self(path));
                 }
-                Err(error) if error.kind() == ErrorKind::AlreadyExists => give_way(folder, &path, kind, owner)?,
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => clear_dead_owner(folder, &path, kind, owner)?,
                 Err(source) => return Err(CommandError::Io { path, doing: "make", source }),
             }
         }
@@ -94,7 +94,12 @@ impl OwnerMark {
 }
 
 /// Removes the file `run.owner` of a process that is gone. Refuses if that process is alive or on another machine.
-fn give_way(folder: &Path, path: &Path, kind: &'static str, this_process: &FolderOwner) -> Result<(), CommandError> {
+fn clear_dead_owner(
+    folder: &Path,
+    path: &Path,
+    kind: &'static str,
+    this_process: &FolderOwner,
+) -> Result<(), CommandError> {
     let text = crate::text_file::read_text_file(path, "read who works in the folder")?;
     let by: Option<FolderOwner> = serde_json::from_str(&text).ok();
     match by {
@@ -156,12 +161,12 @@ mod tests {
     #[test]
     fn lock_folder_names_its_process_in_a_file_on_a_network() {
         let folder = tempfile::tempdir().unwrap();
-        let held = hold_on(folder.path(), Some("NFS")).unwrap();
+        let held = lock_on_file_system(folder.path(), Some("NFS")).unwrap();
         assert!(folder.path().join(file::OWNER).exists());
-        assert!(matches!(hold_on(folder.path(), Some("NFS")), Err(CommandError::Busy(_))));
+        assert!(matches!(lock_on_file_system(folder.path(), Some("NFS")), Err(CommandError::Busy(_))));
         drop(held);
         assert!(!folder.path().join(file::OWNER).exists());
-        drop(hold_on(folder.path(), None).unwrap());
+        drop(lock_on_file_system(folder.path(), None).unwrap());
         assert!(!folder.path().join(file::OWNER).exists(), "a disk of this machine needs none");
     }
 
@@ -170,12 +175,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let far = FolderOwner { host: "node17".into(), place: "another".into(), ..FolderOwner::this_process() };
         let path = left_behind(folder.path(), &far).unwrap();
-        let error = hold_on(folder.path(), Some("Lustre")).unwrap_err();
+        let error = lock_on_file_system(folder.path(), Some("Lustre")).unwrap_err();
         let told = error.to_string();
         assert!(["node17", "Lustre", "run.owner", "remove"].iter().all(|part| told.contains(part)), "{told}");
         assert_eq!(error.exit_code(), crate::error::Exit::Busy);
         fs::remove_file(path).unwrap();
-        assert!(hold_on(folder.path(), Some("Lustre")).is_ok());
+        assert!(lock_on_file_system(folder.path(), Some("Lustre")).is_ok());
     }
 
     #[test]
@@ -183,16 +188,16 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let gone = FolderOwner { began: "1".into(), ..FolderOwner::this_process() };
         left_behind(folder.path(), &gone).unwrap();
-        assert!(hold_on(folder.path(), Some("NFS")).is_ok(), "its number is another process's now");
+        assert!(lock_on_file_system(folder.path(), Some("NFS")).is_ok(), "its number is another process's now");
         let (other, we) = (std::os::unix::process::parent_id(), FolderOwner::this_process());
         left_behind(folder.path(), &FolderOwner { pid: other, began: process_start(other).unwrap(), ..we }).unwrap();
-        assert!(matches!(hold_on(folder.path(), Some("NFS")), Err(CommandError::Busy(_))));
+        assert!(matches!(lock_on_file_system(folder.path(), Some("NFS")), Err(CommandError::Busy(_))));
     }
 
     #[test]
     fn lock_folder_refuses_a_half_written_owner_file() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join(file::OWNER), "{\"host\": \"no").unwrap();
-        assert!(matches!(hold_on(folder.path(), Some("NFS")), Err(CommandError::BusyElsewhere { .. })));
+        assert!(matches!(lock_on_file_system(folder.path(), Some("NFS")), Err(CommandError::BusyElsewhere { .. })));
     }
 }

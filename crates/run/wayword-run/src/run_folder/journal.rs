@@ -30,7 +30,7 @@ impl Journal {
     /// When it cannot be read, or a complete line is not a record of its kind.
     pub fn open(path: &Path, key_of: fn(&Value) -> Option<String>) -> Result<Self, CommandError> {
         let file = open_appending(path)?;
-        let whole = whole_bytes(path).map_err(CommandError::io(path, "read"))?;
+        let whole = whole_line_bytes(path).map_err(CommandError::io(path, "read"))?;
         file.set_len(whole).map_err(CommandError::io(path, "cut off the incomplete last line of"))?;
         let mut keys = IndexSet::new();
         lines::each_line(path, |line| {
@@ -150,7 +150,7 @@ fn copy_spans(from: &Path, to: &Path, spans: &[(usize, u64, u64)]) -> io::Result
 }
 
 /// The length of a file up to the end of its last whole line.
-fn whole_bytes(path: &Path) -> io::Result<u64> {
+fn whole_line_bytes(path: &Path) -> io::Result<u64> {
     let mut reader = BufReader::new(File::open(path)?);
     let (mut read, mut whole) = (0, 0);
     loop {

@@ -28,11 +28,13 @@ use wayword_core::hex_text;
 use wayword_world::files;
 
 use config::keep_settings;
-pub use config::{config_of, config_text, differing_keys, keep_config, refuse_other_format, refuse_unmerged, table_of};
-pub use config::{continued_settings, is_begun, settings_of};
+pub use config::{
+    config_text, differing_keys, keep_config, read_config, read_config_table, refuse_other_format, refuse_unmerged,
+};
+pub use config::{continued_settings, is_begun, read_run_settings};
 pub use folder_lock::{FolderLock, lock_folder};
 pub use journal::{Journal, read_lines};
-pub use record::{FailedItem, PathMap, RejectedText, WalkRecord, extra_fields, name_of_text, text_name};
+pub use record::{FailedItem, PathMap, RejectedText, WalkRecord, extra_fields, text_file_name, text_name};
 pub use world_data::WorldData;
 pub(crate) use world_data::scene_hashes;
 
@@ -98,7 +100,7 @@ impl RunFolder {
     ///
     /// # Errors
     /// When it holds a run with other settings, or it cannot be written.
-    pub(crate) fn of_worker(folder: &Path, settings: &RunSettings) -> Result<Self, CommandError> {
+    pub(crate) fn open_for_chunk(folder: &Path, settings: &RunSettings) -> Result<Self, CommandError> {
         fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the chunk's folder"))?;
         Self::with_lock(folder, settings, None)
     }
@@ -108,7 +110,7 @@ impl RunFolder {
         keep_settings(folder, settings)?;
         let walks = folder.join(file::WALKS);
         Ok(Self {
-            failed_before: keys_of(&folder.join(file::ERRORS))?,
+            failed_before: failed_item_ids(&folder.join(file::ERRORS))?,
             without_pictures: without_pictures(&walks, &folder.join(file::FRAMES))?,
             walks: Journal::open(&walks, WalkRecord::key_of)?,
             instructions: Journal::open(&folder.join(file::INSTRUCTIONS), record::instruction_key)?,
@@ -206,14 +208,14 @@ pub fn refuse_file(folder: &Path) -> Result<(), CommandError> {
 ///
 /// # Errors
 /// When it cannot be read.
-pub fn id_of(folder: &Path, kind: &str) -> Result<String, CommandError> {
+pub fn run_id_or_fresh(folder: &Path, kind: &str) -> Result<String, CommandError> {
     Ok(kept_id(folder)?.unwrap_or_else(|| fresh_id(kind)))
 }
 
 /// Keeps in a folder the name under which the ledger keeps its spending.
 ///
 /// # Errors
-/// When it cannot be read or written, or another process has kept its own since [`id_of`] gave this one.
+/// When it cannot be read or written, or another process has kept its own since [`run_id_or_fresh`] gave this one.
 pub fn keep_id(folder: &Path, id: &str) -> Result<(), CommandError> {
     match kept_id(folder)? {
         None => write_whole(&folder.join(file::ID), id),
@@ -229,7 +231,7 @@ fn kept_id(folder: &Path) -> Result<Option<String>, CommandError> {
 }
 
 /// The items in `errors.jsonl`.
-fn keys_of(errors: &Path) -> Result<BTreeSet<String>, CommandError> {
+fn failed_item_ids(errors: &Path) -> Result<BTreeSet<String>, CommandError> {
     let mut keys = BTreeSet::new();
     lines::each_line(errors, |line| {
         keys.extend(FailedItem::key_of(&line.parse()?));

@@ -92,7 +92,7 @@ const NUMBER_FIELD: &str = "number";
 /// Identifies the text of a record within its item, as a part of file names: its style, and its number where the style has
 /// several.
 #[must_use]
-pub fn name_of_text(record: &InstructionRecord) -> String {
+pub fn text_file_name(record: &InstructionRecord) -> String {
     let style = &record.instruction.style;
     match record.extra.get(NUMBER_FIELD).and_then(Value::as_u64) {
         Some(number) if number > 0 => format!("{style}-{number}"),
@@ -101,14 +101,14 @@ pub fn name_of_text(record: &InstructionRecord) -> String {
 }
 
 /// The name within its item ([`text_name`]) of the text in a line.
-fn name_of(value: &Value) -> Option<String> {
+fn text_name_in_line(value: &Value) -> Option<String> {
     let number = value.get(NUMBER_FIELD).and_then(Value::as_u64).and_then(|number| usize::try_from(number).ok());
     Some(text_name(value.get("style")?.as_str()?, number.unwrap_or(0)))
 }
 
 /// The key of a line of `instructions.jsonl`.
 pub(super) fn instruction_key(value: &Value) -> Option<String> {
-    Some(line_key(value.get("path")?.get("id")?.as_str()?, &name_of(value)?))
+    Some(line_key(value.get("path")?.get("id")?.as_str()?, &text_name_in_line(value)?))
 }
 
 /// The item of a key, and the name of its text if it has one.
@@ -133,7 +133,7 @@ impl WalkRecord {
 impl RejectedText {
     /// The key of a line of `rejected.jsonl`.
     pub(super) fn key_of(value: &Value) -> Option<String> {
-        Some(line_key(value.get("item")?.as_str()?, &name_of(value)?))
+        Some(line_key(value.get("item")?.as_str()?, &text_name_in_line(value)?))
     }
 }
 

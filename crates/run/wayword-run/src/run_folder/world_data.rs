@@ -64,7 +64,7 @@ impl WorldData {
 
     /// The same, and scenes that differ from those of a plan are refused as well.
     #[must_use]
-    pub(crate) fn expecting_plan(self, planned: &BTreeMap<String, String>, file: &Path) -> Self {
+    pub(crate) fn with_planned_hashes(self, planned: &BTreeMap<String, String>, file: &Path) -> Self {
         Self { planned: Some((planned.clone(), file.to_owned())), ..self }
     }
 
@@ -136,8 +136,8 @@ impl SceneHashes {
         let mut hash = Sha256::new();
         for file in files {
             if !self.files.contains_key(file) {
-                let file_hash =
-                    hash_of(file).map_err(|error| PlatformError::for_unread_file(file, &error, UNREADABLE_HINT))?;
+                let file_hash = hash_scene_file(file)
+                    .map_err(|error| PlatformError::for_unread_file(file, &error, UNREADABLE_HINT))?;
                 self.files.insert(file.clone(), file_hash);
             }
             hash.update(file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default());
@@ -148,7 +148,7 @@ impl SceneHashes {
 }
 
 /// The hash of a file. Of a large file it takes only samples, which are enough to recognise another file.
-fn hash_of(path: &Path) -> io::Result<String> {
+fn hash_scene_file(path: &Path) -> io::Result<String> {
     // Reading a pipe would wait for ever.
     if !fs::metadata(path)?.is_file() {
         return Err(io::Error::other("it is not a plain file"));
@@ -181,13 +181,13 @@ mod tests {
         let path = folder.path().join("scene.glb");
         let mut bytes = vec![7; MAX_WHOLE_BYTES as usize + 5];
         fs::write(&path, &bytes).unwrap();
-        let before = hash_of(&path).unwrap();
-        assert_eq!(hash_of(&path).unwrap(), before);
+        let before = hash_scene_file(&path).unwrap();
+        assert_eq!(hash_scene_file(&path).unwrap(), before);
         *bytes.last_mut().unwrap() = 8;
         fs::write(&path, &bytes).unwrap();
-        let other_end = hash_of(&path).unwrap();
+        let other_end = hash_scene_file(&path).unwrap();
         bytes.push(8);
         fs::write(&path, &bytes).unwrap();
-        assert!(other_end != before && hash_of(&path).unwrap() != before);
+        assert!(other_end != before && hash_scene_file(&path).unwrap() != before);
     }
 }

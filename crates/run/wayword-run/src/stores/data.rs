@@ -54,7 +54,7 @@ pub(super) fn fetch_data(address: &str) -> Result<PathBuf, CommandError> {
 }
 
 /// The folder for the data of an address, in the user's cache and named by a hash of the address.
-fn folder_of(address: &str) -> Result<PathBuf, CommandError> {
+fn cache_folder_for(address: &str) -> Result<PathBuf, CommandError> {
     let strategy = etcetera::choose_base_strategy().map_err(|_| {
         CommandError::usage("there is no home folder to fetch the data to", "set HOME or XDG_CACHE_HOME")
     })?;

@@ -29,7 +29,7 @@ impl RunPlace {
             return Ok(Self { named_path: named.to_owned(), folder: named.to_owned(), cloud_run: None });
         };
         let folder = std::env::temp_dir().join(format!("wayword-{}", worker_name()));
-        own_folder(&folder).map_err(CommandError::io(&folder, "make a folder for temporary files"))?;
+        make_private_folder(&folder).map_err(CommandError::io(&folder, "make a folder for temporary files"))?;
         let stored = CloudRun::open(address, &folder)?;
         let place = Self { named_path: named.to_owned(), folder, cloud_run: Some(stored) };
         place.with_store(|stored| {
@@ -136,7 +136,7 @@ impl RunPlace {
 }
 
 /// Makes a folder that only this user can read. Fails if it exists.
-fn own_folder(folder: &Path) -> io::Result<()> {
+fn make_private_folder(folder: &Path) -> io::Result<()> {
     let mut builder = fs::DirBuilder::new();
     #[cfg(unix)]
     std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);

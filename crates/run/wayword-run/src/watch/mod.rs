@@ -95,6 +95,6 @@ fn within_worker_span(
 }
 
 /// Records the run's id in the current span, which must be the worker's.
-pub(crate) fn is_of_run(id: &str) {
+pub(crate) fn record_run_id(id: &str) {
     Span::current().record("run", id);
 }

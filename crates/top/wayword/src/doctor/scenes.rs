@@ -35,7 +35,7 @@ pub(super) fn scene_findings(examined: &Result<Vec<SceneCondition>, CommandError
         Err(error) => return vec![problem_finding("scenes", error)],
     };
     let good = conditions.iter().filter(|found| found.unusable.is_none()).count();
-    let mut findings: Vec<DoctorFinding> = conditions.iter().flat_map(of_scene).collect();
+    let mut findings: Vec<DoctorFinding> = conditions.iter().flat_map(findings_for_scene).collect();
     findings.push(DoctorFinding {
         state: if good == 0 { DoctorGrade::Problem } else { DoctorGrade::Ok },
         about: "scenes".to_owned(),
@@ -46,7 +46,7 @@ pub(super) fn scene_findings(examined: &Result<Vec<SceneCondition>, CommandError
 }
 
 /// A finding for a scene, and one for each thing that it lacks.
-fn of_scene(found: &SceneCondition) -> Vec<DoctorFinding> {
+fn findings_for_scene(found: &SceneCondition) -> Vec<DoctorFinding> {
     let about = format!("scene {}", found.scene);
     let lack_finding = |state, lack: &SceneLack| DoctorFinding {
         state,

@@ -74,7 +74,7 @@ pub(super) fn write_episodes(
         match act_record(record, &scenes)? {
             Ok(actions) => {
                 acted.insert(episode.id.clone(), actions);
-                episodes.push(in_this_set(episode, record, &scenes)?);
+                episodes.push(place_in_set(episode, record, &scenes)?);
                 kept.push(record.clone());
             }
             Err(reason) => failed.push(format!("{}: {reason}", record.path.id)),
@@ -107,7 +107,7 @@ fn act_record(
 }
 
 /// Sets the scene of an episode relative to the folder of the set, and the distance over the house's navmesh.
-fn in_this_set(
+fn place_in_set(
     mut episode: Episode,
     record: &InstructionRecord,
     scenes: &WalkingScenes,

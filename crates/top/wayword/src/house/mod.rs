@@ -57,7 +57,7 @@ struct WrittenEpisodes {
 pub(crate) fn run_house(args: &HouseArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     let given = args.run.as_deref().map(|run| read_records(run, args.style.as_deref())).transpose()?;
     let seeds = match &given {
-        Some(records) => seeds_of(records)?,
+        Some(records) => record_seeds(records)?,
         None => house_seeds(args)?,
     };
     fs::create_dir_all(&args.out).map_err(CommandError::io(&args.out, "make the folder"))?;
@@ -143,7 +143,7 @@ fn read_records(run: &Path, style: Option<&str>) -> Result<Vec<InstructionRecord
 }
 
 /// The seeds of the houses in records.
-fn seeds_of(records: &[InstructionRecord]) -> Result<Vec<u64>, CommandError> {
+fn record_seeds(records: &[InstructionRecord]) -> Result<Vec<u64>, CommandError> {
     let seeds = records.iter().map(|record| {
         seed_of(record.path.scene.as_str()).ok_or_else(|| {
             let problem = format!("scene {} is no generated house", record.path.scene);

@@ -9,7 +9,7 @@ use std::{
     io::{self, BufWriter, ErrorKind, Write},
     path::{Path, PathBuf},
 };
-use wayword_queue::{ChunkPlan, ChunkRecord, chunk_folder, done_of};
+use wayword_queue::{ChunkPlan, ChunkRecord, chunk_folder, read_done_mark};
 use wayword_run::{
     count::count_phrase,
     error::{CommandError, Exit},
@@ -48,7 +48,7 @@ pub(super) fn run_merge(args: &RunsMerge, output: &CommandOutput) -> Result<Exit
     let plan = ChunkPlan::for_folder(folder)?;
     let mut done = Vec::new();
     for chunk in 0..plan.chunk_count() {
-        done.extend(done_of(folder, chunk)?);
+        done.extend(read_done_mark(folder, chunk)?);
     }
     let missing = plan.chunk_count() - done.len();
     if missing > 0 && !args.partial {

@@ -9,7 +9,9 @@ use std::{
     thread,
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
-use wayword_queue::{ChunkPlan, ChunkRecord, HEARTBEAT_LEASE, HeartbeatEntry, dead_of, done_of, read_heartbeats};
+use wayword_queue::{
+    ChunkPlan, ChunkRecord, HEARTBEAT_LEASE, HeartbeatEntry, read_dead_mark, read_done_mark, read_heartbeats,
+};
 use wayword_run::{
     count::count_phrase,
     error::{CommandError, Exit},
@@ -110,7 +112,7 @@ pub(super) fn run_status(args: &RunsStatus, show: impl Fn(&RunStatus)) -> Result
         let mut status = RunStatus { run: args.run.display().to_string(), ..RunStatus::from_folder(folder, &plan)? };
         #[cfg(feature = "queue")]
         if let Some(queue) = &queue {
-            status.add_worker(queue.read_status()?);
+            status.use_queue_status(queue.read_status()?);
         }
         #[cfg(not(feature = "queue"))]
         let _ = &queue;
@@ -130,11 +132,11 @@ impl RunStatus {
         let mut status = Self { items: plan.items.len(), chunks: plan.chunk_count(), ..Self::default() };
         let mut done = Vec::new();
         for chunk in 0..plan.chunk_count() {
-            if let Some(record) = done_of(folder, chunk)? {
+            if let Some(record) = read_done_mark(folder, chunk)? {
                 status.items_done += plan.chunk_range(chunk).len();
                 status.count_done(&record);
                 done.push(record);
-            } else if let Some(reason) = dead_of(folder, chunk)? {
+            } else if let Some(reason) = read_dead_mark(folder, chunk)? {
                 status.dead.insert(chunk, reason);
             }
         }
@@ -174,7 +176,7 @@ impl RunStatus {
 
     /// Replaces the counts of chunks by those of the queue's database, which are more exact, and adds its workers.
     #[cfg(feature = "queue")]
-    fn add_worker(&mut self, queue: wayword_queue::QueueStatus) {
+    fn use_queue_status(&mut self, queue: wayword_queue::QueueStatus) {
         (self.open, self.running, self.done) = (queue.open, queue.running, queue.done);
         self.dead = queue.dead.into_iter().collect();
         self.retries = queue.retries.into_iter().collect();

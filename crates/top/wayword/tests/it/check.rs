@@ -6,7 +6,7 @@ use crate::common::{Building, Ran};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_checks::Evidence;
-use wayword_run::{pipeline::path_panoramas, platforms, run_folder::settings_of};
+use wayword_run::{pipeline::path_panoramas, platforms, run_folder::read_run_settings};
 use wayword_synthesis::style::built_in;
 use wayword_testkit::{SCAN, viewpoint_id};
 
@@ -369,7 +369,7 @@ fn a_wrong_colour_is_caught_in_a_house() {
         .wayword(&["generate", "--paths", "1", "--scan", "house2-3", "--seed", "3", "--style", "r2r", "--out", "run"]);
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let record = building.records("run").remove(0);
-    let platform = platforms::open_platform(&settings_of(&building.path("run")).unwrap()).unwrap();
+    let platform = platforms::open_platform(&read_run_settings(&building.path("run")).unwrap()).unwrap();
     let views = path_panoramas(platform.as_ref(), &record.path).unwrap();
     let evidence = Evidence::from_labels(&record.path, &views).unwrap();
     let mut colours: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();

@@ -17,7 +17,7 @@ use wayword_run::{
     error::CommandError,
     generate::generate_into,
     output::CommandOutput,
-    run_folder::{Journal, RunFolder, WalkRecord, read_lines, settings_of},
+    run_folder::{Journal, RunFolder, WalkRecord, read_lines, read_run_settings},
     settings::{AskedPlatform, AskedSettings, Draw, ProviderTables, RunJob, RunSettings, Service, Walks, Writing},
     styles,
 };
@@ -197,7 +197,7 @@ fn damaged_run_configs_are_used_or_refused() {
     let file = building.path("run/config.toml");
     let whole = fs::read_to_string(&file).unwrap();
     let counts = for_each_damaged(&file, &whole, |_, bytes| {
-        let read = settings_of(&building.path("run"));
+        let read = read_run_settings(&building.path("run"));
         if let Err(error) = &read {
             assert_names(error, "config.toml", bytes);
         }
@@ -312,7 +312,7 @@ fn a_house_is_not_looked_at_from_nowhere() {
     let mut line: Value = serde_json::from_str(&first_line(&building.path("run/instructions.jsonl"))).unwrap();
     line["path"]["frames"].as_array_mut().unwrap().truncate(1);
     line["mentions"] = json!([]);
-    let settings = settings_of(&building.path("run")).unwrap();
+    let settings = read_run_settings(&building.path("run")).unwrap();
     let file = building.path("told.jsonl");
     for (pointer, value) in [
         ("/path/frames/0/pose/position", json!([1e308, 0.0, 1.5])),

@@ -95,7 +95,7 @@ fn every_example_of_the_help_is_read_by_the_command_line() {
         left.extend(command.get_subcommands().cloned());
         let help = command.get_after_long_help().map(ToString::to_string).unwrap_or_default();
         let fenced = format!("```sh\n{}\n```\n", typed(&help));
-        for example in documents::commands_of(command.get_name(), &fenced) {
+        for example in documents::commands_in_markdown(command.get_name(), &fenced) {
             let words = ["wayword"].into_iter().chain(example.args.iter().map(String::as_str));
             assert_eq!(unreadable(words), None, "help of {}: {:?}", command.get_name(), example.args);
             examples += 1;
@@ -130,7 +130,7 @@ fn every_need_that_is_listed_is_some_command_s() {
 fn command_with_its_own_ledger_can_be_tested() {
     let needs_of = |line: &str| {
         let fenced = format!("```sh\n{line}\n```\n");
-        documents::commands_of("a test", &fenced).iter().any(|command| needs(command).is_some())
+        documents::commands_in_markdown("a test", &fenced).iter().any(|command| needs(command).is_some())
     };
     assert!(needs_of("wayword ledger show --limit 5"));
     assert!(!needs_of("wayword generate --paths 1 --ledger calls.db --out runs/a"));

@@ -77,14 +77,14 @@ impl DetectorFigures {
     /// The rates of a name: its own where enough was seen of it, or else those of its class, or else those of all names.
     #[must_use]
     pub fn rates_for(&self, name: &str) -> &DetectorRates {
-        let of_class = || self.classes.get(&class_of(name)?);
+        let of_class = || self.classes.get(&class_for_name(name)?);
         self.names.get(&normalise_name(name)).or_else(of_class).unwrap_or(&self.all)
     }
 
     /// Counts one name along one path: for each frame, whether the labels show it, and whether the detector found it.
     pub fn count_name(&mut self, name: &str, frames: &[(bool, bool)]) {
         self.all.count_frames(frames);
-        if let Some(class) = class_of(name) {
+        if let Some(class) = class_for_name(name) {
             self.classes.entry(class).or_default().count_frames(frames);
         }
         self.names.entry(normalise_name(name)).or_default().count_frames(frames);
@@ -100,7 +100,7 @@ impl DetectorFigures {
 }
 
 /// The class of a name that the lexicon has.
-fn class_of(name: &str) -> Option<String> {
+fn class_for_name(name: &str) -> Option<String> {
     find_thing(name).map(|thing| class_name(thing.class))
 }
 

@@ -25,9 +25,9 @@ pub fn judge_finds(rates: &DetectorRates, found: &[bool], before: f64) -> Detect
     if found.is_empty() {
         return DetectionVerdict::Open;
     }
-    let (there, absent) = (if_there(rates, found), if_absent(rates, found));
+    let (there, absent) = (chance_if_there(rates, found), chance_if_absent(rates, found));
     let after = before * there / (before * there + (1.0 - before) * absent);
-    let would_be_found = 1.0 - if_there(&without_alarms(rates), &vec![false; found.len()]);
+    let would_be_found = 1.0 - chance_if_there(&without_alarms(rates), &vec![false; found.len()]);
     if after >= SURE_PROBABILITY {
         DetectionVerdict::There
     } else if there <= absent * (1.0 - SURE_PROBABILITY) && would_be_found >= SURE_PROBABILITY {
@@ -43,14 +43,14 @@ fn without_alarms(rates: &DetectorRates) -> DetectorRates {
 }
 
 /// How probable the finds are where the thing is nowhere.
-fn if_absent(rates: &DetectorRates, found: &[bool]) -> f64 {
+fn chance_if_absent(rates: &DetectorRates, found: &[bool]) -> f64 {
     let alarm = rates.alarm();
     found.iter().map(|found| if *found { alarm } else { 1.0 - alarm }).product()
 }
 
 /// How probable the finds are where some run of frames shows the thing. Each run of a length is as probable as any other.
 /// A share of all things is never found, and the others are found independently from each frame that shows them.
-fn if_there(rates: &DetectorRates, found: &[bool]) -> f64 {
+fn chance_if_there(rates: &DetectorRates, found: &[bool]) -> f64 {
     let (alarm, blind) = (rates.alarm(), rates.blind_share());
     // Of the things to which the detector is not blind: the recall, and their share of all things.
     let (recall, seen_share) = ((rates.recall() / (1.0 - blind).max(f64::EPSILON)).min(1.0), 1.0 - blind);
@@ -71,5 +71,5 @@ fn if_there(rates: &DetectorRates, found: &[bool]) -> f64 {
             share * (0..places).map(|from| within(from, from + length)).sum::<f64>() / places as f64
         })
         .sum();
-    blind * if_absent(rates, found) + seen_share * seen
+    blind * chance_if_absent(rates, found) + seen_share * seen
 }

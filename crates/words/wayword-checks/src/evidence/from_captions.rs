@@ -16,7 +16,7 @@ impl Evidence {
             .zip(observations)
             .map(|(frame, seen)| {
                 let off_rad = |look: &CaptionedView| frame.pose.heading.turn_to(look.gaze.heading);
-                of_looks(&seen.looks, &off_rad)
+                frame_from_looks(&seen.looks, &off_rad)
             })
             .collect();
         move_doubtful_things(&mut frames);
@@ -59,7 +59,7 @@ fn move_doubtful_things(frames: &mut [FrameEvidence]) {
 
 /// The evidence of a frame from the captions of its views. `off_rad` gives the direction of a view from the heading,
 /// radians, positive right.
-fn of_looks(looks: &[CaptionedView], off_rad: &dyn Fn(&CaptionedView) -> f64) -> FrameEvidence {
+fn frame_from_looks(looks: &[CaptionedView], off_rad: &dyn Fn(&CaptionedView) -> f64) -> FrameEvidence {
     // A caption with a room and no object comes from a witness that looked; a caption without both may not.
     let has_looked = |look: &CaptionedView| look.caption.room.is_some() || !look.caption.sightings.is_empty();
     let knows_things = !looks.is_empty() && looks.iter().all(has_looked);
@@ -112,7 +112,7 @@ pub(super) fn denies_name(denied: &str, name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{CheckSubject, check_own, check_text};
+    use crate::{CheckSubject, check_own_text, check_text};
     use wayword_core::{
         Caption, CheckKind, DVec3, InstructionStyle, PathMotion, SceneId, Verdict, ViewGaze, path::PathStop,
     };
@@ -154,7 +154,7 @@ mod tests {
         let style = InstructionStyle { name: "s".into(), ..InstructionStyle::default() };
         let evidence = known();
         let subject = CheckSubject::closed_world(&evidence, &style, None);
-        let checked = if own { check_own(text, subject) } else { check_text(text, subject) };
+        let checked = if own { check_own_text(text, subject) } else { check_text(text, subject) };
         let of_places = checked.findings.iter().filter(|finding| finding.check == CheckKind::Landmarks);
         of_places.map(|finding| finding.verdict).max().unwrap()
     }

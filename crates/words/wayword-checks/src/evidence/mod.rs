@@ -145,7 +145,7 @@ impl Evidence {
 
     /// Evidence of a path without labels and captions: only turns and storeys can be checked.
     #[must_use]
-    pub fn of_path_alone(path: &Path) -> Self {
+    pub fn for_path_alone(path: &Path) -> Self {
         Self::from_frames(path, vec![FrameEvidence::default(); path.frames.len()], EvidenceSource::Nothing)
     }
 
@@ -155,13 +155,13 @@ impl Evidence {
     #[must_use]
     pub fn denies_thing(&self, name: &str) -> bool {
         let overlooked = || !(stands_out(name) && self.frames.iter().all(|frame| frame.lists_things));
-        self.names_no(name) && (!self.source.leaves_out() || self.is_denied(name) || !overlooked())
+        self.is_named_nowhere(name) && (!self.source.leaves_out() || self.is_denied(name) || !overlooked())
     }
 
     /// For a thing that no frame shows: whether every frame's witnesses spoke and none of them named it, not even as a
     /// guess, although they could have.
     #[must_use]
-    pub fn names_no(&self, name: &str) -> bool {
+    pub fn is_named_nowhere(&self, name: &str) -> bool {
         self.frames_without_things().is_empty() && self.could_name(name) && !self.may_show(name)
     }
 

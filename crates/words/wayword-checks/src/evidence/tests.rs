@@ -361,14 +361,14 @@ fn two_frames(source: EvidenceSource) -> Evidence {
 #[test]
 fn labels_deny_a_thing_unless_a_frame_is_unknown_or_guesses_it() {
     let labels = two_frames(EvidenceSource::Labels);
-    assert!(labels.denies_thing("piano") && labels.names_no("piano"));
+    assert!(labels.denies_thing("piano") && labels.is_named_nowhere("piano"));
     assert!(!labels.denies_thing("door") && !labels.denies_thing("wall"), "labels leave them out");
     let mut doors = labels.clone();
     doors.frames[0].things.push(seen("garage door"));
     assert!(doors.denies_thing("gate"), "these labels have doors");
     let mut unknown = labels.clone();
     unknown.frames[1].knows_things = false;
-    assert!(!unknown.denies_thing("piano") && !unknown.names_no("piano"));
+    assert!(!unknown.denies_thing("piano") && !unknown.is_named_nowhere("piano"));
     let mut guessed = labels;
     guessed.frames[1].perhaps.things.push(seen("piano"));
     assert!(!guessed.denies_thing("piano") && guessed.may_show("piano") && !guessed.may_show("clock"));
@@ -378,7 +378,7 @@ fn labels_deny_a_thing_unless_a_frame_is_unknown_or_guesses_it() {
 #[test]
 fn captions_deny_a_thing_that_a_witness_denied_or_that_stands_out() {
     let mut captions = two_frames(EvidenceSource::Captions);
-    assert!(!captions.denies_thing("sofa") && captions.names_no("sofa"));
+    assert!(!captions.denies_thing("sofa") && captions.is_named_nowhere("sofa"));
     for frame in &mut captions.frames {
         frame.lists_things = true;
     }
@@ -489,11 +489,11 @@ fn sources_have_names_and_some_leave_things_out() {
 #[test]
 fn evidence_of_a_path_alone_has_its_moves_and_storeys() {
     let path = path_through(&[(A, None), (B, None), ([2.0, 2.0, 1.5], None)]);
-    let evidence = Evidence::of_path_alone(&path);
+    let evidence = Evidence::for_path_alone(&path);
     assert_eq!((evidence.frames.len(), evidence.moves.len()), (3, 2));
     assert!(is_near(evidence.moves[1].turn_rad, std::f64::consts::FRAC_PI_2));
     assert_eq!((evidence.source, evidence.frames[2].level), (EvidenceSource::Nothing, Some(1)));
-    let video = Evidence::of_path_alone(&Path { motion: PathMotion::Unknown, ..path });
+    let video = Evidence::for_path_alone(&Path { motion: PathMotion::Unknown, ..path });
     assert_eq!((video.moves.len(), video.frames[2].level), (0, None));
 }
 

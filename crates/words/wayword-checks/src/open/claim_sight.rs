@@ -69,7 +69,7 @@ impl MissedClaim {
 
     /// Adds how the evidence treats the other places that the text claims: where the labels have those, they are
     /// good enough to miss this one too.
-    pub fn keep_company<'a>(&mut self, others: impl Iterator<Item = &'a ClaimSight>) {
+    pub fn add_company_features<'a>(&mut self, others: impl Iterator<Item = &'a ClaimSight>) {
         let (mut shown, mut missed) = (0.0, 0.0);
         for other in others {
             match other {

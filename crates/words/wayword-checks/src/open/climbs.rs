@@ -26,7 +26,7 @@ pub(super) fn check_climbs(text: &str, reading: &TextReading, subject: CheckSubj
     let tokens = split_tokens(text);
     let heights = PathHeights::from_subject(
         subject,
-        if tells_both_ways(reading) { MIN_CLIMB_SHARE_BOTH_WAYS } else { MIN_CLIMB_SHARE_ONE_WAY },
+        if climbs_both_ways(reading) { MIN_CLIMB_SHARE_BOTH_WAYS } else { MIN_CLIMB_SHARE_ONE_WAY },
     );
     let mut found = Vec::new();
     for event in &reading.events {
@@ -89,7 +89,7 @@ fn climb_wording(tokens: &[TextToken], span: [usize; 2]) -> ClimbWording {
 }
 
 /// Whether a text has a climb up and a climb down.
-fn tells_both_ways(reading: &TextReading) -> bool {
+fn climbs_both_ways(reading: &TextReading) -> bool {
     let tells = |way: ClimbDirection| {
         reading.events.iter().any(|event| match event.what {
             EventContent::Climb(climb) | EventContent::Steps(climb) => climb == way,

@@ -57,7 +57,7 @@ pub(super) fn repeated_motions(
         let is_other = motions[before].clause == motion.clause
             || motion.may_go_on
             || motion.which.iter().any(|word| !motions[before].which.contains(word))
-            || takes_up(tokens, &claims[motion.at])
+            || refers_back(tokens, &claims[motion.at])
             || is_restated(reading, &motions[before], motion)
             || leaves_between(&motions[before..=at]);
         // A thing that the labels do not list is passed no more than once, either.
@@ -126,8 +126,10 @@ fn find_motions<'a>(tokens: &'a [TextToken], reading: &TextReading, claims: &[Pl
         );
         let (_, going) = place(claim)?;
         let name = compared_name(claim);
-        let is_motion =
-            moves && !several.contains(&name) && !says_where(tokens, claim) && !stops_before(reading, claim);
+        let is_motion = moves
+            && !several.contains(&name)
+            && !only_locates_something(tokens, claim)
+            && !stops_before(reading, claim);
         let motion = TextMotion {
             at,
             relation: claim.relation,
@@ -185,7 +187,7 @@ fn is_article(word: &str) -> bool {
 
 /// Whether the words before a place only locate something: "the door just past the sofa", "the hallway that is past
 /// the stairs", "halfway down the stairs".
-fn says_where(tokens: &[TextToken], claim: &PlaceClaim) -> bool {
+fn only_locates_something(tokens: &[TextToken], claim: &PlaceClaim) -> bool {
     let at = tokens.partition_point(|token| token.span[0] < claim.span[0]);
     let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
     let of_at = at.saturating_sub(1 + usize::from(at > 0 && is_article(word(at - 1))));
@@ -250,7 +252,7 @@ fn leaves_between(motions: &[TextMotion<'_>]) -> bool {
 }
 
 /// Whether one of the nine words before a place refers back: "once past the sofa", "another door".
-fn takes_up(tokens: &[TextToken], claim: &PlaceClaim) -> bool {
+fn refers_back(tokens: &[TextToken], claim: &PlaceClaim) -> bool {
     let at = tokens.partition_point(|token| token.span[0] < claim.span[0]);
     let clause = tokens[..at].iter().rev().take_while(|token| token.is_word()).take(9);
     clause.into_iter().any(|token| TAKING_UP.contains(&token.word.as_str()))

@@ -57,7 +57,7 @@ fn sights_in_company(claims: &[PlaceClaim], subject: CheckSubject<'_>, weights: 
     let sights: Vec<ClaimSight> = claims.iter().map(alone).collect();
     let in_company = |(at, mut sight): (usize, ClaimSight)| {
         if let ClaimSight::Missed(missed) = &mut sight {
-            missed.keep_company(sights[..at].iter().chain(&sights[at + 1..]));
+            missed.add_company_features(sights[..at].iter().chain(&sights[at + 1..]));
         }
         sight
     };

@@ -22,7 +22,7 @@ const CLEAR_SIDE_DEG: f64 = 20.0;
 pub(super) fn unclear_side(place: &PlaceMention, subject: CheckSubject<'_>) -> Option<(Verdict, String)> {
     let side = place.side?;
     let name = &place.name;
-    if sides::is_unknown(place, subject.evidence) {
+    if sides::is_side_unknown(place, subject.evidence) {
         let reason = format!("the program cannot check on which side of the walker {name:?} is");
         return Some((Verdict::Unverified, reason));
     }

@@ -82,7 +82,7 @@ fn path(from: usize, to: usize) -> (Path, Evidence, PathSurroundings) {
     let frames: Vec<Frame> = Path::frames_along((from..=to).map(stop).collect(), None);
     let scene = SceneId::new("made-up").unwrap();
     let path = Path { id: "1".into(), scene, frames, motion: PathMotion::Known, target: None };
-    let mut evidence = Evidence::of_path_alone(&path);
+    let mut evidence = Evidence::for_path_alone(&path);
     for (frame, at) in evidence.frames.iter_mut().zip(from..) {
         frame.rooms = vec![BUILDING[at].0.to_owned()];
         frame.knows_things = true;
@@ -199,7 +199,7 @@ fn told_of(text: &str, points: &[(f64, f64, f64)]) -> (Verdict, Vec<String>) {
     let frames = Path::frames_along(points.iter().map(stop).collect(), None);
     let scene = SceneId::new("made-up").unwrap();
     let path = Path { id: "1".into(), scene, frames, motion: PathMotion::Known, target: None };
-    let evidence = Evidence::of_path_alone(&path);
+    let evidence = Evidence::for_path_alone(&path);
     let checked = check_text(text, CheckSubject::open_world(&evidence, &any(), WorldReach::default()));
     let wrong = checked.findings.iter().filter(|finding| finding.verdict == Verdict::Fail);
     (checked.verdict(), wrong.map(|finding| finding.reason.clone()).collect())

@@ -20,12 +20,12 @@ const NUMBER_REACH_WORDS: usize = 2;
 pub(super) fn find_unjudged(text: &str, reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
     let tokens = split_tokens(text);
     let unverified = |check, reason: &str, span| new_finding(check, Verdict::Unverified, reason, Some(span));
-    let mut found = turned_often(reading, subject);
+    let mut found = find_missing_turns(reading, subject);
     found.extend(stay_on_moving_path(reading, subject));
     let (mut clauses, mut turns) = (BTreeSet::new(), BTreeSet::new());
     for event in &reading.events {
         if event.denied {
-            let check = check_of(&event.what).filter(|_| !is_moment_too_far(&tokens, event.span));
+            let check = check_for_content(&event.what).filter(|_| !is_moment_too_far(&tokens, event.span));
             let reason = "the program does not check what a text denies";
             let first = check.filter(|_| clauses.insert(event.clause));
             found.extend(first.map(|check| unverified(check, reason, event.span)));
@@ -55,7 +55,7 @@ pub(super) fn find_unjudged(text: &str, reading: &TextReading, subject: CheckSub
 }
 
 /// The check that a statement belongs to.
-fn check_of(what: &EventContent) -> Option<CheckKind> {
+fn check_for_content(what: &EventContent) -> Option<CheckKind> {
     match what {
         EventContent::Place(_) => Some(CheckKind::Landmarks),
         EventContent::Turn(_) => Some(CheckKind::Turns),
@@ -113,7 +113,7 @@ fn repetition_spans(tokens: &[TextToken]) -> impl Iterator<Item = [usize; 2]> {
 }
 
 /// "Turn right five times", where the path turns to that side less often.
-fn turned_often(reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
+fn find_missing_turns(reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
     if !subject.evidence.motion.is_known() {
         return Vec::new();
     }

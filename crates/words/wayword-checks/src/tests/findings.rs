@@ -1,8 +1,8 @@
 //! Tests of how findings are put together: the worst one counts, and each check has one outcome.
 
 use crate::{
-    CheckSubject, CheckWorld, EvidenceSource, SeenThing, TextFindings, add_worse, check_own, check_text, objects_meant,
-    or_pass, pass_finding,
+    CheckSubject, CheckWorld, EvidenceSource, SeenThing, TextFindings, add_worse, check_own_text, check_text,
+    count_objects_meant, findings_or_pass, pass_finding,
     tests::{fails, flat, frame, on_video, passes, style, to_the_bedroom, walk},
 };
 use wayword_core::{CheckFinding, CheckKind, MentionKind, Verdict};
@@ -98,9 +98,9 @@ fn add_worse_keeps_the_worse_of_two_looks_at_the_same_words() {
 
 #[test]
 fn or_pass_passes_only_where_nothing_is_wrong() {
-    assert_eq!(or_pass(CheckKind::Form, Vec::new()), [pass_finding(CheckKind::Form)]);
+    assert_eq!(findings_or_pass(CheckKind::Form, Vec::new()), [pass_finding(CheckKind::Form)]);
     let wrong = vec![finding(CheckKind::Form, Verdict::Fail, None)];
-    assert_eq!(or_pass(CheckKind::Form, wrong.clone()), wrong);
+    assert_eq!(findings_or_pass(CheckKind::Form, wrong.clone()), wrong);
     let pass = pass_finding(CheckKind::Leak);
     assert_eq!((pass.check, pass.verdict, pass.reason.as_str(), pass.span), (CheckKind::Leak, Verdict::Pass, "", None));
 }
@@ -159,7 +159,7 @@ fn mentions_have_their_kind_their_words_and_their_frame() {
 fn check_own_replaces_what_it_failed_and_keeps_other_failures() {
     let video = on_video();
     let own = |text: &str| {
-        let checked = check_own(text, CheckSubject::closed_world(&video, &style(false), None));
+        let checked = check_own_text(text, CheckSubject::closed_world(&video, &style(false), None));
         checked.findings.iter().map(|finding| (finding.check, finding.verdict)).collect::<Vec<_>>()
     };
     use CheckKind::{Coverage, Floors, Form, Landmarks, Leak, Order, Turns};
@@ -180,7 +180,7 @@ fn check_own_is_strict_about_captions_unless_the_writer_saw_the_pictures() {
         let evidence = crate::Evidence { source, ..evidence.clone() };
         let subject = CheckSubject { writer_sees, ..CheckSubject::closed_world(&evidence, &style, None) };
         let text = "Walk past the clock.";
-        let checked = if own { check_own(text, subject) } else { check_text(text, subject) };
+        let checked = if own { check_own_text(text, subject) } else { check_text(text, subject) };
         checked.findings.iter().find(|finding| finding.check == CheckKind::Landmarks).unwrap().verdict
     };
     let captions = EvidenceSource::Captions;
@@ -202,7 +202,7 @@ fn objects_meant_needs_a_neighbour_that_is_there_and_close_in_the_text() {
     };
     let bed = SeenThing { name: "bed".into(), ..SeenThing::default() };
     evidence.frames[2].things = vec![lamp(Some("green"), Some(-1.0)), lamp(Some("white"), Some(1.0)), bed];
-    let count = |text: &str| objects_meant(&format!("Go to the bedroom and dust the {text}"), &evidence);
+    let count = |text: &str| count_objects_meant(&format!("Go to the bedroom and dust the {text}"), &evidence);
     // The words between are 24 bytes long, and then 28.
     assert_eq!(count("lamp that is closest to the bed"), 1);
     assert_eq!(count("lamp that is the closest to the bed"), 2);
@@ -229,7 +229,7 @@ fn objects_meant_counts_objects_of_unknown_colour_and_direction() {
     };
     let lamps = [lamp(None, &[], None), lamp(Some("green"), &["red"], Some(1.0)), lamp(Some("white"), &[], Some(-1.0))];
     evidence.frames[2].things = lamps.into();
-    let count = |text: &str| objects_meant(&format!("Go to the bedroom and dust the {text}"), &evidence);
+    let count = |text: &str| count_objects_meant(&format!("Go to the bedroom and dust the {text}"), &evidence);
     assert_eq!(count("lamp"), 3);
     assert_eq!(count("green lamp"), 2);
     assert_eq!(count("red lamp"), 2, "the second colour of a thing counts too");
@@ -243,7 +243,7 @@ fn an_empty_path_and_an_empty_text_are_checked_without_a_panic() {
     let nothing = walk(Vec::new(), &[]);
     for text in ["", "Walk past the sofa, turn left and go upstairs to the second floor.", "Stop at the bed."] {
         for evidence in [&nothing, &flat(1), &on_video()] {
-            let checked = check_own(text, CheckSubject::closed_world(evidence, &style(true), None));
+            let checked = check_own_text(text, CheckSubject::closed_world(evidence, &style(true), None));
             assert_ne!(checked.verdict(), Verdict::Pass, "{text}");
         }
     }

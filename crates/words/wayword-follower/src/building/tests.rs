@@ -78,12 +78,12 @@ fn told_apart_by_prefers_the_room_and_then_the_most_striking_thing() {
     add_thing(&mut building, "lamp", [0.0, 0.0, 1.0], &[0]);
     add_thing(&mut building, "piano", [0.0, 0.0, 1.0], &[0, 1]);
     add_thing(&mut building, "sofa", [0.0, 0.0, 1.0], &[0, 2]);
-    assert_eq!(building.told_apart_by(0, &[1]), Some("attic"));
-    assert_eq!(building.told_apart_by(0, &[]), Some("attic"));
-    assert_eq!(building.told_apart_by(0, &[1, 2]), Some("lamp"));
-    assert_eq!(building.told_apart_by(0, &[2]), Some("piano"), "one notices a piano before a lamp");
-    assert_eq!(building.told_apart_by(2, &[0]), None);
-    assert_eq!(building.told_apart_by(3, &[0]), None);
+    assert_eq!(building.distinguishing_name(0, &[1]), Some("attic"));
+    assert_eq!(building.distinguishing_name(0, &[]), Some("attic"));
+    assert_eq!(building.distinguishing_name(0, &[1, 2]), Some("lamp"));
+    assert_eq!(building.distinguishing_name(0, &[2]), Some("piano"), "one notices a piano before a lamp");
+    assert_eq!(building.distinguishing_name(2, &[0]), None);
+    assert_eq!(building.distinguishing_name(3, &[0]), None);
 }
 
 #[test]

@@ -116,7 +116,7 @@ impl DoubtSite {
     }
 
     /// Whether it is about a turn or a climb.
-    fn tells_motion(&self) -> bool {
+    fn concerns_motion(&self) -> bool {
         matches!(self.source, DoubtSource::Turn | DoubtSource::NoTurn | DoubtSource::Climb)
     }
 
@@ -149,14 +149,14 @@ pub fn find_doubts(
     let mut doubts = from_checks::doubts_from_findings(findings);
     for doubt in &mut doubts {
         let is_wrong = doubt.cause == DoubtCause::Wrong;
-        let motion = sites.iter().filter(|site| site.tells_motion() && is_within(doubt.span, site.span));
+        let motion = sites.iter().filter(|site| site.concerns_motion() && is_within(doubt.span, site.span));
         // A check only marks the side of a turn; the suggestion replaces all of "turn left".
         if let Some(motion) = motion.min_by_key(|site| site.span[1] - site.span[0]).filter(|_| is_wrong) {
             doubt.span = motion.span;
         }
         let turns =
-            |site: &DoubtSite| site.tells_motion() && is_within(site.span, doubt.span) && site.best_gain() > 0.0;
-        if is_wrong && !sites.iter().any(turns) && guide.stands_without(doubt.span) {
+            |site: &DoubtSite| site.concerns_motion() && is_within(site.span, doubt.span) && site.best_gain() > 0.0;
+        if is_wrong && !sites.iter().any(turns) && guide.has_step_without(doubt.span) {
             doubt.alternatives.push(DoubtAlternative { words: None, gain: None });
         }
         for site in &sites {
@@ -190,7 +190,7 @@ fn offered_doubt(site: &DoubtSite, doubt: &TextDoubt) -> Option<TextDoubt> {
             .collect();
         return (span == doubt.span).then_some(TextDoubt { span, alternatives: best, ..doubt.clone() });
     }
-    let fits = is_name || (is_wrong && (site.span == doubt.span || site.tells_motion()));
+    let fits = is_name || (is_wrong && (site.span == doubt.span || site.concerns_motion()));
     fits.then(|| site.to_doubt(doubt.grade))
 }
 

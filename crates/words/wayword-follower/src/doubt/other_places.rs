@@ -11,7 +11,7 @@ use crate::{
 use std::{cmp::Reverse, collections::BTreeMap};
 use wayword_core::DoubtAlternative;
 use wayword_language::{
-    lexicon::{find_thing, is_plural, names_agree, same_room, says_several, to_plural, with_article},
+    lexicon::{find_thing, is_plural, means_several, names_agree, same_room, to_plural, with_article},
     rewording::{TokenisedText, in_capitals_of},
 };
 
@@ -41,9 +41,9 @@ pub(super) fn other_place_sites(
             let mut changed = guide.clone();
             changed.steps[step].mentions[place].meanings = vec![name.clone()];
             let gain = walk.score(&changed) - base_score;
-            DoubtAlternative { words: Some(words_instead(spelt, span, whole, &name.name)), gain: Some(gain) }
+            DoubtAlternative { words: Some(replacement_words(spelt, span, whole, &name.name)), gain: Some(gain) }
         };
-        let alternatives = best_first(names.iter().filter(|name| may_be(mention, name)).map(alternative));
+        let alternatives = best_first(names.iter().filter(|name| can_replace(mention, name)).map(alternative));
         let source = if is_found { DoubtSource::Place } else { DoubtSource::Unknown };
         sites.extend(DoubtSite::from_alternatives(source, whole, alternatives));
     }
@@ -70,7 +70,7 @@ fn names_along(building: &KnownBuilding, walk: &[usize]) -> Vec<PlaceQuery> {
 }
 
 /// Whether a name can replace a mention: it means something else, and is a room for a room and a thing for a thing.
-fn may_be(mention: &GuideMention, name: &PlaceQuery) -> bool {
+fn can_replace(mention: &GuideMention, name: &PlaceQuery) -> bool {
     let is_alike = mention.meanings.iter().any(|what| what.is_room == name.is_room);
     let is_same = |what: &PlaceQuery| {
         names_agree(&what.name, &name.name) || names_agree(&name.name, &what.name) || same_room(&what.name, &name.name)
@@ -81,10 +81,10 @@ fn may_be(mention: &GuideMention, name: &PlaceQuery) -> bool {
 
 /// A replacement for the name in the range `old`, in its number, with its article and capitals. `whole` is the range of the old
 /// name with its article "a" or "an", if it has one.
-fn words_instead(spelt: &TokenisedText<'_>, old: [usize; 2], whole: [usize; 2], name: &str) -> String {
+fn replacement_words(spelt: &TokenisedText<'_>, old: [usize; 2], whole: [usize; 2], name: &str) -> String {
     let has_article = whole != old;
     let name = match name {
-        name if says_several(spelt.words_of(old)) => to_plural(name),
+        name if means_several(spelt.words_of(old)) => to_plural(name),
         name if has_article && !is_plural(name) => with_article(name),
         name => name.to_owned(),
     };

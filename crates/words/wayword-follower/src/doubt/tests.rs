@@ -1,6 +1,6 @@
 use super::*;
 use crate::{KnownBuilding, tests::surveyed};
-use wayword_core::{CheckFinding, CheckKind, DoubtGrade, TextAmbiguity, Verdict, doubt::apart_in, seeded_rng};
+use wayword_core::{CheckFinding, CheckKind, DoubtGrade, TextAmbiguity, Verdict, doubt::separate_doubts, seeded_rng};
 
 const TO_KITCHEN: &str = "Walk down the hallway and turn right. Walk into the kitchen and wait by the oven.";
 const WALK: [usize; 5] = [0, 1, 2, 5, 6];
@@ -8,7 +8,7 @@ const WALK: [usize; 5] = [0, 1, 2, 5, 6];
 fn found(text: &str, bounds: &DoubtBounds) -> Vec<TextDoubt> {
     let building = KnownBuilding::from_survey(&surveyed());
     let known = KnownWalk { building: &building, walk: &WALK, heading_rad: 0.0 };
-    apart_in(text, find_doubts(text, &Guide::read_text(text), known, FeatureWeights::fitted(), (bounds, &[])))
+    separate_doubts(text, find_doubts(text, &Guide::read_text(text), known, FeatureWeights::fitted(), (bounds, &[])))
 }
 
 /// The doubted words, each with what may stand there; "-" where they may be left out.
@@ -50,7 +50,7 @@ fn failed_words_may_be_left_out_and_unverified_ones_get_names() {
         FeatureWeights::fitted(),
         (&DoubtBounds::default(), &findings),
     );
-    let doubts = apart_in(text, doubts);
+    let doubts = separate_doubts(text, doubts);
     let told = told(text, &doubts);
     assert_eq!((told[0].0, told[0].1.first()), ("Walk down the hallway", Some(&"-")), "{told:?}");
     let bed = told.iter().find(|(words, _)| *words == "bed");
@@ -107,7 +107,8 @@ fn a_turn_that_a_check_found_wrong_is_doubted_as_a_whole_and_the_other_side_come
         span: Some([from, from + 4]),
     };
     let found = (&DoubtBounds::default(), &[finding][..]);
-    let doubts = apart_in(&text, find_doubts(&text, &Guide::read_text(&text), known, FeatureWeights::fitted(), found));
+    let doubts =
+        separate_doubts(&text, find_doubts(&text, &Guide::read_text(&text), known, FeatureWeights::fitted(), found));
     let told = told(&text, &doubts);
     assert_eq!((told[0].0, told[0].1.first()), ("turn left", Some(&"turn right")), "{told:?}");
     assert_eq!(doubts[0].cause, DoubtCause::Wrong);

@@ -42,7 +42,7 @@ pub(super) fn way_sites(spelt: &TokenisedText<'_>, guide: &Guide, walk: &OneWalk
             DoubtAlternative { words: Some(words), gain: Some(gain) }
         };
         let others =
-            WAY_PREPOSITIONS.iter().filter(|(other, _)| *other != mention.relation && is_way_by(mention, *other));
+            WAY_PREPOSITIONS.iter().filter(|(other, _)| *other != mention.relation && is_possible_way(mention, *other));
         let alternatives = best_first(others.map(alternative));
         sites.extend(DoubtSite::from_alternatives(DoubtSource::Way, way.span, alternatives));
     }
@@ -50,7 +50,7 @@ pub(super) fn way_sites(spelt: &TokenisedText<'_>, guide: &Guide, walk: &OneWalk
 }
 
 /// Whether a relation is possible for a place: a walker does not go into a chair.
-fn is_way_by(mention: &GuideMention, relation: StepRelation) -> bool {
+fn is_possible_way(mention: &GuideMention, relation: StepRelation) -> bool {
     let is_room = mention.meanings.first().is_some_and(|what| what.is_room && !is_stairs(&what.name));
     is_room || matches!(relation, StepRelation::To | StepRelation::Past)
 }

@@ -156,7 +156,7 @@ fn context_features(trial: &GuideTrial<'_>, step: usize, stretch: &WalkStretch<'
     let mentions = (trial.guide.steps[step].mentions.len().min(3), 4);
     found.push(HOPS_OF_MENTIONS.feature_at([kind, is_last, mentions, (stretch.hops.min(4), 5)]));
     // "Turn left and walk on": the hop that turns may be the next step's.
-    let before = step.checked_sub(1).map(|before| &steps[before]).filter(|before| told_turn(before));
+    let before = step.checked_sub(1).map(|before| &steps[before]).filter(|before| describes_turn(before));
     if let (Some(before), Some(turn_rad)) = (before, stretch.hop_turns().next()) {
         let sign = if before.step.turn == Some(Side::Left) { -1.0 } else { 1.0 };
         let opens = (usize::from(stretch.opens_walk()), 2);
@@ -170,7 +170,7 @@ fn context_features(trial: &GuideTrial<'_>, step: usize, stretch: &WalkStretch<'
     if stretch.hops > 0 && !stretch.opens_walk() {
         found.push(SQUARER.feature_at([kind, (ways(&stretch.nodes()[1]).squarer.min(2), 3)]));
     }
-    let skip = if told_turn(&steps[step]) || stretch.opens_walk() { 2 } else { 1 };
+    let skip = if describes_turn(&steps[step]) || stretch.opens_walk() { 2 } else { 1 };
     if stretch.hops >= skip {
         let straighter = stretch.nodes()[skip..].iter().filter(|node| ways(node).straighter > 0).count();
         found.push(STRAIGHTER.feature_at([kind, (straighter.min(2), 3)]));
@@ -190,7 +190,7 @@ fn context_features(trial: &GuideTrial<'_>, step: usize, stretch: &WalkStretch<'
 }
 
 /// Whether a step describes a turn.
-fn told_turn(guide_step: &GuideStep) -> bool {
+fn describes_turn(guide_step: &GuideStep) -> bool {
     guide_step.step.turn.is_some()
 }
 

@@ -33,7 +33,7 @@ fn sum_of_cuts(
         let mut found = Vec::new();
         stretch_features(trial, steps.start, &WalkStretch::to_node(tree, walk[to], to - at), &mut found);
         let rest = sum_of_cuts((trial, tree, weights), walk, steps.start + 1..steps.end, to);
-        sum += weights.sum_of(&found).exp() * rest;
+        sum += weights.sum_weights(&found).exp() * rest;
     }
     sum
 }
@@ -69,7 +69,7 @@ fn walk_fit_is_the_sum_over_all_cuts_of_each_walk() {
             ending_features(&trial, &tree, walk, &mut ending);
             let cuts =
                 if guide.is_empty() { 1.0 } else { sum_of_cuts((&trial, &tree, &weights), &nodes, 0..guide.len(), 0) };
-            let expected = cuts.ln() + weights.sum_of(&ending);
+            let expected = cuts.ln() + weights.sum_weights(&ending);
             assert!(near(fit.score(walk), expected), "{text} {walk}: {} {expected}", fit.score(walk));
             for steps in 1..=guide.len() {
                 let expected = sum_of_cuts((&trial, &tree, &weights), &nodes, 0..steps, 0).ln();

@@ -52,7 +52,7 @@ fn tells_way_needs_more_than_a_place_to_go_to() {
     let tells = |change: Change<'_>| {
         let mut told = bare_step(GuideStepKind::Other);
         change(&mut told);
-        told.tells_way()
+        told.describes_way()
     };
     assert!(!tells(&|_| {}));
     let changes: [Change<'_>; 5] = [
@@ -96,7 +96,7 @@ fn read_text_finds_the_mentions_of_each_step() {
         guide.steps.last().unwrap().mentions[0].meanings,
         [PlaceQuery { is_room: true, name: "kitchen".into() }]
     );
-    assert!(guide.tells_room("kitchen") && guide.tells_room("dining room") && !guide.tells_room("garage"));
+    assert!(guide.names_room("kitchen") && guide.names_room("dining room") && !guide.names_room("garage"));
     assert_eq!(guide.count_turns(), 1);
     assert_eq!(Guide::read_text("Turn left, turn right, then turn around.").count_turns(), 3);
 }
@@ -107,8 +107,8 @@ fn read_text_implies_that_a_way_outside_leads_outdoors() {
     let mention = guide.steps.iter().flat_map(|told| &told.mentions).find(|mention| mention.span.is_none()).unwrap();
     assert_eq!((mention.relation, mention.side, mention.tells_turn), (StepRelation::Into, None, false));
     assert_eq!(mention.meanings, [PlaceQuery { is_room: true, name: "outdoor area".into() }]);
-    assert!(guide.tells_room("outdoor area"));
-    assert!(!Guide::read_text("Turn left.").tells_room("outdoor area"));
+    assert!(guide.names_room("outdoor area"));
+    assert!(!Guide::read_text("Turn left.").names_room("outdoor area"));
 }
 
 #[test]
@@ -198,7 +198,7 @@ fn stands_without_needs_something_to_lose_and_a_step_that_stays() {
         ([2, 23], false),
         ([2, 22], true),
     ] {
-        assert_eq!(guide.stands_without(span), stands, "{span:?}");
+        assert_eq!(guide.has_step_without(span), stands, "{span:?}");
     }
 }
 
@@ -206,15 +206,15 @@ fn stands_without_needs_something_to_lose_and_a_step_that_stays() {
 fn stands_without_keeps_a_step_that_has_another_turn_or_place() {
     let mut guide = three_steps();
     guide.steps.truncate(1);
-    assert!(!guide.stands_without([2, 4]), "nothing is left of the only step");
+    assert!(!guide.has_step_without([2, 4]), "nothing is left of the only step");
     guide.steps[0].mentions = vec![make_mention(StepRelation::To, false, "sofa")];
     guide.steps[0].mentions[0].span = Some([6, 8]);
-    assert!(guide.stands_without([2, 4]) && guide.stands_without([6, 8]));
-    assert!(!guide.stands_without([2, 8]));
+    assert!(guide.has_step_without([2, 4]) && guide.has_step_without([6, 8]));
+    assert!(!guide.has_step_without([2, 8]));
     guide.steps[0].step.turn_span = None;
     guide.steps[0].step.turn = None;
-    assert!(!guide.stands_without([6, 8]));
-    assert!(!Guide::read_text("").stands_without([0, 9]));
+    assert!(!guide.has_step_without([6, 8]));
+    assert!(!Guide::read_text("").has_step_without([0, 9]));
 }
 
 #[test]

@@ -76,7 +76,7 @@ fn add_floor_adds_the_slope_of_an_empty_text_without_its_loss() {
     text.add_text(&trial, &tree, 3, &weights);
     floor.add_text(&empty, &tree, 3, &weights);
     both.add_text(&trial, &tree, 3, &weights);
-    both.add_floor(&empty, &tree, 3, &weights);
+    both.add_empty_text(&empty, &tree, 3, &weights);
     assert!(near(both.loss, text.loss, 1e-12) && both.texts == 1);
     assert!(floor.values.iter().any(|value| value.abs() > 0.1));
     let sums = text.values.iter().zip(&floor.values).map(|(a, b)| a + b);

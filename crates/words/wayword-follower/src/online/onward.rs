@@ -136,7 +136,7 @@ impl OnwardFit {
                     }
                     found.clear();
                     stretch_features(trial, step, &WalkStretch::to_node(tree, end, hops), &mut found);
-                    let value = sum + weights.going.sum_of(&found) + weights.left[steps_left_class(steps, step)];
+                    let value = sum + weights.going.sum_weights(&found) + weights.left[steps_left_class(steps, step)];
                     parts[end].push((step, hops, value));
                 }
             }

@@ -127,7 +127,7 @@ fn judge_steps_and_judge_route_accept_sixty_steps() {
     }
     let guide = Guide::read_text(TEXT);
     assert_eq!(judge_route(&guide, known, None, &weights, thresholds), Err(UnfollowedReason::NoGraph));
-    assert_eq!(leads_there(&guide, known, None, &weights), Err(UnfollowedReason::NoGraph));
+    assert_eq!(goal_probability(&guide, known, None, &weights), Err(UnfollowedReason::NoGraph));
 }
 
 #[test]
@@ -164,7 +164,7 @@ fn judge_route_compares_the_walk_with_all_that_end_3_m_away() {
             assert_eq!(judged.finding.span, span.filter(|_| is_fail));
         }
         let near: f64 = (1..tree.len()).filter(|other| far(own, *other) < 3.0).map(|walk| shares[walk]).sum();
-        let leads = leads_there(&guide, known, Some(WalkPrior::Shortest(8)), &weights).unwrap();
+        let leads = goal_probability(&guide, known, Some(WalkPrior::Shortest(8)), &weights).unwrap();
         assert!((leads - near).abs() < 1e-9, "{leads} {near}");
         counts.insert(ends.len());
     }

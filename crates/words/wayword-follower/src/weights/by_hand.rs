@@ -91,7 +91,7 @@ fn set_lengths(set: &mut WeightSetter<'_>) {
 
 /// The weight of a turn by `deg` degrees for a step of a kind; positive angles are to the side in the text. The numbers are those
 /// of [`GuideStepKind`].
-fn of_turn(kind: usize, deg: f64) -> f64 {
+fn turn_weight(kind: usize, deg: f64) -> f64 {
     let near = |middle: f64, width: f64, elsewhere: f64| {
         let off = (deg - middle).abs();
         let off = off.min(360.0 - off);
@@ -112,7 +112,7 @@ fn of_turn(kind: usize, deg: f64) -> f64 {
 /// Weights of the turns of stretches and walks. Kinds 0 to 2 describe turns.
 fn set_turns(set: &mut WeightSetter<'_>) {
     for (kind, at) in (0..GuideStepKind::COUNT).flat_map(|kind| (0..ANGLES).map(move |at| (kind, at))) {
-        let weight = of_turn(kind, middle_deg(at, ANGLES));
+        let weight = turn_weight(kind, middle_deg(at, ANGLES));
         let place = [(kind, GuideStepKind::COUNT), (at, ANGLES)];
         let is_turn = kind <= 2;
         // Texts leave out in which direction the walker looks first, so a turn in the first step may be the opening
@@ -126,7 +126,7 @@ fn set_turns(set: &mut WeightSetter<'_>) {
     for (kind, at) in (0..3).flat_map(|kind| (0..ANGLES).map(move |at| (kind, at))) {
         // The hop that turns belongs to the step before, or to this one.
         let deg = middle_deg(at, ANGLES);
-        let weight = (of_turn(kind, deg).exp() + 2.0 * of_turn(6, deg).exp()).ln() - 1.0;
+        let weight = (turn_weight(kind, deg).exp() + 2.0 * turn_weight(6, deg).exp()).ln() - 1.0;
         for opens in 0..2 {
             set(&TURN_BEFORE, &[(kind, 3), (opens, 2), (at, ANGLES)], weight);
         }

@@ -55,7 +55,7 @@ impl FeatureWeights {
     /// # Errors
     /// When a table is missing or has the wrong size.
     pub fn parse(text: &str) -> Result<Self, WeightsError> {
-        of_tables(&serde_json::from_str::<WeightsFile>(text)?.tables)
+        weights_from_tables(&serde_json::from_str::<WeightsFile>(text)?.tables)
     }
 
     /// The weights as a file, rounded to thousandths. `origin` names the data of the fit, `command` how it was run.
@@ -65,7 +65,7 @@ impl FeatureWeights {
         WeightsFile {
             origin,
             command,
-            tables: to_tables(self),
+            tables: tables_from_weights(self),
             going: BTreeMap::new(),
             left: Vec::new(),
             away: Vec::new(),
@@ -88,13 +88,13 @@ impl OnwardWeights {
             return Err(wrong("away", &file.away, 2 * HOPS_AWAY_CLASSES));
         }
         away.as_flattened_mut().copy_from_slice(&file.away);
-        Ok(Self { done: of_tables(&file.tables)?, going: of_tables(&file.going)?, left, away })
+        Ok(Self { done: weights_from_tables(&file.tables)?, going: weights_from_tables(&file.going)?, left, away })
     }
 
     /// The weights as a file, rounded to thousandths. `origin` names the data of the fit, `command` how it was run.
     #[must_use]
     pub fn to_json(&self, origin: &str, command: &str) -> String {
-        let (tables, going) = (to_tables(&self.done), to_tables(&self.going));
+        let (tables, going) = (tables_from_weights(&self.done), tables_from_weights(&self.going));
         let left = self.left.iter().map(round_weight).collect();
         let away = self.away.as_flattened().iter().map(round_weight).collect();
         WeightsFile { origin: origin.into(), command: command.into(), tables, going, left, away }.to_text()
@@ -116,14 +116,14 @@ fn round_weight(weight: &f64) -> f64 {
 }
 
 /// The weights as lists, by the names of their tables.
-fn to_tables(weights: &FeatureWeights) -> BTreeMap<String, Vec<f64>> {
+fn tables_from_weights(weights: &FeatureWeights) -> BTreeMap<String, Vec<f64>> {
     let rounded =
         |table: &FeatureTable| weights.0[table.from..table.from + table.size].iter().map(round_weight).collect();
     ALL.iter().map(|table| (table.name.to_owned(), rounded(table))).collect()
 }
 
 /// The weights from lists by the names of their tables.
-fn of_tables(tables: &BTreeMap<String, Vec<f64>>) -> Result<FeatureWeights, WeightsError> {
+fn weights_from_tables(tables: &BTreeMap<String, Vec<f64>>) -> Result<FeatureWeights, WeightsError> {
     let mut weights = FeatureWeights::all_zero();
     for table in ALL {
         let found = tables.get(table.name).map_or(&[][..], Vec::as_slice);
@@ -144,10 +144,10 @@ mod tests {
 
     #[test]
     fn of_tables_refuses_weights_that_are_not_finite() {
-        let mut tables = to_tables(&FeatureWeights::by_hand());
-        assert!(of_tables(&tables).is_ok());
+        let mut tables = tables_from_weights(&FeatureWeights::by_hand());
+        assert!(weights_from_tables(&tables).is_ok());
         tables.get_mut("HOPS").unwrap()[3] = f64::NAN;
-        assert!(matches!(of_tables(&tables), Err(WeightsError::NotFinite("HOPS"))));
+        assert!(matches!(weights_from_tables(&tables), Err(WeightsError::NotFinite("HOPS"))));
     }
 
     #[test]

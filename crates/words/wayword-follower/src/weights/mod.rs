@@ -28,7 +28,7 @@ impl FeatureWeights {
     }
 
     /// The sum of the weights of these features.
-    pub(crate) fn sum_of(&self, found: &[FeatureNumber]) -> f64 {
+    pub(crate) fn sum_weights(&self, found: &[FeatureNumber]) -> f64 {
         found.iter().map(|feature| self.0[*feature as usize]).sum()
     }
 
@@ -97,7 +97,10 @@ mod tests {
         values[3] = 1.5;
         values[7] = -4.0;
         let weights = FeatureWeights::from_values(&values);
-        assert_eq!([weights.sum_of(&[]), weights.sum_of(&[3, 3]), weights.sum_of(&[3, 7, 1])], [0.0, 3.0, -2.5]);
+        assert_eq!(
+            [weights.sum_weights(&[]), weights.sum_weights(&[3, 3]), weights.sum_weights(&[3, 7, 1])],
+            [0.0, 3.0, -2.5]
+        );
         assert!(FeatureWeights::all_zero().values().iter().all(|weight| *weight == 0.0));
     }
 

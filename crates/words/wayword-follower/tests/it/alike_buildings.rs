@@ -7,7 +7,7 @@ use wayword_core::{
 use wayword_follower::{
     FeatureWeights, Guide, GuideTrial, KnownBuilding, WalkFit, WalkPrior, WalkTree, best_walk,
     change::{StepChangeKind, rank_changes},
-    route::{KnownWalk, leads_there},
+    route::{KnownWalk, goal_probability},
     walk_shares,
 };
 
@@ -200,7 +200,7 @@ fn leads_there_is_likelier_for_the_place_in_the_text() {
             .map(|walk| {
                 let walk: Vec<usize> = walk.iter().map(|name| numbers[*name]).collect();
                 let known = KnownWalk { building: &building, walk: &walk, heading_rad: 0.05 };
-                leads_there(&Guide::read_text(text), known, Some(WalkPrior::Shortest(8)), FeatureWeights::fitted())
+                goal_probability(&Guide::read_text(text), known, Some(WalkPrior::Shortest(8)), FeatureWeights::fitted())
                     .unwrap()
             })
             .collect();

@@ -65,15 +65,15 @@ pub(super) fn apply_detections(
         match (verdict, purpose) {
             (DetectionVerdict::There, _) => mark_as_seen(observations, name, &finds, &looked_at, by),
             _ if is_proposal => {}
-            (DetectionVerdict::Absent, DetectionPurpose::Captions) => struck_out(observations, name, by),
+            (DetectionVerdict::Absent, DetectionPurpose::Captions) => deny_in_all_looks(observations, name, by),
             (DetectionVerdict::Open, DetectionPurpose::Captions) => {
                 mark_missed_as_unsure(observations, name, &finds, &looked_at, by);
             }
             (DetectionVerdict::Absent, DetectionPurpose::Claims) => {
-                said_of_all(observations, name, WitnessAnswer::Denied, by);
+                add_to_all_looks(observations, name, WitnessAnswer::Denied, by);
             }
             (DetectionVerdict::Open, DetectionPurpose::Claims) => {
-                said_of_all(observations, name, WitnessAnswer::Unsure, by);
+                add_to_all_looks(observations, name, WitnessAnswer::Unsure, by);
             }
         }
     }
@@ -145,7 +145,7 @@ pub(super) fn nearest_spot(spots: &[DetectionSpot], name: &str) -> DetectionSpot
 }
 
 /// The thing is nowhere along the path: every caption that names it is wrong, so the sighting becomes denied.
-fn struck_out(observations: &mut [FrameObservation], name: &str, by: &str) {
+fn deny_in_all_looks(observations: &mut [FrameObservation], name: &str, by: &str) {
     for look in all_looks(observations) {
         for sighting in sightings_named(&mut look.caption, name) {
             *sighting = ObjectSighting::new(name, WitnessAnswer::Denied, by);
@@ -170,7 +170,7 @@ fn mark_missed_as_unsure(
 }
 
 /// Adds the detector's result for a claimed thing to every look: denied or unsure.
-fn said_of_all(observations: &mut [FrameObservation], name: &str, witness: WitnessAnswer, by: &str) {
+fn add_to_all_looks(observations: &mut [FrameObservation], name: &str, witness: WitnessAnswer, by: &str) {
     all_looks(observations).for_each(|look| look.caption.sightings.push(ObjectSighting::new(name, witness, by)));
 }
 

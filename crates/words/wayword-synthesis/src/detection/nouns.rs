@@ -29,12 +29,12 @@ pub fn parse_noun_list(text: &str) -> Option<Vec<String>> {
 #[must_use]
 pub fn usual_nouns<'a>(styles: impl Iterator<Item = &'a InstructionStyle>) -> Vec<String> {
     let mut names: BTreeSet<String> = parse_noun_list(HOUSEHOLD_NOUNS).unwrap_or_default().into_iter().collect();
-    styles.for_each(|style| names.extend(of_style(style)));
+    styles.for_each(|style| names.extend(style_nouns(style)));
     names.into_iter().collect()
 }
 
 /// The things that the reference texts of a style name more than once, the most frequent first.
-fn of_style(style: &InstructionStyle) -> Vec<String> {
+fn style_nouns(style: &InstructionStyle) -> Vec<String> {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for text in &style.references {
         for event in read_instruction(text, &BTreeSet::new()).events {

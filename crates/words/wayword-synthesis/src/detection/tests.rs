@@ -137,7 +137,7 @@ fn seek_takes_distances_from_depth_where_it_is_known() {
     assert!((3.0 * f64::hypot(1.0, 30.0 / 45.0)..3.0 * f64::hypot(1.0, 40.0 / 45.0)).contains(&metres), "{metres}");
     assert_eq!((second, third), (first, None));
     assert!(!of_frame(&seen, 0, "sofa").unwrap().is_far);
-    let evidence = Evidence::from_detector(&path(), &detector_only(&seen, "test/detector")).unwrap();
+    let evidence = Evidence::from_detector(&path(), &detector_evidence(&seen, "test/detector")).unwrap();
     assert_eq!([0, 2].map(|at| evidence.frames[at].things[0].distance_m), [first, None]);
 }
 

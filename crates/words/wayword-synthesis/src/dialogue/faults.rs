@@ -75,7 +75,7 @@ fn mention_fault(mention: &AnswerMention, sightings: &[ObjectSighting]) -> Optio
     }
     let denied = sightings.iter().any(|sighting| denial_covers(sighting, &name, mention.colour.as_deref()));
     let is_witnessed =
-        |witness| sightings.iter().any(|sighting| sighting.witness == witness && speaks_of(sighting, &name));
+        |witness| sightings.iter().any(|sighting| sighting.witness == witness && sighting_names(sighting, &name));
     if mention.witness == WitnessAnswer::Denied || (denied && !seen_by_name(sightings, &name)) {
         Some(CaptionFault::Denied { name })
     } else if is_witnessed(WitnessAnswer::Seen) {
@@ -95,7 +95,7 @@ fn seen_by_name(sightings: &[ObjectSighting], name: &str) -> bool {
 }
 
 /// Whether a sighting is of a thing with this name, or of several things of which it is one.
-fn speaks_of(sighting: &ObjectSighting, name: &str) -> bool {
+fn sighting_names(sighting: &ObjectSighting, name: &str) -> bool {
     names_agree(&sighting.name, name) || contains_name(&sighting.name, name)
 }
 

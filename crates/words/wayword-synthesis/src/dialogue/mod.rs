@@ -20,7 +20,7 @@ pub use faults::{CaptionFault, caption_faults};
 pub use questions::RulesAsker;
 pub use roles::{CaptionSummariser, CondensedCaption, ObservationRoles, QuestionAsker};
 pub use summary::RulesSummariser;
-pub(crate) use summary::caption_of;
+pub(crate) use summary::caption_from_sightings;
 pub(crate) use trouble::{refuses_to_look, rephrase_question};
 
 /// The fixed first request of a dialogue (ChatCaptioner opens every dialogue with a request for a description).
@@ -123,7 +123,10 @@ impl Dialogue {
     pub fn take_question(&mut self, question: Option<String>) {
         let question = question.and_then(|question| extract::extract_question(&question));
         let is_new = |question: &String| {
-            !self.transcript.iter().any(|before| same_words(&before.question) == same_words(question))
+            !self
+                .transcript
+                .iter()
+                .any(|before| words_without_articles(&before.question) == words_without_articles(question))
         };
         let question = question.filter(is_new);
         self.set_pending(question);
@@ -178,7 +181,7 @@ impl Dialogue {
 }
 
 /// The words of a question without articles. Questions with the same words are the same question.
-fn same_words(question: &str) -> Vec<String> {
+fn words_without_articles(question: &str) -> Vec<String> {
     let is_article = |word: &String| matches!(word.as_str(), "a" | "an" | "the" | "any" | "some");
     split_words(question).into_iter().filter(|word| !is_article(word)).collect()
 }

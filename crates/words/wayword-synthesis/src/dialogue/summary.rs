@@ -24,7 +24,7 @@ impl CaptionSummariser for RulesSummariser {
     fn sum_up(&self, transcript: &[DialogueExchange], answerer: &str) -> Result<Caption, ModelError> {
         let sightings = dialogue_sightings(transcript, answerer);
         let room = dialogue_room(transcript);
-        let text = caption_of(room.as_deref(), &sightings);
+        let text = caption_from_sightings(room.as_deref(), &sightings);
         Ok(Caption { text, room, sightings, transcript: transcript.to_vec(), ..Caption::default() })
     }
 
@@ -36,7 +36,7 @@ impl CaptionSummariser for RulesSummariser {
 
 /// The caption of the seen things in `sightings`. Names may be any words, and two adjacent names may read as a third.
 /// So names that would cause a fault are left out, and as a last resort the room too.
-pub(crate) fn caption_of(room: Option<&str>, sightings: &[ObjectSighting]) -> String {
+pub(crate) fn caption_from_sightings(room: Option<&str>, sightings: &[ObjectSighting]) -> String {
     let is_denied =
         |seen: &ObjectSighting| sightings.iter().any(|other| denial_covers(other, &seen.name, seen.colour.as_deref()));
     let mut seen: Vec<&ObjectSighting> =

@@ -40,15 +40,15 @@ pub(crate) fn refuses_to_look(answer: &str) -> bool {
 
 /// Whether an answer begins like a refusal and declines, or consists of words of refusal only.
 fn is_refusal(words: &[String]) -> bool {
-    let begins = REFUSING.iter().any(|phrase| is_at(words, 0, phrase));
+    let begins = REFUSING.iter().any(|phrase| phrase_begins_at(words, 0, phrase));
     let beginning = &words[..words.len().min(MAX_REFUSAL_WORDS)];
-    let declines = |at| UNHELPING.iter().any(|phrase| is_at(beginning, at, phrase));
+    let declines = |at| UNHELPING.iter().any(|phrase| phrase_begins_at(beginning, at, phrase));
     let is_bare = || words.iter().all(|word| BARE_REFUSAL.contains(&word.as_str()));
     begins && ((0..beginning.len()).any(declines) || is_bare())
 }
 
 /// Whether a phrase begins at this word.
-fn is_at(words: &[String], at: usize, phrase: &[&str]) -> bool {
+fn phrase_begins_at(words: &[String], at: usize, phrase: &[&str]) -> bool {
     words.len() >= at + phrase.len() && words[at..].iter().zip(phrase).all(|(word, wanted)| word == wanted)
 }
 

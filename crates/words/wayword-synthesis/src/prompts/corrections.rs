@@ -1,6 +1,6 @@
 //! Explains to the model why its text failed, and what would be right, as far as the walk shows it.
 
-use super::move_words::{frame_of_move, turn_words};
+use super::move_words::{frame_name, turn_words};
 use crate::writer::{TextComplaint, WritingBrief};
 use wayword_core::{CheckFinding, CheckKind, ClimbDirection, PathMove, Side, TurnKind, Verdict};
 use wayword_language::{
@@ -14,11 +14,11 @@ const MAX_NAMED_FRAMES: usize = 3;
 /// The reasons why a text failed, each with the words concerned and with a correction.
 pub(super) fn refusal_reasons(brief: &WritingBrief<'_>, complaint: &TextComplaint) -> Vec<String> {
     let failed = complaint.findings.iter().filter(|finding| finding.verdict == Verdict::Fail);
-    failed.map(|finding| number_finding(brief, &complaint.text, finding)).collect()
+    failed.map(|finding| explain_finding(brief, &complaint.text, finding)).collect()
 }
 
 /// The reason of one finding, with the words concerned before it and the correction behind it.
-fn number_finding(brief: &WritingBrief<'_>, text: &str, finding: &CheckFinding) -> String {
+fn explain_finding(brief: &WritingBrief<'_>, text: &str, finding: &CheckFinding) -> String {
     let words = finding.span.and_then(|[from, to]| text.get(from..to));
     let reason = match words {
         Some(words) if !finding.reason.contains(words) => format!("you wrote {words:?}: {}", finding.reason),
@@ -57,12 +57,12 @@ fn describe_turns(brief: &WritingBrief<'_>, text: &str, span: Option<[usize; 2]>
     let overlaps = |other: &[usize; 2]| span.is_some_and(|span| span[0] < other[1] && other[0] < span[1]);
     let at = turns.iter().position(overlaps).filter(|_| turns.len() == walked.len());
     if let Some((frame, step)) = at.and_then(|at| walked.get(at)) {
-        return format!("the walk {} there, at {}", turn_words(step.turn()), frame_of_move(*frame));
+        return format!("the walk {} there, at {}", turn_words(step.turn()), frame_name(*frame));
     }
     if walked.is_empty() {
         return "the walk goes straight on and never turns".to_owned();
     }
-    let all = walked.iter().map(|(frame, step)| format!("{} at {}", turn_words(step.turn()), frame_of_move(*frame)));
+    let all = walked.iter().map(|(frame, step)| format!("{} at {}", turn_words(step.turn()), frame_name(*frame)));
     format!("the turns of the walk are, in order: {}", all.collect::<Vec<_>>().join(", "))
 }
 
@@ -74,7 +74,7 @@ fn describe_climbs(moves: &[PathMove]) -> String {
             ClimbDirection::Up => "up",
             ClimbDirection::Down => "down",
         };
-        Some(format!("it goes {way} stairs from {}", frame_of_move(frame)))
+        Some(format!("it goes {way} stairs from {}", frame_name(frame)))
     });
     let climbs: Vec<String> = climbs.collect();
     if climbs.is_empty() { "the walk stays on one floor".to_owned() } else { climbs.join(", ") }

@@ -14,7 +14,7 @@ pub(super) fn remembered_lines(memory: &WalkMemory) -> Vec<String> {
     let mut lines: Vec<String> = rooms_line(&memory.stays).into_iter().collect();
     lines.extend(memory.openings.iter().filter(|opening| opening.has_door).map(door_line));
     lines.extend(memory.bends.iter().filter_map(bend_line));
-    let things = memory.things.iter().filter_map(|thing| told_thing(memory, thing));
+    let things = memory.things.iter().filter_map(|thing| thing_line(memory, thing));
     lines.extend(things.take(MAX_THING_LINES));
     lines
 }
@@ -43,7 +43,7 @@ fn bend_line(bend: &WalkBend) -> Option<String> {
 }
 
 /// The line for a thing that the walk passes, that is seen from several frames, or that is near the end.
-fn told_thing(memory: &WalkMemory, thing: &RememberedThing) -> Option<String> {
+fn thing_line(memory: &WalkMemory, thing: &RememberedThing) -> Option<String> {
     let end = memory.frame_count().saturating_sub(1);
     let at_end = memory.distance_m(thing, end).filter(|distance_m| *distance_m < NEAR_END_M);
     if thing.passed.is_none() && thing.glimpses.len() < 2 && at_end.is_none() {

@@ -6,7 +6,7 @@ use wayword_core::{ClimbDirection, PathMove, TurnKind};
 const MAX_OVERVIEW_SENTENCES: usize = 40;
 
 /// The name of a frame in reasons and in the overview.
-pub(super) fn frame_of_move(at: usize) -> String {
+pub(super) fn frame_name(at: usize) -> String {
     format!("Frame {at}")
 }
 
@@ -62,7 +62,7 @@ pub(super) fn way_overview(moves: &[PathMove]) -> Vec<String> {
             ClimbDirection::Up => " up the stairs",
             ClimbDirection::Down => " down the stairs",
         };
-        format!("At {} the walk {turn}goes {length_m:.0} metres{stairs}, to {}", frame_of_move(from), frame_of_move(to))
+        format!("At {} the walk {turn}goes {length_m:.0} metres{stairs}, to {}", frame_name(from), frame_name(to))
     });
     sentences.collect()
 }

@@ -41,7 +41,7 @@ pub(super) fn writing_context(brief: &WritingBrief<'_>) -> Value {
         remembered => remembered_lines(brief.memory),
         knows_motion => walk.path.motion.is_known(),
         references => shown_references(brief),
-        target => walk.path.target.as_ref().filter(|_| ends_in_task(brief)).map(|target| told_target(walk, target)),
+        target => walk.path.target.as_ref().filter(|_| ends_in_task(brief)).map(|target| target_line(walk, target)),
         constraints => style_constraints(brief),
         earlier => brief.earlier,
     }
@@ -91,7 +91,7 @@ fn frame_landmarks(walk: &ObservedWalk, frame: usize) -> Vec<String> {
 }
 
 /// The target in words for the prompt, with a distinction where other objects of its name are in view.
-fn told_target(walk: &ObservedWalk, target: &PathTarget) -> String {
+fn target_line(walk: &ObservedWalk, target: &PathTarget) -> String {
     let told_by = target.told_by.first().map(|told_by| format!("it is {}", told_by.to_predicate()));
     match told_by.filter(|_| target.has_namesake) {
         Some(told_by) => format!("{} (others like it are visible; {told_by})", target.name),

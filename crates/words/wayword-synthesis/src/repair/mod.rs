@@ -10,7 +10,7 @@ use crate::{
     walk::ObservedWalk,
     writer::{FramePicture, InstructionWriter, RulesWriter, TextComplaint, WriteError, WritingBrief},
 };
-use wayword_checks::{CheckSubject, Evidence, TextFindings, WalkMemory, check_own};
+use wayword_checks::{CheckSubject, Evidence, TextFindings, WalkMemory, check_own_text};
 use wayword_core::{
     CheckFinding, CheckKind, Instruction, InstructionStyle, ModelError, TextAmbiguity, TextProvenance, Verdict, seed,
 };
@@ -120,7 +120,7 @@ fn write_until_good(
     let mut least_bad: Option<Instruction> = None;
     for repairs in 0..=order.repairs {
         let text = match writer.write(&brief_for_attempt(order, candidate, &complaints)) {
-            Ok(text) if is_there(&text, order.earlier) => {
+            Ok(text) if has_same_words(&text, order.earlier) => {
                 complaints
                     .push(unusable_complaint(text, "this way already has this text: write another one".to_owned()));
                 continue;
@@ -169,7 +169,7 @@ fn brief_for_attempt<'a>(
 }
 
 /// Whether one of the earlier texts has the same words.
-fn is_there(text: &str, earlier: &[String]) -> bool {
+fn has_same_words(text: &str, earlier: &[String]) -> bool {
     let words = split_words(text);
     earlier.iter().any(|other| split_words(other) == words)
 }
@@ -184,7 +184,7 @@ fn unusable_complaint(text: String, reason: String) -> TextComplaint {
 fn check_text(text: String, provenance: TextProvenance, order: InstructionOrder<'_>) -> Instruction {
     let target = order.walk.path.target.as_ref();
     let subject = CheckSubject::closed_world(order.evidence, order.style, target).with_copies(&order.profile.copies);
-    let mut checked = check_own(&text, CheckSubject { writer_sees: !order.pictures.is_empty(), ..subject });
+    let mut checked = check_own_text(&text, CheckSubject { writer_sees: !order.pictures.is_empty(), ..subject });
     // A failed text is written again anyway, so it is not followed.
     let follower = order.follower.filter(|_| checked.verdict() != Verdict::Fail);
     let ambiguity = follower.map(|follower| follower.follow(&text, &mut checked));

@@ -191,7 +191,7 @@ fn a_failing_model_ends_the_writing() {
 #[test]
 fn a_model_is_not_asked_again_for_an_unverified_text() {
     let walk = walk();
-    let nothing = Evidence::of_path_alone(&walk.path);
+    let nothing = Evidence::for_path_alone(&walk.path);
     let mode = DialogueMode::Dialogue { questions: 9 };
     let (outcome, complaints) = outcome_against(&walk, &nothing, mode, vec![said(WITH_A_PIANO)], true, 3);
     let WritingOutcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
@@ -315,7 +315,7 @@ fn an_invented_turn_goes_back_with_the_reason() {
     let WritingOutcome::Rejected { reason, .. } = outcome.unwrap() else { panic!("it was accepted") };
     assert!(reason.contains("it is not known how the path turns"), "{reason}");
     // A turn counts as made up even where there is no evidence at all.
-    let nothing = Evidence::of_path_alone(&walk.path);
+    let nothing = Evidence::for_path_alone(&walk.path);
     let (outcome, _) = outcome_against(&walk, &nothing, mode, vec![said(GOOD)], false, 0);
     assert!(matches!(outcome.unwrap(), WritingOutcome::Rejected { .. }));
 }
@@ -340,7 +340,7 @@ proptest! {
             // As if the picture had it on a side.
             caption.sightings.iter_mut().for_each(|sighting| sighting.place = Some(ViewThird::Left));
         }
-        let evidence = walk.evidence().unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
+        let evidence = walk.evidence().unwrap_or_else(|| Evidence::for_path_alone(&walk.path));
         let asker = RulesAsker::default();
         let labels = LabelAnswerer::default();
         let observers = observers(&asker, &labels);

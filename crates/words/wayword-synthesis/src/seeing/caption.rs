@@ -1,7 +1,7 @@
 //! Turns a structured answer about a view into a caption with sightings, by rules.
 
 use super::read_answer::{ViewReading, ViewThing};
-use crate::dialogue::caption_of;
+use crate::dialogue::caption_from_sightings;
 use wayword_core::{Caption, ObjectSighting, ViewThird, WayOut, WitnessAnswer};
 use wayword_language::{
     lexicon::{names_agree, with_article},
@@ -13,7 +13,7 @@ const MAX_NAMED_THINGS: usize = 12;
 
 /// The caption of an answer; its sightings are attributed to `by`.
 pub(super) fn caption_from_view(seen: ViewReading, by: &str) -> Caption {
-    let mut sightings: Vec<ObjectSighting> = seen.things.iter().flat_map(|thing| of_thing(thing, by)).collect();
+    let mut sightings: Vec<ObjectSighting> = seen.things.iter().flat_map(|thing| thing_sightings(thing, by)).collect();
     for way in &seen.ways {
         if !sightings.iter().any(|other| names_agree(&other.name, &way.name) && other.place == way.place) {
             sightings
@@ -27,7 +27,7 @@ pub(super) fn caption_from_view(seen: ViewReading, by: &str) -> Caption {
 }
 
 /// The sightings of a thing, one for each possible name. If it may have several names, none of them counts as seen.
-fn of_thing<'a>(thing: &'a ViewThing, by: &'a str) -> impl Iterator<Item = ObjectSighting> + 'a {
+fn thing_sightings<'a>(thing: &'a ViewThing, by: &'a str) -> impl Iterator<Item = ObjectSighting> + 'a {
     let witness = if thing.is_sure { WitnessAnswer::Seen } else { WitnessAnswer::Unsure };
     thing.reading.names.iter().map(move |name| {
         let mut colours = thing.reading.colours.iter().cloned();
@@ -57,7 +57,7 @@ pub(crate) fn caption_text(
     named.sort_by_key(|sighting| (!sighting.stands_out, sighting.is_far));
     named.truncate(MAX_NAMED_THINGS);
     named.extend(sightings.iter().filter(|sighting| sighting.witness == WitnessAnswer::Denied).cloned());
-    let mut sentences = vec![caption_of(room, &named)];
+    let mut sentences = vec![caption_from_sightings(room, &named)];
     if room.is_none() && !perhaps_rooms.is_empty() {
         let rooms: Vec<String> = perhaps_rooms.iter().map(|room| with_article(room)).collect();
         sentences.push(format!("It is perhaps {}.", rooms.join(" or ")));

@@ -95,7 +95,7 @@ fn mend_json(text: &str) -> (String, bool) {
 impl JsonMender {
     /// Closes the innermost bracket, if this is the one that closes it; any other is dropped.
     fn close_bracket(&mut self, bracket: char) {
-        self.without_comma();
+        self.drop_trailing_comma();
         if self.open.last() == Some(&bracket) {
             self.open.pop();
             self.out.push(bracket);
@@ -104,7 +104,7 @@ impl JsonMender {
     }
 
     /// Removes commas from the end of the output.
-    fn without_comma(&mut self) {
+    fn drop_trailing_comma(&mut self) {
         let kept = self.out.trim_end().trim_end_matches(',').len();
         self.out.truncate(kept);
     }

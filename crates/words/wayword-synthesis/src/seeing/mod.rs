@@ -72,7 +72,7 @@ pub(crate) fn see_view(view: &View, observers: ObservationRoles<'_>, questions: 
             }
         }
     };
-    let Some(seen) = seen else { return Ok(Caption { form, ..as_words(transcript, by)? }) };
+    let Some(seen) = seen else { return Ok(Caption { form, ..caption_from_words(transcript, by)? }) };
     let mut caption = caption::caption_from_view(seen, by);
     for exchange in ask_open_questions(view, open_questions(&caption).into_iter().take(questions).collect(), observers)?
     {
@@ -96,11 +96,11 @@ fn ask_open_questions(
     questions: Vec<String>,
     observers: ObservationRoles<'_>,
 ) -> Result<Vec<DialogueExchange>, ModelError> {
-    let answers = in_words(view, &questions, observers)?;
+    let answers = ask_in_words(view, &questions, observers)?;
     let is_refused: Vec<bool> = answers.iter().map(|answer| refuses_to_look(answer)).collect();
     let refused = questions.iter().zip(&is_refused).filter(|(_, refused)| **refused);
     let again: Vec<String> = refused.map(|(question, _)| rephrase_question(question)).collect();
-    let mut second = in_words(view, &again, observers)?.into_iter();
+    let mut second = ask_in_words(view, &again, observers)?.into_iter();
     let exchange = |((question, first), is_refused): ((String, String), bool)| {
         let answer = if is_refused { second.next().filter(|answer| !refuses_to_look(answer)) } else { Some(first) };
         let trouble = is_refused.then_some(AnswerTrouble::Refusal);
@@ -110,7 +110,7 @@ fn ask_open_questions(
 }
 
 /// Asks questions about a view for answers in words, one answer each.
-fn in_words(view: &View, questions: &[String], observers: ObservationRoles<'_>) -> Result<Vec<String>, ModelError> {
+fn ask_in_words(view: &View, questions: &[String], observers: ObservationRoles<'_>) -> Result<Vec<String>, ModelError> {
     if questions.is_empty() {
         return Ok(Vec::new());
     }
@@ -129,7 +129,7 @@ fn cut_answer(answer: &str) -> String {
 
 /// The caption where no answer is in the requested form: the words of the last one are read as a description. A refusal
 /// yields an empty caption.
-fn as_words(transcript: Vec<DialogueExchange>, by: &str) -> Result<Caption, ModelError> {
+fn caption_from_words(transcript: Vec<DialogueExchange>, by: &str) -> Result<Caption, ModelError> {
     let answer = transcript.last().map_or("", |last| last.answer.as_str());
     let answer = if refuses_to_look(answer) { "" } else { answer };
     let caption = RulesSummariser.sum_up(&[DialogueExchange::new(OPENING_REQUEST, answer)], by)?;

@@ -4,7 +4,7 @@
 use crate::dialogue::colour_at;
 use wayword_language::{
     answers::{ANYTHING, BUNCHES, GUESSING, MATERIALS, NO_OBJECTS, NUMBERS, QUALITIES, TELLS_NOTHING},
-    lexicon::{find_thing, is_room, is_thing, normalise_name, says_several, to_singular},
+    lexicon::{find_thing, is_room, is_thing, means_several, normalise_name, to_singular},
     reading::vocabulary::{ABSTRACT, ADJECTIVES, BREAKERS},
 };
 
@@ -36,7 +36,7 @@ pub(crate) fn read_name(said: &str) -> NameReading {
     let words: Vec<&str> = plain.split(|c: char| !(c.is_alphanumeric() || "-'".contains(c))).collect();
     let words: Vec<&str> = words.into_iter().filter(|word| !word.is_empty()).collect();
     for alternative in words.split(|word| *word == "or") {
-        if let Some(name) = one_name(alternative, &mut named).filter(|name| !named.names.contains(name))
+        if let Some(name) = read_one_name(alternative, &mut named).filter(|name| !named.names.contains(name))
             && named.names.len() < MAX_NAMES
         {
             named.names.push(name);
@@ -47,7 +47,7 @@ pub(crate) fn read_name(said: &str) -> NameReading {
 
 /// Reads one of the names between "or": takes colours, materials, numbers and qualities off its beginning and notes
 /// them in `named`. `None` if no name of a thing is left.
-fn one_name(words: &[&str], named: &mut NameReading) -> Option<String> {
+fn read_one_name(words: &[&str], named: &mut NameReading) -> Option<String> {
     let mut words = before_the_place(words);
     loop {
         let (first, rest) = words.split_first()?;
@@ -74,7 +74,7 @@ fn one_name(words: &[&str], named: &mut NameReading) -> Option<String> {
         words = rest;
     }
     let name = words.join(" ");
-    let several = says_several(&name);
+    let several = means_several(&name);
     named.several |= several;
     let name = if several { to_singular(&name) } else { name };
     is_name(&name).then_some(name)

@@ -65,7 +65,7 @@ pub(super) fn read_view_answer(answer: &str, takes_part: bool) -> Result<ViewRea
         .map(list_entries)
         .unwrap_or_default()
         .into_iter()
-        .filter_map(|entry| thing_of(entry, &cues))
+        .filter_map(|entry| read_thing(entry, &cues))
         .take(MAX_THINGS)
         .collect();
     if let Some(listed) = listed.filter(|listed| things.is_empty() && !is_empty(listed)) {
@@ -79,7 +79,7 @@ pub(super) fn read_view_answer(answer: &str, takes_part: bool) -> Result<ViewRea
         room_is_sure: rooms.len() == 1 && says_sure && !is_guess,
         rooms,
         ways: ways.into_iter().filter_map(read_way_out).take(MAX_WAYS_OUT).collect(),
-        things: each_once(things),
+        things: merge_like_things(things),
     })
 }
 
@@ -136,7 +136,7 @@ fn is_empty(value: &Value) -> bool {
 
 /// Reads one entry of the list of things. `cues` are the names that the model gave as standing out. `None` if the entry
 /// names no thing.
-fn thing_of(entry: &Value, cues: &[NameReading]) -> Option<ViewThing> {
+fn read_thing(entry: &Value, cues: &[NameReading]) -> Option<ViewThing> {
     let mut told = match entry {
         Value::Number(_) | Value::Bool(_) => return None,
         entry => read_name(&value_text(entry)),
@@ -283,7 +283,7 @@ fn is_opening(name: &str) -> bool {
 }
 
 /// Joins things of the same name and side into one that counts as several.
-fn each_once(things: Vec<ViewThing>) -> Vec<ViewThing> {
+fn merge_like_things(things: Vec<ViewThing>) -> Vec<ViewThing> {
     let mut merged: Vec<ViewThing> = Vec::new();
     for thing in things {
         let same = |other: &&mut ViewThing| other.reading.names == thing.reading.names && other.place == thing.place;

@@ -1,7 +1,7 @@
 use super::*;
 use crate::{
     dialogue::{DialogueMode, RulesAsker},
-    observe::talk_about,
+    observe::caption_view,
 };
 use std::sync::Mutex;
 use wayword_core::{AnswerText, DVec3, Heading, Pose, ViewAnswerer, ViewThird, WayOut};
@@ -41,7 +41,7 @@ fn seen(answers: &[&str], questions: usize) -> (Caption, Vec<String>) {
         prompts_hash: None,
         detector: None,
     };
-    let caption = talk_about(&view, observers).unwrap();
+    let caption = caption_view(&view, observers).unwrap();
     (caption, answerer.asked.into_inner().unwrap())
 }
 

@@ -51,17 +51,17 @@ fn count_text(text: &str, reading: &TextReading, counts: &mut WordingCounts) {
     let of_room = [("room by", "room by"), ("room with", "room with")];
     let known = PlaceWording::built_in();
     for (table, share) in of_room {
-        if let Some(key) = first_of(known.table(table), &parts.room) {
+        if let Some(key) = find_construction(known.table(table), &parts.room) {
             counts.add(table, key);
             counts.add("share", share);
         }
     }
-    if let Some(key) = level.as_ref().and_then(|level| first_of(known.table("level"), level)) {
+    if let Some(key) = level.as_ref().and_then(|level| find_construction(known.table("level"), level)) {
         counts.add("level", key);
         counts.add("share", "level");
     }
     count_object(&parts.task, counts);
-    if let Some(key) = first_of(known.table("wall"), &parts.task) {
+    if let Some(key) = find_construction(known.table("wall"), &parts.task) {
         counts.add("wall", key);
         counts.add("share", "wall");
     }
@@ -106,7 +106,7 @@ fn count_object(task: &str, counts: &mut WordingCounts) {
             "beside" => &to_the_left,
             _ => &task,
         };
-        if let Some(key) = first_of(known.table(table), text) {
+        if let Some(key) = find_construction(known.table(table), text) {
             counts.add(table, key);
             counts.add("told", table);
             has_property = true;
@@ -122,7 +122,7 @@ fn count_object(task: &str, counts: &mut WordingCounts) {
 
 /// The construction of a table that a text contains with all its fixed words; of several, the one with the longest
 /// fixed words.
-fn first_of<'a>(table: &'a WordingShares, text: &str) -> Option<&'a str> {
+fn find_construction<'a>(table: &'a WordingShares, text: &str) -> Option<&'a str> {
     let holds =
         |key: &&String| literal_runs(key).all(|part| text.contains(&part)) && literal_runs(key).next().is_some();
     table

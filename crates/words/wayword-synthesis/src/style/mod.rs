@@ -79,14 +79,14 @@ fn parse_wording() -> std::collections::BTreeMap<String, WordingShares> {
 /// # Errors
 /// When it is no style, or has no or too many references.
 pub fn parse_style(name: &str, text: &str) -> Result<InstructionStyle, StyleError> {
-    parse_with(name, text, Vec::new())
+    parse_style_with(name, text, Vec::new())
 }
 
 /// Like [`parse_style`], with the references in `more` after those of the file.
 ///
 /// # Errors
 /// When it is no style, or there are no or too many references.
-pub fn parse_with(name: &str, text: &str, more: Vec<String>) -> Result<InstructionStyle, StyleError> {
+pub fn parse_style_with(name: &str, text: &str, more: Vec<String>) -> Result<InstructionStyle, StyleError> {
     let unreadable = |reason: String| StyleError::Unreadable { name: name.to_owned(), reason };
     let mut style: InstructionStyle =
         toml::from_str(text).map_err(|error| unreadable(error.to_string().trim().replace('\n', " ")))?;

@@ -32,7 +32,7 @@ impl TextDice {
     }
 
     /// A value from 0 to 1 for the place with this number. Consecutive places get values far apart.
-    pub(super) fn in_turn(self, purpose: &str, number: usize) -> f64 {
+    pub(super) fn spread_share(self, purpose: &str, number: usize) -> f64 {
         (self.named_rng(&[purpose]).random_range(0.0..1.0) + number as f64 * GOLDEN_RATIO_FRACTION).fract()
     }
 

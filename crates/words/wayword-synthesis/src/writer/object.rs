@@ -72,7 +72,7 @@ impl<'a> TaskObject<'a> {
         let extra =
             if is_sure { more } else { more.max(usize::from(rng.random_bool(wording.share_of_texts("object")))) };
         for _ in 0..extra {
-            let of_object = by.iter().filter(|by| !by.is_of_room()).count();
+            let of_object = by.iter().filter(|by| !by.is_about_room()).count();
             let has_by = has_any(&by, &|by| matches!(by, ObjectDistinction::RoomBy { .. }));
             let has_with = has_any(&by, &|by| matches!(by, ObjectDistinction::RoomWith { .. }));
             let repeats = |other: &ObjectDistinction| {
@@ -90,15 +90,19 @@ impl<'a> TaskObject<'a> {
             let others = all.iter().flat_map(|by| by.iter()).filter(adds).map(std::slice::from_ref);
             by.extend(draw_distinctions(&others.collect::<Vec<_>>(), wording, rng));
         }
-        if self.has_namesake && !has_any(&by, &|by| !by.is_of_room()) {
-            by.extend(self.in_view(wording, rng));
+        if self.has_namesake && !has_any(&by, &|by| !by.is_about_room()) {
+            by.extend(self.draw_distinction_in_view(wording, rng));
         }
         by
     }
 
     /// Draws a property that distinguishes the object from its namesakes in view at the end. An object without
     /// namesakes gets one as often as people mention one.
-    pub(super) fn in_view(&self, wording: &PlaceWording, rng: &mut ChaCha8Rng) -> Vec<&'a ObjectDistinction> {
+    pub(super) fn draw_distinction_in_view(
+        &self,
+        wording: &PlaceWording,
+        rng: &mut ChaCha8Rng,
+    ) -> Vec<&'a ObjectDistinction> {
         let mentions_one = self.has_namesake || rng.random_bool(wording.share_of_texts("object"));
         let told: Vec<&[ObjectDistinction]> = self.told_by.iter().map(std::slice::from_ref).collect();
         draw_distinctions(if mentions_one { &told } else { &[] }, wording, rng).iter().collect()
@@ -111,7 +115,7 @@ impl<'a> TaskObject<'a> {
         wording: &PlaceWording,
         rng: &mut ChaCha8Rng,
     ) -> String {
-        let of_object = by.iter().filter(|by| !by.is_of_room());
+        let of_object = by.iter().filter(|by| !by.is_about_room());
         let (mut phrase, mut behind) = (format!("the {}", self.called), Vec::new());
         for by in of_object {
             match *by {

@@ -31,7 +31,7 @@ const NEVER_FAULT_WORDS: f64 = 1000.0;
 const AVOIDED_FAULT_WORDS: f64 = 100.0;
 
 /// A text that names the place at the end, and what to do there.
-pub(super) fn the_place(brief: &WritingBrief<'_>, dice: TextDice) -> Result<String, WriteError> {
+pub(super) fn write_place_text(brief: &WritingBrief<'_>, dice: TextDice) -> Result<String, WriteError> {
     let rng = &mut dice.named_rng(&["place"]);
     let walk = brief.walk;
     let last = walk.path.frames.len() - 1;

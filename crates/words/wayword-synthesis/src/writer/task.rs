@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 pub(super) fn draw_task(brief: &WritingBrief<'_>, rng: &mut ChaCha8Rng) -> Result<(String, String), WriteError> {
     let object = TaskObject::for_brief(brief, rng)?;
     let wording = &brief.profile.wording;
-    let phrase = object.object_phrase(&object.in_view(wording, rng), wording, rng);
+    let phrase = object.object_phrase(&object.draw_distinction_in_view(wording, rng), wording, rng);
     Ok((task_phrase(wording.draw_verb(&object.name, 1.0, rng), &phrase), object.name))
 }
 

@@ -44,7 +44,7 @@ const MIN_PLANNED_WORDS: usize = 8;
 const OPTIONAL_BELOW_WEIGHT: u8 = 3;
 
 /// A text that describes the way step by step. `task` is what to do at the end, in words, with the name of its object.
-pub(super) fn the_way(brief: &WritingBrief<'_>, task: Option<&(String, String)>, dice: TextDice) -> String {
+pub(super) fn write_way_text(brief: &WritingBrief<'_>, task: Option<&(String, String)>, dice: TextDice) -> String {
     let words = brief.target_words().max(MIN_PLANNED_WORDS);
     let end = brief.memory.frame_count().saturating_sub(1);
     let rooms: Vec<String> = brief.memory.room_at(end).map(str::to_owned).into_iter().collect();
@@ -53,7 +53,7 @@ pub(super) fn the_way(brief: &WritingBrief<'_>, task: Option<&(String, String)>,
     let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
     let mut best: Option<(usize, String)> = None;
     for (plan, dice) in ranked_plans(brief, words as f64, dice) {
-        let mut draft = plan.word_plan(brief, task, dice);
+        let mut draft = plan.draft_for_plan(brief, task, dice);
         for _ in 0..MAX_REWORDINGS {
             let (text, starts) = draft.text_and_starts();
             let (copied, shared) = (copies.find_copy(&text, topic), copies.find_avoidable_copy(&text));
@@ -126,7 +126,7 @@ impl WayTextPlan {
     }
 
     /// Fills things into the plan and puts it into words. Clauses are dropped until the text keeps the limit of words.
-    fn word_plan<'a>(
+    fn draft_for_plan<'a>(
         &self,
         brief: &'a WritingBrief<'_>,
         task: Option<&(String, String)>,

@@ -197,7 +197,7 @@ fn tile_surface(polygons: &PolygonNavmesh, detail: &DetailNavmesh) -> TileSurfac
             other => other.wrapping_add(1),
         };
         let neighbours = neighbours.iter().take(corners.len()).map(behind).collect();
-        let (detail_verts, detail_tris) = detail_of(detail, mesh, corners.len());
+        let (detail_verts, detail_tris) = detail_for_polygon(detail, mesh, corners.len());
         TilePiece { corners, neighbours, detail_verts, detail_tris }
     });
     TileSurface {
@@ -209,7 +209,7 @@ fn tile_surface(polygons: &PolygonNavmesh, detail: &DetailNavmesh) -> TileSurfac
 }
 
 /// The detail mesh of a polygon: its additional vertices after the polygon's own corners, and triangles with their flags.
-fn detail_of(detail: &DetailNavmesh, mesh: &SubMesh, corners: usize) -> (Vec<[f32; 3]>, Vec<[u8; 4]>) {
+fn detail_for_polygon(detail: &DetailNavmesh, mesh: &SubMesh, corners: usize) -> (Vec<[f32; 3]>, Vec<[u8; 4]>) {
     let first = mesh.base_vertex_index as usize + corners;
     let end = mesh.base_vertex_index as usize + mesh.vertex_count as usize;
     let verts = detail.vertices.get(first..end).unwrap_or_default().iter().map(|vertex| vertex.to_array()).collect();

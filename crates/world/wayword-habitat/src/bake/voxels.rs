@@ -18,13 +18,13 @@ pub(super) fn fill_voxels(
 ) -> Result<(), Box<dyn std::error::Error>> {
     for (corners, area) in mesh.indices.iter().zip(&mesh.area_types) {
         let triangle = corners.to_array().map(|corner| mesh.vertices[corner as usize]);
-        fill_one(solid, &triangle, *area, climb)?;
+        fill_triangle(solid, &triangle, *area, climb)?;
     }
     Ok(())
 }
 
 /// Cuts a triangle along rows and columns of voxels, and marks the height of each piece in its column.
-fn fill_one(
+fn fill_triangle(
     solid: &mut Heightfield,
     triangle: &[Vec3A; 3],
     area: AreaType,
@@ -109,7 +109,7 @@ mod tests {
     fn filled(triangle: [Vec3A; 3]) -> Vec<(u16, u16)> {
         let aabb = Aabb3d { min: glam::Vec3::ZERO, max: glam::Vec3::new(4.0, 2.5, 4.0) };
         let mut solid = HeightfieldBuilder { aabb, cell_size: 0.05, cell_height: 0.2 }.build().unwrap();
-        fill_one(&mut solid, &triangle, AreaType::NOT_WALKABLE, 1).unwrap();
+        fill_triangle(&mut solid, &triangle, AreaType::NOT_WALKABLE, 1).unwrap();
         let columns = (0..solid.height).flat_map(|z| (0..solid.width).map(move |x| (x, z)));
         columns
             .filter(|(x, z)| solid.spans[usize::from(*x) + usize::from(*z) * usize::from(solid.width)].is_some())

@@ -24,17 +24,17 @@ impl NavMeshGround {
     /// ground within the height of a step counts as distance 0.
     #[must_use]
     pub fn nearest_foothold(&self, place: DVec3) -> Option<Foothold> {
-        self.nearest_of(place, |_| true)
+        self.nearest_where(place, |_| true)
     }
 
     /// The ground of one island nearest to a place, under the same rules as [`Self::nearest_foothold`].
     #[must_use]
     pub fn nearest_on(&self, island: usize, place: DVec3) -> Option<Foothold> {
-        self.nearest_of(place, |polygon| polygon.island == island)
+        self.nearest_where(place, |polygon| polygon.island == island)
     }
 
     /// The nearest ground of the wanted polygons; of several at one distance, the first polygon's.
-    fn nearest_of(&self, place: DVec3, wanted: impl Fn(&GroundPolygon) -> bool) -> Option<Foothold> {
+    fn nearest_where(&self, place: DVec3, wanted: impl Fn(&GroundPolygon) -> bool) -> Option<Foothold> {
         if !place.is_finite() {
             return None;
         }
@@ -45,7 +45,7 @@ impl NavMeshGround {
             if !(meets && polygon.is_walkable && wanted(polygon)) {
                 continue;
             }
-            let (on, off) = self.nearest_in(polygon, place);
+            let (on, off) = self.nearest_in_polygon(polygon, place);
             if best.is_none_or(|(least, _)| off < least) {
                 best = Some((off, Foothold { place: on, polygon: index, island: polygon.island }));
             }
@@ -54,7 +54,7 @@ impl NavMeshGround {
     }
 
     /// The nearest place of a polygon, and the square of its distance, as [`Self::nearest_foothold`] counts it.
-    fn nearest_in(&self, polygon: &GroundPolygon, place: DVec3) -> (DVec3, f64) {
+    fn nearest_in_polygon(&self, polygon: &GroundPolygon, place: DVec3) -> (DVec3, f64) {
         if let Some(height_m) = polygon.contains_place(place).then(|| polygon.height_m(place)).flatten() {
             let off_m = ((place.z - height_m).abs() - self.climb_m).max(0.0);
             return (place.with_z(height_m), off_m * off_m);

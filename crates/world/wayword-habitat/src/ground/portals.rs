@@ -38,7 +38,7 @@ pub(super) fn open_portals(mesh: &NavMesh, polygons: &mut [GroundPolygon], climb
                 let place = |corner: usize| wayword_place(tile.verts[usize::from(poly.corners()[corner])]);
                 let ends = [place(edge), place((edge + 1) % poly.corners().len())];
                 let corner = polygons[first + index].corners.iter().position(|corner| ends.contains(&corner.place));
-                let Some(corner) = corner.and_then(|_| edge_of(&polygons[first + index], ends)) else { continue };
+                let Some(corner) = corner.and_then(|_| find_edge(&polygons[first + index], ends)) else { continue };
                 let axis = usize::from(side == 2 || side == 6);
                 let opening = TileOpening { polygon: first + index, corner, ends, axis };
                 sides.entry(([x, z], side)).or_default().push(opening);
@@ -63,7 +63,7 @@ pub(super) fn open_portals(mesh: &NavMesh, polygons: &mut [GroundPolygon], climb
 }
 
 /// The corner at which the edge with these ends begins, whatever their order.
-fn edge_of(polygon: &GroundPolygon, ends: [DVec3; 2]) -> Option<usize> {
+fn find_edge(polygon: &GroundPolygon, ends: [DVec3; 2]) -> Option<usize> {
     polygon.edges().position(|(a, b)| ends == [a.place, b.place] || ends == [b.place, a.place])
 }
 

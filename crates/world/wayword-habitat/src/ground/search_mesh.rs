@@ -92,8 +92,8 @@ impl IslandSearchMesh {
         let mut bends = Vec::new();
         let mut reached = 0;
         for bend in path.path.split_last().map_or(&[][..], |(_, before)| before) {
-            let later = bend_of(layer, &rings, reached, *bend, MAX_BEND_OFFSET_M);
-            let (at, vertex) = later.or_else(|| bend_of(layer, &rings, 0, *bend, f32::MAX))?;
+            let later = find_bend_vertex(layer, &rings, reached, *bend, MAX_BEND_OFFSET_M);
+            let (at, vertex) = later.or_else(|| find_bend_vertex(layer, &rings, 0, *bend, f32::MAX))?;
             // The way leaves a bend through the last polygon around it, so the next bend does not belong to any earlier polygon.
             let around = rings.iter().skip(at + 1).take_while(|ring| ring.contains(&vertex)).count();
             reached = at + around;
@@ -138,7 +138,13 @@ impl IslandSearchMesh {
 /// The vertex at which a way bends, at most `most_m` metres from `bend`, and the number of its polygon in `rings`, the
 /// outlines that the way goes through. The first outline that has the vertex counts, beginning with number `first`. A
 /// vertex of another storey may be as near, but it belongs to a later outline.
-fn bend_of(layer: &polyanya::Layer, rings: &[&[u32]], first: usize, bend: Vec2, most_m: f32) -> Option<(usize, u32)> {
+fn find_bend_vertex(
+    layer: &polyanya::Layer,
+    rings: &[&[u32]],
+    first: usize,
+    bend: Vec2,
+    most_m: f32,
+) -> Option<(usize, u32)> {
     let off = |vertex: u32| layer.vertices.get(vertex as usize).map_or(f32::MAX, |vertex| vertex.coords.distance(bend));
     let nearest = |ring: &&[u32]| ring.iter().copied().min_by(|a, b| off(*a).total_cmp(&off(*b)));
     let near =

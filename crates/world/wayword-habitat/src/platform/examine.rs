@@ -51,7 +51,7 @@ fn fill_condition(condition: &mut SceneCondition, files: &StageFiles) -> Result<
             let storeys = built.viewpoints().filter_map(|viewpoint| built.level_of(viewpoint)).max();
             condition.storeys = storeys;
             let judged = graph_fit::judge_fit(&TriangleColumns::with_walls(model.triangles()), &connectivity);
-            condition.fit = Some(fit_of(&judged));
+            condition.fit = Some(measured_fit(&judged));
             condition.unusable = judged.err().map(|GraphMisfit { reason, hint, .. }| SceneLack {
                 what: format!("{}: {reason}", file.display()),
                 hint: hint.to_owned(),
@@ -79,7 +79,7 @@ fn fill_condition(condition: &mut SceneCondition, files: &StageFiles) -> Result<
 }
 
 /// How a graph lies in its scene, whether or not that is good enough.
-fn fit_of(judged: &Result<GraphFit, GraphMisfit>) -> GraphFit {
+fn measured_fit(judged: &Result<GraphFit, GraphMisfit>) -> GraphFit {
     match judged {
         Ok(fit) => *fit,
         Err(misfit) => misfit.fit,

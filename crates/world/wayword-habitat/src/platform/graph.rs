@@ -34,7 +34,7 @@ pub(super) fn build_graph(file: &Path, connectivity: &ConnectivityGraph) -> Resu
 }
 
 /// Whether a place is at a viewpoint or on an edge, or near enough to one.
-pub(super) fn passes_by(graph: &ViewpointGraph, eye: DVec3) -> bool {
+pub(super) fn is_near_graph(graph: &ViewpointGraph, eye: DVec3) -> bool {
     let place = |viewpoint| graph.position_of(viewpoint);
     let near = |on_way: DVec3| {
         let off = eye - on_way;

@@ -50,15 +50,15 @@ pub(super) fn pair_graphs(scenes: BTreeMap<SceneId, StageFiles>, folder: &Path) 
     let mut pairs = GraphPairing::default();
     for (id, files) in scenes {
         let (stem, numbered) = scene_names(&files.stage);
-        let numbered_by_graph = graphs.keys().find(|name| number_of(name, &stem)).cloned();
+        let numbered_by_graph = graphs.keys().find(|name| has_scene_number(name, &stem)).cloned();
         let candidates = [numbered.clone(), numbered_by_graph.clone(), Some(stem.clone())];
         let found = candidates.into_iter().flatten().find_map(|name| Some((graphs.get(&name)?.clone(), name)));
         let Some((graph, name)) = found else {
-            pairs.unpaired.insert(id, no_graph(&files, folder, &stem, numbered.as_deref()));
+            pairs.unpaired.insert(id, lack_of_graph(&files, folder, &stem, numbered.as_deref()));
             continue;
         };
         if let Some(first) = used_graphs.get(&graph) {
-            pairs.unpaired.insert(id, taken_already(&files, &graph, first));
+            pairs.unpaired.insert(id, lack_of_own_graph(&files, &graph, first));
             continue;
         }
         let chosen_id = numbered.or(numbered_by_graph).and_then(|name| SceneId::new(name).ok());
@@ -105,18 +105,18 @@ fn scene_names(stage: &Path) -> (String, Option<String>) {
     let text = |part: Option<&std::ffi::OsStr>| part.and_then(|part| part.to_str()).unwrap_or_default().to_owned();
     let stem = scene_stem(&text(stage.file_name())).to_owned();
     let folder = text(stage.parent().and_then(Path::file_name));
-    let numbered = number_of(&folder, &stem).then_some(folder);
+    let numbered = has_scene_number(&folder, &stem).then_some(folder);
     (stem, numbered)
 }
 
 /// Whether a name is a stem with the number of an HM3D scene before it.
-fn number_of(name: &str, stem: &str) -> bool {
+fn has_scene_number(name: &str, stem: &str) -> bool {
     let number = name.strip_suffix(stem).and_then(|number| number.strip_suffix('-'));
     number.is_some_and(|number| number.len() == 5 && number.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
 /// The reason why a scene without a graph is left out.
-fn no_graph(files: &StageFiles, folder: &Path, stem: &str, numbered: Option<&str>) -> SceneLack {
+fn lack_of_graph(files: &StageFiles, folder: &Path, stem: &str, numbered: Option<&str>) -> SceneLack {
     let name = numbered.unwrap_or(stem);
     SceneLack {
         what: format!("{}: there is no viewpoint graph for it in {}", files.stage.display(), folder.display()),
@@ -127,7 +127,7 @@ fn no_graph(files: &StageFiles, folder: &Path, stem: &str, numbered: Option<&str
 }
 
 /// The reason why a scene is left out when another scene has its graph.
-fn taken_already(files: &StageFiles, graph: &Path, first: &SceneId) -> SceneLack {
+fn lack_of_own_graph(files: &StageFiles, graph: &Path, first: &SceneId) -> SceneLack {
     SceneLack {
         what: format!("{}: scene {first} has the graph {} already", files.stage.display(), graph.display()),
         hint: "give --data a folder in which each scene is once".to_owned(),

@@ -104,7 +104,7 @@ impl HabitatPlatform {
         if let Some(idle) = pairs.describe_idle_graphs() {
             hear(&idle);
         }
-        Ok(Self { options, hear, pairs, ready, examined, warned: warned })
+        Ok(Self { options, hear, pairs, ready, examined, warned })
     }
 
     /// The navmesh of a scene, from its file or baked. [`NavMesh::to_bytes`] returns a file that Habitat can read.
@@ -115,14 +115,14 @@ impl HabitatPlatform {
         if let Some(walkable) = &self.prepared_scene(scene)?.walkable {
             return Ok(walkable.navmesh.clone());
         }
-        let (_, files) = self.files_of(scene)?;
+        let (_, files) = self.find_files(scene)?;
         let stage = HabitatStage::from_file(&files.stage)?;
         Ok(walkable::read_or_bake_navmesh(&SceneModel::from_stage(&stage)?, &stage, files, &self.options)?)
     }
 
     /// A scene in memory, read if necessary.
     fn prepared_scene(&self, scene: &SceneId) -> Result<Arc<HabitatScene>, PlatformError> {
-        let (scene, files) = self.files_of(scene)?;
+        let (scene, files) = self.find_files(scene)?;
         self.ready.get_or_make(scene.clone(), || {
             let fits = self.known_condition(scene).is_some_and(|condition| condition.unusable.is_none());
             let prepared = HabitatScene::from_files(scene, files, &self.options, fits)?;
@@ -136,7 +136,7 @@ impl HabitatPlatform {
     }
 
     /// A scene's id and files, by its id or by another name that it has.
-    fn files_of(&self, name: &SceneId) -> Result<(&SceneId, &StageFiles), PlatformError> {
+    fn find_files(&self, name: &SceneId) -> Result<(&SceneId, &StageFiles), PlatformError> {
         let id = self.pairs.aliases.get(name).unwrap_or(name);
         self.pairs.scenes.get_key_value(id).ok_or_else(|| self.unknown_scene(name))
     }
@@ -245,7 +245,7 @@ impl SceneCatalogue for HabitatPlatform {
 
 impl SceneFiles for HabitatPlatform {
     fn canonical_scene(&self, scene: &SceneId) -> SceneId {
-        self.files_of(scene).map_or_else(|_| scene.clone(), |(id, _)| id.clone())
+        self.find_files(scene).map_or_else(|_| scene.clone(), |(id, _)| id.clone())
     }
 
     fn candidate_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
@@ -257,7 +257,7 @@ impl SceneFiles for HabitatPlatform {
         if let Some(why) = self.pairs.unpaired.get(scene) {
             return Ok(Some(SceneCondition::for_unusable(scene.clone(), why.clone())));
         }
-        let (id, files) = self.files_of(scene)?;
+        let (id, files) = self.find_files(scene)?;
         let found = match self.known_condition(id) {
             Some(known) => known,
             None => {
@@ -271,12 +271,12 @@ impl SceneFiles for HabitatPlatform {
     }
 
     fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
-        let (_, files) = self.files_of(scene)?;
+        let (_, files) = self.find_files(scene)?;
         Ok(Some(files.stage.clone()))
     }
 
     fn source_files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-        let (_, files) = self.files_of(scene)?;
+        let (_, files) = self.find_files(scene)?;
         let all = files.all_files(&HabitatStage::from_file(&files.stage)?);
         Ok(all.into_iter().chain(self.options.navmesh.clone()).collect())
     }

@@ -17,7 +17,7 @@ pub(super) fn sample_path(
     interval_m: f64,
 ) -> Result<Path, PlatformError> {
     match &home.walkable {
-        Some(walkable) => over_ground(home, walkable, request, seed, interval_m),
+        Some(walkable) => sample_ground_path(home, walkable, request, seed, interval_m),
         None => graph_walk::sample_graph_path(&home.id, &home.graph, request, seed, |viewpoint| {
             home.labels_around(home.graph.position_of(viewpoint).unwrap_or_default(), Heading::NORTH)
         }),
@@ -25,7 +25,7 @@ pub(super) fn sample_path(
 }
 
 /// A random path over the ground.
-fn over_ground(
+fn sample_ground_path(
     home: &HabitatScene,
     walkable: &WalkableGround,
     request: &PathRequest,
@@ -61,7 +61,7 @@ impl<R: Rng> OpenGroundScene for GroundWalker<'_, R> {
         let Ok(way) = ground.geodesic(from, to) else { return Ok(None) };
         let stops = stops_along(ground, &way, self.interval_m);
         // Habitat's agent is 1.5 m high, so its ground includes places where a person cannot stand upright.
-        let upright = |stop: &PathStop| self.walkable.is_headroom(stop.position - DVec3::Z * EYE_M);
+        let upright = |stop: &PathStop| self.walkable.has_headroom(stop.position - DVec3::Z * EYE_M);
         Ok(stops.iter().all(upright).then_some(stops))
     }
 

@@ -137,8 +137,8 @@ impl HabitatScene {
     pub(super) fn check_frame(&self, frame: &Frame) -> Result<(), PlatformError> {
         let eye = frame.pose.position;
         let is_there = match &self.walkable {
-            Some(walkable) => walkable.is_under(eye),
-            None => (self.off_graph && eye.is_finite()) || graph::passes_by(&self.graph, eye),
+            Some(walkable) => walkable.has_ground_under(eye),
+            None => (self.off_graph && eye.is_finite()) || graph::is_near_graph(&self.graph, eye),
         };
         if is_there { Ok(()) } else { Err(PlatformError::for_unknown_place(&self.id, frame)) }
     }

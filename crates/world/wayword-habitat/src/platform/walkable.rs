@@ -94,12 +94,12 @@ impl WalkableGround {
     }
 
     /// Whether there is ground under an eye.
-    pub(super) fn is_under(&self, eye: DVec3) -> bool {
+    pub(super) fn has_ground_under(&self, eye: DVec3) -> bool {
         self.ground.nearest_foothold(eye - DVec3::Z * EYE_M).is_some()
     }
 
     /// Whether a person can stand upright at a place on the ground.
-    pub(super) fn is_headroom(&self, ground: DVec3) -> bool {
+    pub(super) fn has_headroom(&self, ground: DVec3) -> bool {
         self.columns.cover_over(ground).is_headroom()
     }
 }

@@ -172,7 +172,7 @@ impl<'a> SceneModelBuilder<'a> {
         self.model.textures.push(pictures::read_texture(self.asset, number)?);
         let (index, texels) =
             (self.model.textures.len() - 1, self.model.textures.iter().map(|texture| texture.texels.len() as u64));
-        let most = pictures::most_texels(self.asset.total_bytes());
+        let most = pictures::max_total_texels(self.asset.total_bytes());
         if texels.sum::<u64>() > most {
             return Err(format!("texture {number}: the pictures have more than {most} texels together"));
         }

@@ -40,7 +40,7 @@ fn decode_texture(bytes: &[u8]) -> Result<Texture, String> {
 
 /// Most texels of all pictures together, for a file of this many bytes. A limit for each picture is not enough, because
 /// many pictures may refer to the same bytes.
-pub(super) fn most_texels(bytes: u64) -> u64 {
+pub(super) fn max_total_texels(bytes: u64) -> u64 {
     4 * FREE_TEXELS + TEXELS_PER_BYTE.saturating_mul(bytes)
 }
 

@@ -91,7 +91,7 @@ fn load_painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> R
         match texture {
             Some(_) => meshes.push(Mesh { id: PAINTED_ID, colours: Vec::new(), ..each }),
             None => {
-                let parts = by_thing(&each.positions, &owned_triangles);
+                let parts = meshes_by_thing(&each.positions, &owned_triangles);
                 meshes.extend(parts.map_err(|reason| FileError::new(mesh, reason, HM3D_HINT))?);
             }
         }
@@ -129,7 +129,7 @@ fn load_numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result
     let owned_triangles: Vec<OwnedTriangle> =
         faces.triangles.iter().map(|(corners, object)| (*corners, thing(*object))).collect();
     measure_things(&positions, &owned_triangles, &mut things);
-    let meshes = by_thing(&positions, &owned_triangles).map_err(wrong)?;
+    let meshes = meshes_by_thing(&positions, &owned_triangles).map_err(wrong)?;
     // Scans are seen only from inside, and the winding of their faces is not reliable.
     let material = MeshMaterial { double_sided: true, ..MeshMaterial::default() };
     let scene = RenderScene::new(meshes, vec![material], Vec::new()).map_err(|error| wrong(error.to_string()))?;
@@ -174,7 +174,7 @@ pub(super) fn picture_id(thing: Option<usize>) -> u32 {
 ///
 /// # Errors
 /// If a thing has more corners than a mesh may have.
-fn by_thing(positions: &[Vec3], owned_triangles: &[OwnedTriangle]) -> Result<Vec<Mesh>, String> {
+fn meshes_by_thing(positions: &[Vec3], owned_triangles: &[OwnedTriangle]) -> Result<Vec<Mesh>, String> {
     let mut parts: BTreeMap<u32, Mesh> = BTreeMap::new();
     for (corners, thing) in owned_triangles {
         let id = picture_id(*thing);

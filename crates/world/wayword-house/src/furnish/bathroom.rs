@@ -27,7 +27,7 @@ pub(super) fn furnish_bathroom(room: &mut RoomFurnisher<'_>) {
     if let Some(tub_or_shower) = tub_or_shower {
         let mat = K::BathMat.size_cm(&mut room.dice);
         let wall = room.wall_behind(tub_or_shower);
-        let place = room.in_front(room.piece_at(tub_or_shower).footprint, wall, 70).centre();
+        let place = room.floor_in_front(room.piece_at(tub_or_shower).footprint, wall, 70).centre();
         room.lay_flat(K::BathMat, place, mat, wall);
         // A large bathroom has both a bathtub and a shower.
         if room.inner.area_m2() > 9.0 {

@@ -12,11 +12,11 @@ pub(super) fn furnish_bedroom(room: &mut RoomFurnisher<'_>) {
         for gap in [4, -4] {
             if let Some(stand) = room.place_beside(bed, K::Nightstand, gap) {
                 room.apply_finish(stand);
-                room.on_top(stand, K::TableLamp, 0, 0);
+                room.place_on_top(stand, K::TableLamp, 0, 0);
             }
         }
         room.hang_over(bed, K::Painting, 40);
-        let before = room.in_front(room.piece_at(bed).footprint, room.wall_behind(bed), 60);
+        let before = room.floor_in_front(room.piece_at(bed).footprint, room.wall_behind(bed), 60);
         let size = K::Rug.size_cm(&mut room.dice);
         room.lay_flat(K::Rug, before.centre(), size, room.wall_behind(bed));
     }
@@ -47,14 +47,14 @@ pub(super) fn add_desk(room: &mut RoomFurnisher<'_>) {
         return;
     };
     room.apply_finish(desk);
-    room.on_top(desk, K::Computer, 0, -8);
+    room.place_on_top(desk, K::Computer, 0, -8);
     if room.dice.chance(70) {
-        room.on_top(desk, K::TableLamp, 48, -10);
+        room.place_on_top(desk, K::TableLamp, 48, -10);
     }
     let (footprint, wall) = (room.piece_at(desk).footprint, room.wall_behind(desk));
-    let (x, y) = room.in_front(footprint, wall, 50).centre();
+    let (x, y) = room.floor_in_front(footprint, wall, 50).centre();
     let (dx, dy) = wall.inward();
     let (x, y) = (x + dx * 6, y + dy * 6);
     let area = RectCm::new(x - 30, y - 30, x + 30, y + 30);
-    room.try_at(K::OfficeChair, area, wall.opposite(), true);
+    room.place_at_if_free(K::OfficeChair, area, wall.opposite(), true);
 }

@@ -9,14 +9,14 @@ use super::placing::{RoomFurnisher, WallPreference};
 pub(super) fn furnish_dining_room(room: &mut RoomFurnisher<'_>) {
     let (x, y) = room.inner.centre();
     let along_x = room.inner.width() >= room.inner.depth();
-    room.on_ceiling(K::Chandelier);
+    room.hang_from_ceiling(K::Chandelier);
     for length in [180, 150, 120] {
         let (w, d) = if along_x { (length, 90) } else { (90, length) };
         let footprint = RectCm::new(x - w / 2, y - d / 2, x + w / 2, y + d / 2);
         let wall = if along_x { WallSide::North } else { WallSide::West };
-        if let Some(table) = room.try_at(K::DiningTable, footprint, wall, false) {
+        if let Some(table) = room.place_at_if_free(K::DiningTable, footprint, wall, false) {
             room.apply_finish(table);
-            room.on_top(table, K::Vase, 0, 0);
+            room.place_on_top(table, K::Vase, 0, 0);
             add_chairs(room, footprint, along_x, length);
             break;
         }
@@ -24,7 +24,7 @@ pub(super) fn furnish_dining_room(room: &mut RoomFurnisher<'_>) {
     let walls = room.quiet_walls();
     if let Some(sideboard) = room.stand_at_walls(K::Sideboard, &walls, WallPreference::Middle, 45) {
         room.apply_finish(sideboard);
-        room.on_top(sideboard, K::TableLamp, 45, 0);
+        room.place_on_top(sideboard, K::TableLamp, 45, 0);
         room.hang_over(sideboard, K::Painting, 50);
     }
     room.stand_anywhere(K::Plant, WallPreference::Ends, 0);
@@ -53,7 +53,7 @@ fn add_chairs(room: &mut RoomFurnisher<'_>, table: RectCm, along_x: bool, length
         let (x, y) = if back.along_x() { (x + shift, y) } else { (x, y + shift) };
         let (w, d) = if back.along_x() { (44, 48) } else { (48, 44) };
         let footprint = RectCm::new(x - w / 2, y - d / 2, x + w / 2, y + d / 2);
-        if let Some(chair) = room.try_under(K::Chair, footprint, back, &table) {
+        if let Some(chair) = room.place_under_if_free(K::Chair, footprint, back, &table) {
             room.set_colour(chair, colour);
         }
     }

@@ -39,18 +39,18 @@ pub(super) struct RoomFinishes {
 }
 
 /// The finish that most rooms of a house share.
-pub(super) fn of_house(dice: &mut HouseDice) -> Colour {
+pub(super) fn draw_house_finish(dice: &mut HouseDice) -> Colour {
     dice.pick(WOOD_FINISHES)
 }
 
 /// The finish of a house's kitchen fronts.
-pub(super) fn of_kitchen(dice: &mut HouseDice) -> Colour {
+pub(super) fn draw_kitchen_finish(dice: &mut HouseDice) -> Colour {
     dice.pick(KITCHEN_FRONT_FINISHES)
 }
 
 impl RoomFinishes {
     /// The finishes of a room. They have their own random numbers, so that they change no other choice.
-    pub(super) fn of_room(seed: u64, index: usize, kind: RoomKind, house: Colour) -> Self {
+    pub(super) fn for_room(seed: u64, index: usize, kind: RoomKind, house: Colour) -> Self {
         let mut dice = HouseDice::new(seed, &["finish", &index.to_string()]);
         // The rooms where guests are match; bedrooms and offices are furnished one by one.
         let own_finish_percent =

@@ -13,13 +13,13 @@ pub(super) fn furnish_kitchen(room: &mut RoomFurnisher<'_>) {
     let mut walls = room.quiet_walls();
     // For the row, a long wall matters more than a wall without openings.
     walls.sort_by_key(|wall| -room.inner.edge_at(*wall).length() / 80);
-    let row = walls.iter().find_map(|wall| place_row(room, *wall));
+    let row = walls.iter().find_map(|wall| place_counter_row(room, *wall));
     let on_counter = [K::Microwave, K::Toaster, K::Kettle];
     if let Some(row) = row {
         let counters: Vec<PieceIndex> =
             row.iter().copied().filter(|piece| room.piece_at(*piece).kind == K::Counter).collect();
         for (counter, kind) in counters.into_iter().zip(on_counter) {
-            room.on_top(counter, kind, 0, -8);
+            room.place_on_top(counter, kind, 0, -8);
         }
         for piece in row {
             finish_kitchen_piece(room, piece);
@@ -27,7 +27,7 @@ pub(super) fn furnish_kitchen(room: &mut RoomFurnisher<'_>) {
     }
     add_island(room);
     for _ in 0..2 {
-        more_counter(room);
+        add_counter(room);
     }
     add_breakfast_table(room);
     room.stand_anywhere(K::Plant, WallPreference::Ends, 0);
@@ -35,7 +35,7 @@ pub(super) fn furnish_kitchen(room: &mut RoomFurnisher<'_>) {
 }
 
 /// Another stretch of worktop with a cupboard over it.
-fn more_counter(room: &mut RoomFurnisher<'_>) {
+fn add_counter(room: &mut RoomFurnisher<'_>) {
     let walls = room.shuffled_walls();
     let colour = room.taste.kitchen;
     if let Some(counter) = room.stand_sized(K::Counter, [120, 62, 91], &walls, WallPreference::Ends, 70) {
@@ -60,7 +60,7 @@ fn add_breakfast_table(room: &mut RoomFurnisher<'_>) {
 
 /// Places the row of counters at a wall; `None` if not even a short row fits. One piece as long as the whole row is placed
 /// first and taken away again, which finds the free stretch of wall.
-fn place_row(room: &mut RoomFurnisher<'_>, wall: WallSide) -> Option<Vec<PieceIndex>> {
+fn place_counter_row(room: &mut RoomFurnisher<'_>, wall: WallSide) -> Option<Vec<PieceIndex>> {
     let mut kinds = COUNTER_ROW;
     if room.dice.chance(50) {
         kinds.reverse();
@@ -79,7 +79,7 @@ fn place_row(room: &mut RoomFurnisher<'_>, wall: WallSide) -> Option<Vec<PieceIn
         let mut from = if wall.along_x() { footprint.x0 } else { footprint.y0 };
         let mut row = Vec::new();
         for (kind, size) in sizes {
-            let area = room.at_wall(wall, from, size);
+            let area = room.footprint_at_wall(wall, from, size);
             row.push(room.add_piece(kind, area, 0, size[2], wall));
             from += size[0];
         }
@@ -118,9 +118,9 @@ fn add_island(room: &mut RoomFurnisher<'_>) {
         for shift in [(0, 0), (30, 0), (-30, 0), (0, 30), (0, -30), (40, 40), (-40, 40), (40, -40), (-40, -40)] {
             let (x, y) = (x + shift.0, y + shift.1);
             let footprint = RectCm::new(x - w / 2, y - d / 2, x + w / 2, y + d / 2);
-            if let Some(island) = room.try_at(K::Island, footprint, wall, false) {
+            if let Some(island) = room.place_at_if_free(K::Island, footprint, wall, false) {
                 room.set_colour(island, colour);
-                room.on_top(island, K::FruitBowl, 20, 0);
+                room.place_on_top(island, K::FruitBowl, 20, 0);
                 add_stools(room, footprint, wall);
                 return;
             }
@@ -129,10 +129,10 @@ fn add_island(room: &mut RoomFurnisher<'_>) {
 }
 
 fn add_stools(room: &mut RoomFurnisher<'_>, island: RectCm, wall: WallSide) {
-    let before = room.in_front(island, wall, 44);
+    let before = room.floor_in_front(island, wall, 44);
     let (x, y) = before.centre();
     for shift in [-38, 38] {
         let (x, y) = if wall.along_x() { (x + shift, y) } else { (x, y + shift) };
-        room.try_at(K::BarStool, RectCm::new(x - 19, y - 19, x + 19, y + 19), wall.opposite(), false);
+        room.place_at_if_free(K::BarStool, RectCm::new(x - 19, y - 19, x + 19, y + 19), wall.opposite(), false);
     }
 }

@@ -9,7 +9,7 @@ pub(super) fn furnish_living_room(room: &mut RoomFurnisher<'_>) {
     let sofa = sofa.or_else(|| room.stand_sized(K::Sofa, [180, 90, 82], &walls, WallPreference::Middle, 110));
     let sofa = sofa.or_else(|| room.stand_sized(K::Sofa, [150, 86, 82], &walls, WallPreference::Middle, 80));
     if let Some(sofa) = sofa {
-        around_sofa(room, sofa);
+        furnish_around_sofa(room, sofa);
     }
     if room.dice.chance(40) {
         let walls = room.walls_without_windows(&walls);
@@ -22,7 +22,7 @@ pub(super) fn furnish_living_room(room: &mut RoomFurnisher<'_>) {
     room.stand_anywhere(K::Armchair, WallPreference::Anywhere, 40);
     if let Some(sideboard) = room.stand_anywhere(K::Sideboard, WallPreference::Middle, 50) {
         room.apply_finish(sideboard);
-        room.on_top(sideboard, K::Vase, 30, 0);
+        room.place_on_top(sideboard, K::Vase, 30, 0);
         room.hang_over(sideboard, K::Painting, 50);
     }
     if room.dice.chance(35) {
@@ -36,29 +36,29 @@ pub(super) fn furnish_living_room(room: &mut RoomFurnisher<'_>) {
 
 /// Places a television opposite the sofa, a rug and a coffee table in front of it, a side table beside it, and a painting
 /// over it.
-fn around_sofa(room: &mut RoomFurnisher<'_>, sofa: PieceIndex) {
+fn furnish_around_sofa(room: &mut RoomFurnisher<'_>, sofa: PieceIndex) {
     let wall = room.wall_behind(sofa);
     let stand = room.stand_at_walls(K::TvStand, &[wall.opposite()], WallPreference::Middle, 60);
     let stand = stand.or_else(|| room.stand_anywhere(K::TvStand, WallPreference::Middle, 60));
     if let Some(stand) = stand {
-        room.on_top(stand, K::Television, 0, 0);
+        room.place_on_top(stand, K::Television, 0, 0);
     }
-    let before = room.in_front(room.piece_at(sofa).footprint, wall, 150);
+    let before = room.floor_in_front(room.piece_at(sofa).footprint, wall, 150);
     let [width, depth, height] = K::Rug.size_cm(&mut room.dice);
     room.lay_flat(K::Rug, before.centre(), [width, depth, height], wall);
     let table = K::CoffeeTable.size_cm(&mut room.dice);
-    let (x, y) = room.in_front(room.piece_at(sofa).footprint, wall, 2 * 38 + table[1]).centre();
+    let (x, y) = room.floor_in_front(room.piece_at(sofa).footprint, wall, 2 * 38 + table[1]).centre();
     let (w, d) = if wall.along_x() { (table[0], table[1]) } else { (table[1], table[0]) };
     let footprint = RectCm::new(x - w / 2, y - d / 2, x - w / 2 + w, y - d / 2 + d);
-    if let Some(table) = room.try_at(K::CoffeeTable, footprint, wall, true) {
+    if let Some(table) = room.place_at_if_free(K::CoffeeTable, footprint, wall, true) {
         room.apply_finish(table);
         if room.dice.chance(60) {
-            room.on_top(table, K::Vase, 10, 0);
+            room.place_on_top(table, K::Vase, 10, 0);
         }
     }
     if let Some(table) = room.place_beside(sofa, K::SideTable, 6) {
         room.apply_finish(table);
-        room.on_top(table, K::TableLamp, 0, 0);
+        room.place_on_top(table, K::TableLamp, 0, 0);
     }
     room.hang_over(sofa, K::Painting, 45);
 }

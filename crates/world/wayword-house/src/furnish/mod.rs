@@ -40,8 +40,8 @@ pub(super) struct HousePalette {
 pub(super) fn furnish_house(seed: u64, layout: &HouseLayout) -> Vec<FurniturePiece> {
     let mut dice = HouseDice::new(seed, &["taste"]);
     let taste = HousePalette {
-        wood: finish::of_house(&mut dice),
-        kitchen: finish::of_kitchen(&mut dice),
+        wood: finish::draw_house_finish(&mut dice),
+        kitchen: finish::draw_kitchen_finish(&mut dice),
         curtain: dice.pick([Colour::Beige, Colour::Grey, Colour::Blue, Colour::White]),
     };
     let mut pieces = Vec::new();
@@ -77,7 +77,7 @@ fn furnish_room(room: &mut RoomFurnisher<'_>, kind: RoomKind) {
         RoomKind::Staircase => {}
     }
     if !matches!(kind, RoomKind::DiningRoom | RoomKind::Staircase) {
-        room.on_ceiling(FurnitureKind::CeilingLight);
+        room.hang_from_ceiling(FurnitureKind::CeilingLight);
     }
 }
 

@@ -16,7 +16,7 @@ pub(super) fn furnish_office(room: &mut RoomFurnisher<'_>) {
         }
     }
     if let Some(cabinet) = room.stand_anywhere(K::FilingCabinet, WallPreference::Ends, 45) {
-        room.on_top(cabinet, K::Globe, 0, 0);
+        room.place_on_top(cabinet, K::Globe, 0, 0);
     }
     if room.dice.chance(60) {
         room.stand_anywhere(K::Armchair, WallPreference::Ends, 30);

@@ -72,7 +72,7 @@ impl<'a> RoomFurnisher<'a> {
         Self {
             dice: HouseDice::new(seed, &["furniture", &index.to_string()]),
             taste,
-            finishes: RoomFinishes::of_room(seed, index, room.kind, taste.wood),
+            finishes: RoomFinishes::for_room(seed, index, room.kind, taste.wood),
             room,
             index,
             inner: room.inner_area(),
@@ -184,8 +184,8 @@ impl<'a> RoomFurnisher<'a> {
     ) -> Option<PieceIndex> {
         for wall in walls {
             for from in self.wall_offsets(*wall, size[0], along) {
-                let footprint = self.at_wall(*wall, from, size);
-                let before = self.in_front(footprint, *wall, clearance);
+                let footprint = self.footprint_at_wall(*wall, from, size);
+                let before = self.floor_in_front(footprint, *wall, clearance);
                 if !self.blinds_window(*wall, &footprint, size[2]) && self.is_free(&footprint, &before) {
                     self.reserved.push(before);
                     return Some(self.add_piece(kind, footprint, 0, size[2], *wall));
@@ -196,7 +196,7 @@ impl<'a> RoomFurnisher<'a> {
     }
 
     /// Places a piece at exactly this footprint if it fits there; reserved floor does not count where `close` is set.
-    pub(super) fn try_at(
+    pub(super) fn place_at_if_free(
         &mut self,
         kind: FurnitureKind,
         footprint: RectCm,
@@ -211,8 +211,8 @@ impl<'a> RoomFurnisher<'a> {
         fits.then(|| self.add_piece(kind, footprint, 0, height, wall))
     }
 
-    /// As [`Self::try_at`], pushed in under `table`.
-    pub(super) fn try_under(
+    /// As [`Self::place_at_if_free`], pushed in under `table`.
+    pub(super) fn place_under_if_free(
         &mut self,
         kind: FurnitureKind,
         footprint: RectCm,
@@ -235,7 +235,7 @@ impl<'a> RoomFurnisher<'a> {
         let anchor = self.pieces[anchor].footprint;
         let (low, high) = if wall.along_x() { (anchor.x0, anchor.x1) } else { (anchor.y0, anchor.y1) };
         let from = if gap > 0 { high + gap } else { low + gap - size[0] };
-        let footprint = self.at_wall(wall, from, size);
+        let footprint = self.footprint_at_wall(wall, from, size);
         let fits = self.inner.contains(&footprint)
             && !self.touches_fixed(&footprint)
             && !self.blinds_window(wall, &footprint, size[2])
@@ -278,12 +278,12 @@ impl<'a> RoomFurnisher<'a> {
     /// Walls in random order, those without openings first.
     pub(super) fn quiet_walls(&mut self) -> Vec<WallSide> {
         let mut walls = self.shuffled_walls().to_vec();
-        walls.sort_by_key(|wall| self.holes.iter().filter(|span| self.is_on(*wall, span)).count());
+        walls.sort_by_key(|wall| self.holes.iter().filter(|span| self.is_span_on_wall(*wall, span)).count());
         walls
     }
 
     /// Whether a span lies on this wall of the room.
-    fn is_on(&self, wall: WallSide, span: &SpanCm) -> bool {
+    fn is_span_on_wall(&self, wall: WallSide, span: &SpanCm) -> bool {
         self.room.outline.wall_of(span) == Some(wall)
     }
 
@@ -304,7 +304,7 @@ impl<'a> RoomFurnisher<'a> {
     }
 
     /// The footprint of a piece that has its back to a wall, from `from` along it.
-    pub(super) fn at_wall(&self, wall: WallSide, from: i32, [width, depth, _]: [i32; 3]) -> RectCm {
+    pub(super) fn footprint_at_wall(&self, wall: WallSide, from: i32, [width, depth, _]: [i32; 3]) -> RectCm {
         let edge = self.inner.edge_at(wall);
         let area = SpanCm { from, to: from + width, ..edge }.thickened_by(0);
         let (dx, dy) = wall.inward();
@@ -317,7 +317,7 @@ impl<'a> RoomFurnisher<'a> {
     }
 
     /// The floor in front of a piece, `depth` centimetres deep.
-    pub(super) fn in_front(&self, footprint: RectCm, wall: WallSide, depth: i32) -> RectCm {
+    pub(super) fn floor_in_front(&self, footprint: RectCm, wall: WallSide, depth: i32) -> RectCm {
         match wall {
             WallSide::North => RectCm::new(footprint.x0, footprint.y0 - depth, footprint.x1, footprint.y0),
             WallSide::South => RectCm::new(footprint.x0, footprint.y1, footprint.x1, footprint.y1 + depth),
@@ -328,7 +328,7 @@ impl<'a> RoomFurnisher<'a> {
 
     /// Whether a piece at a wall would reach more than 25 cm above the sill of a window there.
     fn blinds_window(&self, wall: WallSide, footprint: &RectCm, height: i32) -> bool {
-        let covers = |span: &SpanCm| self.is_on(wall, span) && span.thickened_by(20).overlaps(footprint);
+        let covers = |span: &SpanCm| self.is_span_on_wall(wall, span) && span.thickened_by(20).overlaps(footprint);
         self.windows.iter().any(|(span, sill)| *sill < height - 25 && covers(span))
     }
 
@@ -367,7 +367,13 @@ impl<'a> RoomFurnisher<'a> {
 
     /// Puts a small thing on top of a piece, `shift` centimetres along it from its middle and `forward` from its middle
     /// towards its front.
-    pub(super) fn on_top(&mut self, below: PieceIndex, kind: FurnitureKind, shift: i32, forward: i32) -> PieceIndex {
+    pub(super) fn place_on_top(
+        &mut self,
+        below: PieceIndex,
+        kind: FurnitureKind,
+        shift: i32,
+        forward: i32,
+    ) -> PieceIndex {
         let [width, depth, height] = kind.size_cm(&mut self.dice);
         let (wall, base) = (self.wall_behind(below), self.pieces[below].base_cm + self.pieces[below].height_cm);
         let (cx, cy) = self.pieces[below].footprint.centre();
@@ -401,7 +407,7 @@ impl<'a> RoomFurnisher<'a> {
     }
 
     /// Hangs a lamp from the middle of the ceiling.
-    pub(super) fn on_ceiling(&mut self, kind: FurnitureKind) -> PieceIndex {
+    pub(super) fn hang_from_ceiling(&mut self, kind: FurnitureKind) -> PieceIndex {
         let [width, depth, height] = kind.size_cm(&mut self.dice);
         let (x, y) = self.inner.centre();
         let footprint = RectCm::new(x - width / 2, y - depth / 2, x - width / 2 + width, y - depth / 2 + depth);
@@ -414,9 +420,9 @@ impl<'a> RoomFurnisher<'a> {
         let hole = self
             .holes
             .iter()
-            .any(|span| self.is_on(wall, span) && span.thickened_by(MIN_GAP_TO_OPENING_CM).overlaps(area));
+            .any(|span| self.is_span_on_wall(wall, span) && span.thickened_by(MIN_GAP_TO_OPENING_CM).overlaps(area));
         let window = self.windows.iter().any(|(span, sill)| {
-            self.is_on(wall, span) && span.thickened_by(MIN_GAP_TO_OPENING_CM).overlaps(area) && *sill < top
+            self.is_span_on_wall(wall, span) && span.thickened_by(MIN_GAP_TO_OPENING_CM).overlaps(area) && *sill < top
         });
         let floor = self.room.base_cm();
         let piece = self.pieces.iter().any(|piece| {

@@ -18,7 +18,7 @@ pub(super) fn furnish_hallway(room: &mut RoomFurnisher<'_>) {
         let walls = room.shuffled_walls();
         if let Some(table) = room.stand_sized(K::ConsoleTable, [90, 26, 80], &walls, WallPreference::Middle, 60) {
             room.apply_finish(table);
-            room.on_top(table, K::Vase, 0, 0);
+            room.place_on_top(table, K::Vase, 0, 0);
             room.hang_over(table, K::Mirror, 20);
         }
     }
@@ -82,7 +82,7 @@ pub(super) fn furnish_garage(room: &mut RoomFurnisher<'_>) {
         let (x, y) = if deep { (x + shift, y) } else { (x, y + shift) };
         let (w, d) = if deep { (178, 400) } else { (400, 178) };
         let footprint = RectCm::new(x - w / 2, y - d / 2, x + w / 2, y + d / 2);
-        if room.try_at(K::Car, footprint, wall, true).is_some() {
+        if room.place_at_if_free(K::Car, footprint, wall, true).is_some() {
             break;
         }
     }

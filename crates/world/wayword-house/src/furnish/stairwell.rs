@@ -49,7 +49,7 @@ fn lowest_picture_height(
     wall: WallSide,
     [from, width]: [i32; 2],
 ) -> Option<i32> {
-    let area = room.at_wall(wall, from, [width, 4, 0]);
+    let area = room.footprint_at_wall(wall, from, [width, 4, 0]);
     let (x, y) = area.centre();
     let ends = if wall.along_x() { [(area.x0, y), (x, y), (area.x1, y)] } else { [(x, area.y0), (x, y), (x, area.y1)] };
     let steps_m = ends.map(|(x, y)| stairs.height_at(f64::from(x) / 100.0, f64::from(y) / 100.0));
@@ -70,7 +70,7 @@ fn hang_column(room: &mut RoomFurnisher<'_>, wall: WallSide, [from, width]: [i32
         let height = HEIGHT_CM.min(TOP_CM - base);
         let kind =
             if height < 110 || room.dice.chance(60) { K::Painting } else { room.dice.pick([K::Photos, K::Tapestry]) };
-        let area = room.at_wall(wall, from, [width, 4, height]);
+        let area = room.footprint_at_wall(wall, from, [width, 4, height]);
         if room.wall_is_bare(wall, &area, base, base + height, true) {
             room.hang_apart(kind, area, base, height, wall);
             base += height + APART_CM;

@@ -83,7 +83,7 @@ impl RoomFurnisher<'_> {
         let mut runs: Vec<(i32, i32)> = Vec::new();
         let (from, to) = (edge.from + GAP_CM, edge.to - GAP_CM);
         for at in (from..to - STRIP_CM).step_by(STRIP_CM as usize) {
-            let strip = self.at_wall(wall, at, [STRIP_CM, 4, 0]);
+            let strip = self.footprint_at_wall(wall, at, [STRIP_CM, 4, 0]);
             if !self.wall_is_bare(wall, &strip, band.base, band.top, true) {
                 continue;
             }
@@ -116,7 +116,7 @@ impl RoomFurnisher<'_> {
             let base =
                 band.base + if matches!(kind, K::CoatHooks | K::Tapestry | K::Towel) { spare } else { spare / 2 };
             let depth = kind.entry().size_cm[1];
-            let area = self.at_wall(wall, at, [width, depth, height]);
+            let area = self.footprint_at_wall(wall, at, [width, depth, height]);
             self.hang_apart(kind, area, base, height, wall);
             at += width + GAP_CM + gap.max(0);
         }

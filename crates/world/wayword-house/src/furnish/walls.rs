@@ -46,7 +46,7 @@ impl RoomFurnisher<'_> {
         base: i32,
         size: [i32; 3],
     ) -> Option<PieceIndex> {
-        let area = self.at_wall(wall, from, size);
+        let area = self.footprint_at_wall(wall, from, size);
         let fits =
             self.inner.contains(&area) && self.wall_is_bare(wall, &area, base, base + size[2], kind.is_slim_on_wall());
         fits.then(|| self.add_piece(kind, area, base, size[2], wall))
@@ -60,7 +60,7 @@ impl RoomFurnisher<'_> {
             };
             for from in [span.from - 34, span.to - 16] {
                 let size = [50, 8, 240];
-                let area = self.at_wall(wall, from, size);
+                let area = self.footprint_at_wall(wall, from, size);
                 if self.inner.contains(&area) && !self.overlaps_any(&area) {
                     let curtain = self.add_piece(FurnitureKind::Curtain, area, 2, size[2], wall);
                     self.set_colour(curtain, self.taste.curtain);

@@ -2,7 +2,9 @@
 
 use super::{CELL_CM, GroundCell, GroundRouteError, HouseGround};
 use wayword_core::DVec3;
-use wayword_world::grid_search::{EIGHT_NEIGHBOUR_STEPS, at_least, find_shortest_way, free_steps_around, pull_taut};
+use wayword_world::grid_search::{
+    EIGHT_NEIGHBOUR_STEPS, find_shortest_way, free_steps_around, min_way_length, pull_taut,
+};
 
 /// A shortest way over the ground.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,14 +27,14 @@ impl HouseGround {
     pub fn shortest_route(&self, from: DVec3, to: DVec3) -> Result<HouseRoute, GroundRouteError> {
         let start = self.cell_at(from).ok_or(GroundRouteError::NotWalkable(from))?;
         let goal = self.cell_at(to).ok_or(GroundRouteError::NotWalkable(to))?;
-        let cells = self.over_cells(start, goal).ok_or(GroundRouteError::NotJoined(from, to))?;
+        let cells = self.shortest_cell_route(start, goal).ok_or(GroundRouteError::NotJoined(from, to))?;
         let mut corners = pull_taut(&cells, |a, b| self.is_straight(a, b));
         self.pull_corners(&mut corners);
         Ok(self.route_along(&corners))
     }
 
     /// The shortest way from cell to cell, which still has the corners of the grid.
-    fn over_cells(&self, start: GroundCell, goal: GroundCell) -> Option<Vec<GroundCell>> {
+    fn shortest_cell_route(&self, start: GroundCell, goal: GroundCell) -> Option<Vec<GroundCell>> {
         let size = self.grid.len();
         // The search numbers the cells of all layers one after another.
         let number = |cell: GroundCell| cell.layer * size + cell.index;
@@ -41,7 +43,7 @@ impl HouseGround {
         let least_left = |at: usize| {
             let (x, y) = self.grid.centre_m(cell(at).index);
             let cells = |d: f64| (d.abs() * 100.0 / f64::from(CELL_CM)) as u64;
-            at_least(cells(x - gx), cells(y - gy))
+            min_way_length(cells(x - gx), cells(y - gy))
         };
         let steps = |at: usize| self.neighbour_cells(cell(at)).map(|(next, step)| (number(next), step));
         let way = find_shortest_way(size * self.grid.layer_count(), number(start), number(goal), least_left, steps)?;
@@ -71,7 +73,8 @@ impl HouseGround {
             let mut changed = false;
             for at in 1..corners.len().saturating_sub(1) {
                 let (before, here, after) = (corners[at - 1], corners[at], corners[at + 1]);
-                let length = |cell: GroundCell| self.flat_m(before, cell) + self.flat_m(cell, after);
+                let length =
+                    |cell: GroundCell| self.level_distance_m(before, cell) + self.level_distance_m(cell, after);
                 let reaches = [8, 4, 2, 1]
                     .into_iter()
                     .flat_map(|reach| EIGHT_NEIGHBOUR_STEPS.map(|(dx, dy)| (dx * reach, dy * reach)));
@@ -97,7 +100,7 @@ impl HouseGround {
     }
 
     /// The distance between the middles of two cells, seen from above, metres.
-    fn flat_m(&self, a: GroundCell, b: GroundCell) -> f64 {
+    fn level_distance_m(&self, a: GroundCell, b: GroundCell) -> f64 {
         let ((ax, ay), (bx, by)) = (self.grid.centre_m(a.index), self.grid.centre_m(b.index));
         ((ax - bx) * (ax - bx) + (ay - by) * (ay - by)).sqrt()
     }

@@ -33,7 +33,7 @@ pub(super) fn shadow_blocks(piece: &FurniturePiece) -> Vec<ShadowBlock> {
         low: Vec3::new(to_metres(area.x0), to_metres(area.y0), to_metres(piece.base_cm + low)),
         high: Vec3::new(to_metres(area.x1), to_metres(area.y1), to_metres(piece.base_cm + high)),
     };
-    let back = |part: i32| back_of(&area, piece.quarter_turns, part);
+    let back = |part: i32| back_strip(&area, piece.quarter_turns, part);
     let legs = |high: i32| leg_footprints(&area).map(|foot| boxed(foot, 0, high));
     let middle = |percent: i32| {
         let (dx, dy) = (area.width() * (100 - percent) / 200, area.depth() * (100 - percent) / 200);
@@ -73,7 +73,7 @@ pub(super) fn shadow_blocks(piece: &FurniturePiece) -> Vec<ShadowBlock> {
 }
 
 /// The strip at the back of a footprint, `percent` of its depth.
-fn back_of(area: &RectCm, quarter_turns: u8, percent: i32) -> RectCm {
+fn back_strip(area: &RectCm, quarter_turns: u8, percent: i32) -> RectCm {
     let wall = WallSide::ALL[usize::from(quarter_turns) % 4];
     let deep = (if wall.along_x() { area.depth() } else { area.width() }) * percent / 100;
     match wall {

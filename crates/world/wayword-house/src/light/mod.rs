@@ -12,7 +12,7 @@ use super::model::{House, HouseRoom, HouseWindow};
 use casters::{ShadowBlock, blocked_share, shadow_blocks};
 pub(super) use cut::{LightFactors, SurfaceGrain, cut_part};
 use glam::Vec3;
-use sun::{SunAperture, build_wings, is_free, towards_sun};
+use sun::{SunAperture, build_wings, sun_reaches_pane, towards_sun};
 
 /// The light that reaches every surface, also without lamps and windows. Light of 1 shows a surface in its own colour.
 const AMBIENT_LIGHT: f32 = 0.30;
@@ -143,7 +143,7 @@ impl RoomLight {
         }
         let through = self.apertures.iter().find_map(|aperture| aperture.sun_through(at, self.sun));
         through.map_or(0.0, |(pane, share)| {
-            if !is_free(&self.wings, pane, self.sun) {
+            if !sun_reaches_pane(&self.wings, pane, self.sun) {
                 return 0.0;
             }
             DIRECT_SUNLIGHT * facing * share * (1.0 - blocked_share(&self.blocks, own, at, pane - at, 0.06))

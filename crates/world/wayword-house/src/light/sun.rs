@@ -24,7 +24,7 @@ pub(in super::super) fn towards_sun(house: &House) -> Vec3 {
     let (x, y) = dice.pick([(1.0, 2.0), (2.0, 1.0), (2.0, 3.0), (3.0, 2.0)]);
     let rise = dice.draw_between(48, 80) as f32 / 100.0;
     let quarters = [(x, y), (-x, y), (-x, -y), (x, -y)].map(|(x, y)| Vec3::new(x, y, 0.0));
-    let lit = quarters.map(|level| lit_cm2(house, level));
+    let lit = quarters.map(|level| sunny_window_cm2(house, level));
     let most = lit.iter().copied().max().unwrap_or(0);
     let mut good: Vec<Vec3> =
         quarters.iter().zip(lit).filter(|(_, area)| area * 4 >= most * 3).map(|(way, _)| *way).collect();
@@ -34,7 +34,7 @@ pub(in super::super) fn towards_sun(house: &House) -> Vec3 {
 }
 
 /// Area of the windows that face the sun, square centimetres.
-fn lit_cm2(house: &House, sun: Vec3) -> i64 {
+fn sunny_window_cm2(house: &House, sun: Vec3) -> i64 {
     let faces = |window: &&HouseWindow| {
         let wall = house.rooms[window.room].outline.wall_of(&window.span);
         wall.is_some_and(|wall| {
@@ -127,6 +127,6 @@ pub(super) fn build_wings(house: &House, index: usize) -> Vec<ShadowBlock> {
 }
 
 /// Whether the sun reaches a place on a pane past the other rooms.
-pub(super) fn is_free(wings: &[ShadowBlock], pane: Vec3, sun: Vec3) -> bool {
+pub(super) fn sun_reaches_pane(wings: &[ShadowBlock], pane: Vec3, sun: Vec3) -> bool {
     blocked_share(wings, None, pane, sun * FAR_M, 0.2) < 0.5
 }

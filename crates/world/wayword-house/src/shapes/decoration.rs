@@ -26,7 +26,13 @@ pub(super) fn build_painting(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let frame =
         HouseSurface::for_wood([Colour::Gold, Colour::Black, Colour::Brown, Colour::White][look.variant as usize % 4]);
-    add_framed(&mut shape, look, frame, 0.05, HouseSurface::for_picture(SurfacePattern::Art(art_of(look.colour))));
+    add_framed(
+        &mut shape,
+        look,
+        frame,
+        0.05,
+        HouseSurface::for_picture(SurfacePattern::Art(painting_number(look.colour))),
+    );
     shape
 }
 
@@ -46,7 +52,7 @@ pub(super) fn build_radiator(look: &FurnitureLook) -> HouseShape {
 }
 
 /// The number of the painting that has this main colour.
-fn art_of(colour: Colour) -> u8 {
+fn painting_number(colour: Colour) -> u8 {
     let order = [
         Colour::Blue,
         Colour::Orange,

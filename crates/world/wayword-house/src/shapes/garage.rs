@@ -55,7 +55,7 @@ pub(super) fn build_boxes(look: &FurnitureLook) -> HouseShape {
 }
 
 /// Open metal shelves with cans and crates.
-pub(super) fn metal_shelf(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_metal_shelf(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let ((hw, hd), metal) = (look.half_size(), HouseSurface::for_metal(look.colour));
     shape.add_legs(metal.shaded_by(0.8), (hw, hd), 0.04, look.h);

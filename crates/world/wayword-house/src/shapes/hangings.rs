@@ -84,7 +84,7 @@ pub(super) fn build_tapestry(look: &FurnitureLook) -> HouseShape {
 }
 
 /// A board with pegs, full of coats, bags and a hat.
-pub(super) fn coat_hooks(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_coat_hooks(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let ((hw, hd), wood) = (look.half_size(), HouseSurface::for_wood(look.colour));
     let steel = HouseSurface::for_metal(Colour::DarkGrey);
@@ -147,7 +147,7 @@ fn add_coat(shape: &mut HouseShape, cloth: HouseSurface, [x, half]: [f32; 2], [b
 }
 
 /// Cork in a frame, full of notes.
-pub(super) fn bulletin_board(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_bulletin_board(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let (hw, hd) = look.half_size();
     shape.add_block(HouseSurface::for_wood(Colour::Wooden), [-hw, hw], [-hd, hd], [0.0, look.h]);
@@ -184,7 +184,7 @@ pub(super) fn bulletin_board(look: &FurnitureLook) -> HouseShape {
 }
 
 /// A pegboard with a saw, hammers, spanners and a coil of hose.
-pub(super) fn tool_board(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_tool_board(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let (hw, hd) = look.half_size();
     shape.add_block(HouseSurface::for_wood(Colour::LightBrown), [-hw, hw], [-hd + 0.02, hd], [0.0, look.h]);

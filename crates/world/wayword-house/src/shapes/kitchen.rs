@@ -155,7 +155,7 @@ pub(super) fn build_refrigerator(look: &FurnitureLook) -> HouseShape {
 }
 
 /// A cupboard on the wall.
-pub(super) fn wall_cabinet(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_wall_cabinet(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let ((hw, hd), wood) = (look.half_size(), HouseSurface::for_wood(look.colour));
     shape.add_block(wood.shaded_by(0.8), [-hw, hw], [-hd + 0.02, hd], [0.0, look.h]);
@@ -169,7 +169,7 @@ pub(super) fn wall_cabinet(look: &FurnitureLook) -> HouseShape {
 }
 
 /// A steel hood that tapers to a chimney.
-pub(super) fn range_hood(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_range_hood(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let ((hw, hd), steel) = (look.half_size(), HouseSurface::for_metal(look.colour));
     shape.add_block(steel, [-hw, hw], [-hd, hd], [0.0, 0.07]);
@@ -256,7 +256,7 @@ pub(super) fn build_kettle(look: &FurnitureLook) -> HouseShape {
     shape
 }
 
-pub(super) fn fruit_bowl(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_fruit_bowl(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let (r, body) = (look.w / 2.0, HouseSurface::from_rgb(look.colour.rgb()));
     shape.add_turned(

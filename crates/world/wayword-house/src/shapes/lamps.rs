@@ -10,7 +10,7 @@ fn shade_surface() -> HouseSurface {
     HouseSurface::from_rgb([255, 240, 206]).glowing()
 }
 
-pub(super) fn floor_lamp(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_floor_lamp(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let (r, metal) = (look.w / 2.0, HouseSurface::for_metal(look.colour));
     shape.add_tube(metal, (0.0, 0.0), [0.15, 0.14], [0.0, 0.03]);
@@ -19,7 +19,7 @@ pub(super) fn floor_lamp(look: &FurnitureLook) -> HouseShape {
     shape
 }
 
-pub(super) fn table_lamp(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_table_lamp(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let (r, body) = (look.w / 2.0, HouseSurface::from_rgb(look.colour.rgb()));
     let foot = [
@@ -37,7 +37,7 @@ pub(super) fn table_lamp(look: &FurnitureLook) -> HouseShape {
 }
 
 /// A flat bowl of white glass.
-pub(super) fn ceiling_light(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_ceiling_light(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let r = look.w / 2.0;
     shape.add_tube(HouseSurface::for_metal(Colour::Silver), (0.0, 0.0), [r * 0.6, r * 0.6], [look.h - 0.03, look.h]);

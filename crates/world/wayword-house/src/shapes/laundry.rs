@@ -93,7 +93,7 @@ pub(super) fn build_basket(look: &FurnitureLook) -> HouseShape {
 }
 
 /// A padded board on crossed legs, with an iron on it.
-pub(super) fn ironing_board(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_ironing_board(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let ((hw, hd), steel) = (look.half_size(), HouseSurface::for_metal(Colour::Silver));
     let top = look.h - 0.12;

@@ -85,7 +85,7 @@ pub(super) fn build_bench(look: &FurnitureLook) -> HouseShape {
 }
 
 /// A swivel chair on five castors.
-pub(super) fn office_chair(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_office_chair(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let fabric = HouseSurface::for_fabric(look.colour);
     let black = HouseSurface::from_rgb([34, 34, 36]);

@@ -71,7 +71,7 @@ pub(super) fn build_piano(look: &FurnitureLook) -> HouseShape {
 }
 
 /// A tall case with a dial above and a pendulum behind a glass door.
-pub(super) fn grandfather_clock(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_grandfather_clock(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let ((hw, hd), wood) = (look.half_size(), HouseSurface::for_wood(look.colour));
     let brass = HouseSurface::for_metal(Colour::Gold);

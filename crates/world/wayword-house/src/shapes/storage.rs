@@ -54,7 +54,7 @@ fn add_fronts(
 }
 
 /// A sideboard: a long low cabinet.
-pub(super) fn low_cabinet(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_sideboard(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let ((hw, hd), wood) = (look.half_size(), HouseSurface::for_wood(look.colour));
     shape.add_legs(wood.shaded_by(0.7), (hw - 0.03, hd - 0.02), 0.05, 0.12);
@@ -74,7 +74,7 @@ pub(super) fn low_cabinet(look: &FurnitureLook) -> HouseShape {
 }
 
 /// A TV stand: doors at both ends, and open shelves with a player and films between them.
-pub(super) fn tv_stand(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_tv_stand(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let ((hw, hd), wood) = (look.half_size(), HouseSurface::for_wood(look.colour));
     let third = hw * 0.36;
@@ -129,7 +129,7 @@ pub(super) fn build_drawers(look: &FurnitureLook, columns: usize, rows: usize) -
 }
 
 /// A metal cabinet of four drawers with label holders.
-pub(super) fn filing_cabinet(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_filing_cabinet(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let ((hw, hd), metal) = (look.half_size(), HouseSurface::for_metal(look.colour));
     shape.add_block(metal.shaded_by(0.8), [-hw, hw], [-hd, hd], [0.0, look.h]);
@@ -196,7 +196,7 @@ pub(super) fn build_wardrobe(look: &FurnitureLook) -> HouseShape {
 }
 
 /// The doors of a closet that is built into the wall: panels in a frame.
-pub(super) fn closet_door(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_closet_door(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let ((hw, hd), wood) = (look.half_size(), HouseSurface::for_wood(look.colour));
     let frame = HouseSurface::from_rgb([242, 241, 238]);
@@ -219,7 +219,7 @@ pub(super) fn closet_door(look: &FurnitureLook) -> HouseShape {
 }
 
 /// An open rack with shoes on it.
-pub(super) fn shoe_rack(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_shoe_rack(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let ((hw, hd), wood) = (look.half_size(), HouseSurface::for_wood(look.colour));
     for x in [-hw, hw - 0.03] {
@@ -254,7 +254,7 @@ pub(super) fn shoe_rack(look: &FurnitureLook) -> HouseShape {
 }
 
 /// Two boards on the wall with bottles and boxes.
-pub(super) fn wall_shelf(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_wall_shelf(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let ((hw, hd), wood) = (look.half_size(), HouseSurface::for_wood(look.colour));
     for z in [0.0, look.h - 0.22] {
@@ -273,7 +273,7 @@ pub(super) fn wall_shelf(look: &FurnitureLook) -> HouseShape {
 }
 
 /// A rail with clothes on hangers.
-pub(super) fn clothes_rack(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_clothes_rack(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let ((hw, hd), metal) = (look.half_size(), HouseSurface::for_metal(look.colour));
     for x in [-hw + 0.02, hw - 0.02] {
@@ -293,7 +293,7 @@ pub(super) fn clothes_rack(look: &FurnitureLook) -> HouseShape {
 }
 
 /// A post with hooks and coats.
-pub(super) fn coat_rack(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_coat_rack(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let wood = HouseSurface::for_wood(look.colour);
     shape.add_tube(wood, (0.0, 0.0), [look.w / 2.0, look.w / 2.2], [0.0, 0.04]);

@@ -14,7 +14,7 @@ use glam::Vec3;
 /// A top on four legs.
 pub(super) fn build_table(look: &FurnitureLook) -> HouseShape {
     if look.colour == Colour::Glass {
-        return glass_table(look);
+        return build_glass_table(look);
     }
     let mut shape = HouseShape::default();
     let ((hw, hd), wood) = (look.half_size(), HouseSurface::for_wood(look.colour));
@@ -29,7 +29,7 @@ pub(super) fn build_table(look: &FurnitureLook) -> HouseShape {
 }
 
 /// A table with things on it, which depend on its size.
-pub(super) fn laid_table(look: &FurnitureLook) -> HouseShape {
+pub(super) fn build_laid_table(look: &FurnitureLook) -> HouseShape {
     let mut shape = build_table(look);
     let (hw, hd) = look.half_size();
     let things: &[ClutterItem] = if look.h < 0.6 {
@@ -51,7 +51,7 @@ pub(super) fn laid_table(look: &FurnitureLook) -> HouseShape {
 }
 
 /// A pane of glass on a steel frame, which shows below it.
-fn glass_table(look: &FurnitureLook) -> HouseShape {
+fn build_glass_table(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
     let ((hw, hd), steel) = (look.half_size(), HouseSurface::for_metal(Colour::Silver));
     let pane = HouseSurface::new(SurfacePattern::Reflection, [214, 236, 238]);

@@ -23,8 +23,8 @@ pub(in super::super) fn build_opening(house: &House, opening: &WallOpening) -> H
     match opening.leaf {
         DoorLeaf::None => {}
         DoorLeaf::Open { .. } => open_leaf(&mut shape, house, opening),
-        DoorLeaf::Closed => front_door(&mut shape, opening, wall),
-        DoorLeaf::Garage => garage_door(&mut shape, opening, wall),
+        DoorLeaf::Closed => add_front_door(&mut shape, opening, wall),
+        DoorLeaf::Garage => add_garage_door(&mut shape, opening, wall),
     }
     shape
 }
@@ -47,7 +47,7 @@ fn open_leaf(shape: &mut HouseShape, house: &House, opening: &WallOpening) {
     let Some(leaf) = OpenLeaf::for_opening(opening, &house.rooms) else {
         return;
     };
-    let mut standing = own_leaf(opening, super::to_metres(leaf.length_cm));
+    let mut standing = leaf_in_own_frame(opening, super::to_metres(leaf.length_cm));
     let turned = |x: f32, y: f32| {
         let on = |along: f64, through: f64| along as f32 * x + through as f32 * y;
         (on(leaf.along.0, leaf.through.0), on(leaf.along.1, leaf.through.1))
@@ -70,7 +70,7 @@ fn open_leaf(shape: &mut HouseShape, house: &House, opening: &WallOpening) {
 }
 
 /// A leaf in its own frame: x from the hinge along the leaf, y through its thickness, metres.
-fn own_leaf(opening: &WallOpening, length: f32) -> HouseShape {
+fn leaf_in_own_frame(opening: &WallOpening, length: f32) -> HouseShape {
     let mut shape = HouseShape::default();
     let paint = HouseSurface::for_wood(opening.colour);
     let (thick, top) = (super::to_metres(LEAF_CM), super::to_metres(opening.height_cm - 1));
@@ -85,7 +85,7 @@ fn own_leaf(opening: &WallOpening, length: f32) -> HouseShape {
 }
 
 /// A closed front door with four panels, two small windows and a letter slot.
-fn front_door(shape: &mut HouseShape, opening: &WallOpening, wall: WallSide) {
+fn add_front_door(shape: &mut HouseShape, opening: &WallOpening, wall: WallSide) {
     let paint = HouseSurface::for_wood(opening.colour);
     let SpanCm { from, to, .. } = opening.span;
     let base = opening.base_cm;
@@ -102,7 +102,7 @@ fn front_door(shape: &mut HouseShape, opening: &WallOpening, wall: WallSide) {
             boxed(along, [2, 3], [base + 157, base + 188]),
         );
     }
-    let knob = super::on_wall(&opening.span, wall, to - 9, 7, base + 100);
+    let knob = super::point_on_wall(&opening.span, wall, to - 9, 7, base + 100);
     shape.add_ball(HouseSurface::for_metal(Colour::Gold), knob, 0.04);
     add_box(
         shape,
@@ -112,7 +112,7 @@ fn front_door(shape: &mut HouseShape, opening: &WallOpening, wall: WallSide) {
 }
 
 /// A closed garage door of five level panels.
-fn garage_door(shape: &mut HouseShape, opening: &WallOpening, wall: WallSide) {
+fn add_garage_door(shape: &mut HouseShape, opening: &WallOpening, wall: WallSide) {
     let SpanCm { from, to, .. } = opening.span;
     let white = HouseSurface::for_metal(Colour::White);
     let rows = 5;

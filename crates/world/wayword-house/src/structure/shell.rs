@@ -6,14 +6,14 @@ use super::super::{
     shapes::HouseShape,
     surface::{HouseSurface, SurfacePattern},
 };
-use super::{on_wall, to_metres};
+use super::{point_on_wall, to_metres};
 use glam::{Vec2, Vec3};
 
 /// Height of the skirting board, centimetres.
 const SKIRTING_CM: i32 = 9;
 
 /// Up to which height the walls of a room are tiled, centimetres.
-fn tiled_cm(kind: RoomKind) -> i32 {
+fn tiled_height_cm(kind: RoomKind) -> i32 {
     if kind == RoomKind::Bathroom { 129 } else { 0 }
 }
 
@@ -37,13 +37,13 @@ fn cut_lines(from: i32, to: i32, edges: impl Iterator<Item = i32>, step: i32) ->
 pub(in super::super) fn build_walls(house: &House, index: usize) -> HouseShape {
     let mut shape = HouseShape::default();
     for wall in WallSide::ALL {
-        one_wall(&mut shape, house, index, wall);
+        build_wall(&mut shape, house, index, wall);
     }
     shape
 }
 
 /// Builds one wall, in rectangles around its holes: tiles or skirting below, paint above.
-fn one_wall(shape: &mut HouseShape, house: &House, index: usize, wall: WallSide) {
+fn build_wall(shape: &mut HouseShape, house: &House, index: usize, wall: WallSide) {
     let room = &house.rooms[index];
     let edge = room.inner_area().edge_at(wall);
     let line = room.outline.edge_at(wall);
@@ -51,7 +51,8 @@ fn one_wall(shape: &mut HouseShape, house: &House, index: usize, wall: WallSide)
     let holes = wall_holes(house, index, wall);
     let paint = HouseSurface::new(SurfacePattern::Plaster, room.wall_colour.rgb());
     let trim = HouseSurface::from_rgb([238, 237, 233]);
-    let (tiles, tiled_to) = (HouseSurface::new(SurfacePattern::Tiles, [246, 247, 248]), base + tiled_cm(room.kind));
+    let (tiles, tiled_to) =
+        (HouseSurface::new(SurfacePattern::Tiles, [246, 247, 248]), base + tiled_height_cm(room.kind));
     let columns = cut_lines(edge.from, edge.to, holes.iter().flat_map(|hole| [hole[0], hole[1]]), 40);
     let rows = cut_lines(
         base,
@@ -72,14 +73,14 @@ fn one_wall(shape: &mut HouseShape, house: &House, index: usize, wall: WallSide)
                 } else {
                     paint
                 };
-                wall_piece(shape, surface, &line, wall, [column[0], column[1], row[0], row[1]]);
+                add_wall_piece(shape, surface, &line, wall, [column[0], column[1], row[0], row[1]]);
             }
         }
     }
 }
 
 /// Adds a rectangle of a wall; the array has its ends along the wall and its lower and upper edge, centimetres.
-fn wall_piece(
+fn add_wall_piece(
     shape: &mut HouseShape,
     surface: HouseSurface,
     line: &SpanCm,
@@ -88,8 +89,8 @@ fn wall_piece(
 ) {
     // Seen from inside, a north wall runs west to east and an east wall north to south.
     let (left, right) = if matches!(wall, WallSide::North | WallSide::West) { (from, to) } else { (to, from) };
-    let corner = on_wall(line, wall, left, HALF_WALL_CM, low);
-    let u = on_wall(line, wall, right, HALF_WALL_CM, low) - corner;
+    let corner = point_on_wall(line, wall, left, HALF_WALL_CM, low);
+    let u = point_on_wall(line, wall, right, HALF_WALL_CM, low) - corner;
     let scale = surface.pattern.repeat_m();
     let uv0 = Vec2::new(to_metres(from) / scale, -to_metres(high) / scale);
     let uv1 = uv0 + Vec2::new(to_metres(to - from), to_metres(high - low)) / scale;

@@ -7,7 +7,7 @@ use super::super::{
     shapes::HouseShape,
     surface::{HouseSurface, SurfacePattern},
 };
-use super::{on_wall, to_metres, wall_box};
+use super::{point_on_wall, to_metres, wall_box};
 use glam::{Vec2, Vec3};
 
 /// Width of the wall that one picture of the view fills, metres.
@@ -53,8 +53,8 @@ fn add_view(shape: &mut HouseShape, house: &House, window: &HouseWindow, wall: W
     // Seen from inside, the lower end of a north or west wall is on the left.
     let is_low_end_left = matches!(wall, WallSide::North | WallSide::West);
     let (left, right, across) = if is_low_end_left { (from, to, from) } else { (to, from, -to) };
-    let corner = on_wall(&window.span, wall, left, 0, sill);
-    let u = on_wall(&window.span, wall, right, 0, sill) - corner;
+    let corner = point_on_wall(&window.span, wall, left, 0, sill);
+    let u = point_on_wall(&window.span, wall, right, 0, sill) - corner;
     let uv = |along: i32, z: i32| {
         Vec2::new(to_metres(along) / OUTLOOK_WIDTH_M, (OUTLOOK_TOP_M - to_metres(z - floor_cm)) / OUTLOOK_HEIGHT_M)
     };

@@ -79,7 +79,7 @@ fn garden_texel(u: f32, v: f32, drop: f32) -> TextureRgb {
 /// Two houses to a picture, a pavement, a road, and a car at the kerb.
 fn street_texel(u: f32, v: f32, drop: f32) -> TextureRgb {
     let ground = 0.6 + drop;
-    if let Some(colour) = parked_car(offset_around(u, 0.62), v - ground) {
+    if let Some(colour) = parked_car_texel(offset_around(u, 0.62), v - ground) {
         return colour;
     }
     if v > ground + 0.3 {
@@ -121,7 +121,7 @@ fn opposite_house_texel(which: i32, x: f32, v: f32) -> Option<TextureRgb> {
 }
 
 /// The parked car: `du` is measured from its middle, `dv` down from the edge of the pavement. `None` beside the car.
-fn parked_car(du: f32, dv: f32) -> Option<TextureRgb> {
+fn parked_car_texel(du: f32, dv: f32) -> Option<TextureRgb> {
     let wheel = |x: f32| distance_from(du, dv, (x, 0.1));
     let near = wheel(-0.13).min(wheel(0.13));
     if near < 0.045 {

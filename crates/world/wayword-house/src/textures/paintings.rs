@@ -19,7 +19,7 @@ pub(super) fn painting_texel(which: u8, u: f32, v: f32) -> TextureRgb {
         6 => prints::discs_texel(u, v),
         7 => prints::branch_texel(u, v),
         8 => prints::skyline_texel(u, v),
-        _ => prints::still_life(u, v),
+        _ => prints::still_life_texel(u, v),
     };
     colour.map(|channel| channel + canvas)
 }

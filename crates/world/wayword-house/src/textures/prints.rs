@@ -52,7 +52,7 @@ pub(super) fn skyline_texel(u: f32, v: f32) -> TextureRgb {
 }
 
 /// Pink: a jug with tulips on a table.
-pub(super) fn still_life(u: f32, v: f32) -> TextureRgb {
+pub(super) fn still_life_texel(u: f32, v: f32) -> TextureRgb {
     for flower in 0..6 {
         let at = (0.28 + 0.088 * flower as f32, 0.22 + 0.12 * hash_noise(flower, 0, 86));
         if distance_from(u, v * 0.8, (at.0, at.1 * 0.8)) < 0.055 {

@@ -8,7 +8,7 @@ mod tests;
 
 use std::collections::VecDeque;
 use wayword_core::{DVec3, ViewpointGraph, ViewpointId, graph::GraphError};
-use wayword_world::grid_search::{at_least, find_shortest_way, free_steps_around, pull_taut};
+use wayword_world::grid_search::{find_shortest_way, free_steps_around, min_way_length, pull_taut};
 
 /// Most cells of a floor: 500 m by 500 m at 25 cm.
 pub(crate) const MAX_CELLS: usize = 4_000_000;
@@ -50,7 +50,7 @@ impl FloorRaster {
     }
 
     /// A raster from the middles of cells. Cells that are listed with `true` are free, and all others are not.
-    pub(crate) fn of_cells(cells: &[([f64; 2], bool)], cell_m: f64) -> Option<Self> {
+    pub(crate) fn from_cells(cells: &[([f64; 2], bool)], cell_m: f64) -> Option<Self> {
         let finite = || cells.iter().filter(|(middle, _)| middle.iter().all(|number| number.is_finite()));
         let bound = |axis: usize, start: f64, better: fn(f64, f64) -> f64| {
             finite().map(|(middle, _)| middle[axis]).fold(start, better)
@@ -175,7 +175,7 @@ impl FloorRaster {
         // The least cost from a cell to the goal. With it the search tries the most promising cells first.
         let least_left = |cell: usize| {
             let ((x, y), (gx, gy)) = (place(cell), place(goal));
-            at_least(x.abs_diff(gx), y.abs_diff(gy))
+            min_way_length(x.abs_diff(gx), y.abs_diff(gy))
         };
         let steps = |cell: usize| {
             free_steps_around(move |step| self.neighbour_cell(cell, step).filter(|next| self.free[*next]))

@@ -6,7 +6,7 @@ fn drawn(rows: &[&str]) -> FloorRaster {
     let cells = rows.iter().rev().enumerate().flat_map(|(y, row)| {
         row.chars().enumerate().map(move |(x, cell)| ([x as f64 * 0.5, y as f64 * 0.5], cell == '.'))
     });
-    FloorRaster::of_cells(&cells.collect::<Vec<_>>(), 0.5).unwrap()
+    FloorRaster::from_cells(&cells.collect::<Vec<_>>(), 0.5).unwrap()
 }
 
 fn two_rooms() -> FloorRaster {
@@ -51,9 +51,9 @@ fn the_graph_is_one_even_where_a_door_is_narrow() {
 #[test]
 fn of_cells_refuses_huge_empty_and_invalid_floors() {
     let far = [([0.0, 0.0], true), ([1e9, 1e9], true)];
-    assert_eq!(FloorRaster::of_cells(&far, 0.25), None);
-    assert_eq!(FloorRaster::of_cells(&[([f64::NAN, 0.0], true)], 0.25), None);
-    assert_eq!(FloorRaster::of_cells(&[], 0.25), None);
+    assert_eq!(FloorRaster::from_cells(&far, 0.25), None);
+    assert_eq!(FloorRaster::from_cells(&[([f64::NAN, 0.0], true)], 0.25), None);
+    assert_eq!(FloorRaster::from_cells(&[], 0.25), None);
 }
 
 proptest! {
@@ -64,7 +64,7 @@ proptest! {
     ) {
         let middle = |n: usize| [(n % 12) as f64 * 0.25, (n / 12) as f64 * 0.25];
         let listed: Vec<_> = cells.iter().enumerate().map(|(n, free)| (middle(n), *free)).collect();
-        let raster = FloorRaster::of_cells(&listed, 0.25).unwrap();
+        let raster = FloorRaster::from_cells(&listed, 0.25).unwrap();
         let found = raster.shortest_way(middle(from), middle(to));
         prop_assert_eq!(found.is_some(), raster.shortest_way(middle(to), middle(from)).is_some());
         if let Some(way) = found {

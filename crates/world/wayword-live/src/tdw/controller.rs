@@ -6,7 +6,7 @@
 use super::{
     commands::BuildCommand,
     error::TdwError,
-    output::{BuildOutput, VersionOutput, id_of},
+    output::{BuildOutput, VersionOutput, frame_id},
     zmtp::{SocketRole, WireError, ZmtpPeer},
 };
 use std::{
@@ -101,7 +101,7 @@ impl BuildResponse {
         asked: &'static str,
         pick: impl Fn(BuildOutput<'a>) -> Option<T>,
     ) -> Result<T, TdwError> {
-        for output in self.frames.iter().filter(|frame| id_of(frame).is_some_and(|its| its == id.as_bytes())) {
+        for output in self.frames.iter().filter(|frame| frame_id(frame).is_some_and(|its| its == id.as_bytes())) {
             if let Some(found) = pick(BuildOutput::read(output)?) {
                 return Ok(found);
             }
@@ -217,7 +217,7 @@ impl TdwController {
             let answer = build.peer.send(&[&text]).and_then(|()| build.peer.receive());
             let response = response_from_frames(answer.map_err(|source| TdwError::Wire { address, source })?)?;
             let frame_with_id =
-                |id: &[u8; 4]| response.frames.iter().find(|frame| id_of(frame).is_some_and(|its| its == *id));
+                |id: &[u8; 4]| response.frames.iter().find(|frame| frame_id(frame).is_some_and(|its| its == *id));
             if frame_with_id(b"ftre").is_some() {
                 continue;
             }

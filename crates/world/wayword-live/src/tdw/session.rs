@@ -76,7 +76,7 @@ pub(super) fn survey_scene(controller: &mut TdwController) -> Result<SimulatorSu
 fn raster_from_map(map: &TdwOccupancyMap) -> Option<FloorRaster> {
     let floor = |[x, z]: [f32; 2]| [f64::from(x), f64::from(z)];
     let cells: Vec<_> = map.positions.iter().zip(&map.cells).map(|(at, cell)| (floor(*at), *cell == 0)).collect();
-    FloorRaster::of_cells(&cells, CELL_M)
+    FloorRaster::from_cells(&cells, CELL_M)
 }
 
 /// Objects by their colours. An object without a box is left out, because its place is not known.

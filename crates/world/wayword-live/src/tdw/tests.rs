@@ -107,6 +107,6 @@ proptest! {
 
     #[test]
     fn an_id_is_read_from_anything(bytes in prop::collection::vec(any::<u8>(), 0..12)) {
-        prop_assert_eq!(output::id_of(&bytes).is_some(), bytes.len() >= 8);
+        prop_assert_eq!(output::frame_id(&bytes).is_some(), bytes.len() >= 8);
     }
 }

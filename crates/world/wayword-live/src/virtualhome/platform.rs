@@ -78,7 +78,7 @@ pub(super) fn home_names() -> Vec<String> {
 }
 
 /// The number in a scene's name.
-fn home_of(scene: &SceneId) -> Option<u32> {
+fn home_number(scene: &SceneId) -> Option<u32> {
     let number: u32 = scene.as_str().strip_prefix("home_")?.parse().ok()?;
     (HOME_NUMBERS.contains(&number) && scene.as_str() == format!("home_{number}")).then_some(number)
 }
@@ -135,7 +135,7 @@ impl Simulator for VirtualHome {
     }
 
     fn scene_name_hint(&self, scene: &SceneId) -> Option<&'static str> {
-        home_of(scene).is_none().then_some("homes are named home_0 to home_49")
+        home_number(scene).is_none().then_some("homes are named home_0 to home_49")
     }
 
     fn enter_scene(&mut self, scene: &SceneId) -> Result<(), HomeError> {
@@ -143,7 +143,7 @@ impl Simulator for VirtualHome {
             return Ok(());
         }
         self.loaded = None;
-        let home = home_of(scene).ok_or_else(|| HomeError::Floor(format!("of {scene} is not known")))?;
+        let home = home_number(scene).ok_or_else(|| HomeError::Floor(format!("of {scene} is not known")))?;
         let url = self.client.url();
         let port = url.rsplit(':').next().filter(|port| port.parse::<u16>().is_ok()).unwrap_or("8080");
         self.progress_listener.report_line(&format!(

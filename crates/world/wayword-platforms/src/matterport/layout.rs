@@ -142,12 +142,12 @@ impl MatterportLayout {
 
     /// The file of room letters, if it exists.
     pub(crate) fn rooms_file(&self, scene: &SceneId) -> Option<PathBuf> {
-        self.in_scan(scene, "house_segmentations/panorama_to_region.txt")
+        self.find_in_scan(scene, "house_segmentations/panorama_to_region.txt")
     }
 
     /// The `.house` file, if it exists.
     pub(crate) fn house_segmentation_file(&self, scene: &SceneId) -> Option<PathBuf> {
-        self.in_scan(scene, &format!("house_segmentations/{scene}.house"))
+        self.find_in_scan(scene, &format!("house_segmentations/{scene}.house"))
     }
 
     /// The file of REVERIE's boxes of a viewpoint, which need not exist.
@@ -158,10 +158,10 @@ impl MatterportLayout {
     /// The six faces of a viewpoint's skybox: one file with all of them side by side, or one file each.
     pub(crate) fn skybox_files(&self, scene: &SceneId, viewpoint: &ViewpointId) -> Option<SkyboxFiles> {
         let folder = "matterport_skybox_images";
-        if let Some(strip) = self.in_scan(scene, &format!("{folder}/{viewpoint}_skybox_small.jpg")) {
+        if let Some(strip) = self.find_in_scan(scene, &format!("{folder}/{viewpoint}_skybox_small.jpg")) {
             return Some(SkyboxFiles::Strip(strip));
         }
-        let first = self.in_scan(scene, &format!("{folder}/{viewpoint}_skybox0_sami.jpg"))?;
+        let first = self.find_in_scan(scene, &format!("{folder}/{viewpoint}_skybox0_sami.jpg"))?;
         let face = |index: usize| first.with_file_name(format!("{viewpoint}_skybox{index}_sami.jpg"));
         Some(SkyboxFiles::Faces(std::array::from_fn(face)))
     }
@@ -173,13 +173,13 @@ impl MatterportLayout {
     }
 
     /// An existing file in a scan's folder.
-    fn in_scan(&self, scene: &SceneId, file: &str) -> Option<PathBuf> {
-        self.places_of(scene, file).find(|file| file.is_file())
+    fn find_in_scan(&self, scene: &SceneId, file: &str) -> Option<PathBuf> {
+        self.possible_paths(scene, file).find(|file| file.is_file())
     }
 
     /// The possible paths of a scan's file. Matterport3D's archives unpack to `scans/SCAN/SCAN/...` or
     /// `scans/SCAN/...`.
-    fn places_of(&self, scene: &SceneId, what: &str) -> impl Iterator<Item = PathBuf> {
+    fn possible_paths(&self, scene: &SceneId, what: &str) -> impl Iterator<Item = PathBuf> {
         let scan = scene.as_str();
         self.scans.iter().flat_map(move |scans| [scans.join(scan).join(what), scans.join(scan).join(scan).join(what)])
     }

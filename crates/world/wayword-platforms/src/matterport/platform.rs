@@ -160,7 +160,7 @@ fn known_viewpoint<'a>(
 }
 
 /// The viewpoint of a frame; an error if the frame is at none, because views exist only at viewpoints.
-fn viewpoint_of<'a>(id: &SceneId, frame: &'a Frame) -> Result<&'a ViewpointId, PlatformError> {
+fn required_viewpoint<'a>(id: &SceneId, frame: &'a Frame) -> Result<&'a ViewpointId, PlatformError> {
     frame.viewpoint.as_ref().ok_or_else(|| PlatformError::NotAViewpoint { scene: id.clone() })
 }
 
@@ -187,13 +187,13 @@ impl Platform for MatterportPlatform {
     fn look_from(&self, id: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
         let mut view = self.look_without_picture(id, from, gaze)?;
         let scene = self.loaded_scene(id)?;
-        view.image = self.image_along(id, known_viewpoint(id, &scene, viewpoint_of(id, from)?)?, gaze)?;
+        view.image = self.image_along(id, known_viewpoint(id, &scene, required_viewpoint(id, from)?)?, gaze)?;
         Ok(view)
     }
 
     fn look_without_picture(&self, id: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
         let scene = self.loaded_scene(id)?;
-        let viewpoint = viewpoint_of(id, from)?;
+        let viewpoint = required_viewpoint(id, from)?;
         let here = known_viewpoint(id, &scene, viewpoint)?;
         let labels = self.labels_from(id, &scene, viewpoint)?;
         let truth = (labels.is_some() || scene.knows_rooms()).then(|| GroundTruth {

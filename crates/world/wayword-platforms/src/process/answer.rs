@@ -43,7 +43,7 @@ struct AnswerMessage {
 /// # Errors
 /// If the line is not a JSON object with an id and either a result or an error.
 pub(crate) fn parse_answer(line: &[u8]) -> Result<ChildAnswer, ChildFault> {
-    let nonsense = |reason: String| ChildFault::Nonsense { reason, start: start_of(line) };
+    let nonsense = |reason: String| ChildFault::Nonsense { reason, start: shown_start(line) };
     if line.iter().filter(|byte| matches!(byte, b',' | b'[' | b'{')).count() > MAX_VALUES {
         return Err(nonsense(format!("more than {MAX_VALUES} JSON values")));
     }
@@ -57,7 +57,7 @@ pub(crate) fn parse_answer(line: &[u8]) -> Result<ChildAnswer, ChildFault> {
 }
 
 /// The beginning of a line, in a form that an error may show.
-fn start_of(line: &[u8]) -> String {
+fn shown_start(line: &[u8]) -> String {
     let start = String::from_utf8_lossy(line.get(..4 * SHOWN_CHARS).unwrap_or(line));
     to_safe_text(&start, SHOWN_CHARS)
 }
@@ -122,7 +122,7 @@ mod tests {
             line.truncate(line.len() - cut);
             match parse_answer(&line) {
                 Ok(answer) => prop_assert!(answer.outcome.is_ok(), "one byte cannot turn it into an error"),
-                Err(fault) => prop_assert!(fault.to_string().chars().count() < 500 && !fault.leaves_it_usable()),
+                Err(fault) => prop_assert!(fault.to_string().chars().count() < 500 && !fault.leaves_child_usable()),
             }
         }
 

@@ -58,7 +58,7 @@ impl ChildKeeper {
             last_fault: String::new(),
         };
         // No request was lost if the first child does not start: the user has to correct the cause.
-        let world = state.launch_child(&options, &hear).map_err(|failed| failed.into_wrong(&options))?;
+        let world = state.launch_child(&options, &hear).map_err(|failed| failed.into_file_error(&options))?;
         Ok(Self { options, hear, world, state: Mutex::new(state) })
     }
 
@@ -190,7 +190,7 @@ impl ChildState {
             return Err(self.failure_after(ChildFault::Closed, method));
         };
         let result = running.send_request(self.asked, method, params, within);
-        if result.as_ref().err().is_none_or(ChildFault::leaves_it_usable) {
+        if result.as_ref().err().is_none_or(ChildFault::leaves_child_usable) {
             self.answered += 1;
             if self.answered.is_multiple_of(ANSWERS_PER_RESTART) && self.restarts_left < options.restarts {
                 self.restarts_left += 1;
@@ -202,7 +202,7 @@ impl ChildState {
     /// The failure of a request after a fault. If the child cannot be used any more, it is killed here.
     fn failure_after(&mut self, fault: ChildFault, method: &'static str) -> FailedRequest {
         let mut last_words = String::new();
-        if !fault.leaves_it_usable() {
+        if !fault.leaves_child_usable() {
             last_words = self.running.take().map_or_else(String::new, RunningChild::kill_with_last_words);
             self.last_fault = format!("{fault}, when asked request {} ({method}){last_words}", self.asked);
         }
@@ -228,15 +228,15 @@ impl FailedRequest {
 
     /// The error for a child that was in use: `Lost` if it cannot be used any more.
     fn into_error(self, options: &ProcessOptions) -> PlatformError {
-        if self.fault.leaves_it_usable() {
-            return self.into_wrong(options);
+        if self.fault.leaves_child_usable() {
+            return self.into_file_error(options);
         }
         let (file, reason) = self.place_and_reason(options);
         PlatformError::Lost { world: file.display().to_string(), reason, hint: self.fault.hint() }
     }
 
     /// The error for a child that the user has to correct, as a fault of its file.
-    fn into_wrong(self, options: &ProcessOptions) -> PlatformError {
+    fn into_file_error(self, options: &ProcessOptions) -> PlatformError {
         let (file, reason) = self.place_and_reason(options);
         PlatformError::File { file, reason, hint: self.fault.hint() }
     }

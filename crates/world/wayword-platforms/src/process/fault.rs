@@ -39,7 +39,7 @@ pub(crate) enum ChildFault {
 
 impl ChildFault {
     /// Whether the child can still be used: it understood the request, and answered this request and no other.
-    pub(crate) fn leaves_it_usable(&self) -> bool {
+    pub(crate) fn leaves_child_usable(&self) -> bool {
         matches!(self, Self::Refused { .. } | Self::Misfit(_))
     }
 

@@ -62,7 +62,7 @@ struct WalkableAnswer {
 ///
 /// # Errors
 /// If the child does not answer, or its answers do not make a graph.
-pub(crate) fn of_scene(keeper: &ChildKeeper, scene: &SceneId) -> Result<ViewpointGraph, PlatformError> {
+pub(crate) fn ask_scene_graph(keeper: &ChildKeeper, scene: &SceneId) -> Result<ViewpointGraph, PlatformError> {
     if keeper.world().has_offer(WorldOffer::Graph) {
         return ask_whole_graph(keeper, scene);
     }
@@ -73,9 +73,9 @@ pub(crate) fn of_scene(keeper: &ChildKeeper, scene: &SceneId) -> Result<Viewpoin
         return Err(keeper.misfit_error("points", reason));
     }
     if keeper.world().has_offer(WorldOffer::Neighbours) {
-        by_neighbours(keeper, scene, &points)
+        graph_by_neighbours(keeper, scene, &points)
     } else {
-        by_walking(keeper, scene, points)
+        graph_by_walking(keeper, scene, points)
     }
 }
 
@@ -98,7 +98,7 @@ fn ask_whole_graph(keeper: &ChildKeeper, scene: &SceneId) -> Result<ViewpointGra
 }
 
 /// A graph of places, with the neighbours that the child gives for each.
-fn by_neighbours(
+fn graph_by_neighbours(
     keeper: &ChildKeeper,
     scene: &SceneId,
     points: &[ChildWaypoint],
@@ -132,7 +132,7 @@ fn graph_without_edges(places: &[ChildWaypoint]) -> Result<ViewpointGraph, Strin
 }
 
 /// Thins the places out, asks for each near pair whether one can walk straight, and keeps the largest connected part.
-fn by_walking(
+fn graph_by_walking(
     keeper: &ChildKeeper,
     scene: &SceneId,
     points: Vec<ChildWaypoint>,

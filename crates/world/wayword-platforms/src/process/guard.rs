@@ -97,7 +97,7 @@ pub fn this_program() -> Option<GuardProgram> {
 
 /// Sets the command that starts this program again, for a program that runs as a module of an interpreter, so that its
 /// executable is the interpreter. Only the first call counts.
-pub fn this_program_is(guardian: GuardProgram) {
+pub fn set_this_program(guardian: GuardProgram) {
     // A second call would set the same command, because a process has one interpreter.
     let _ = THIS_PROGRAM.set(guardian);
 }

@@ -43,7 +43,7 @@ pub(crate) struct ObservedObject {
 }
 
 /// The labels of a view: those of objects that have their centre within its width.
-pub(crate) fn of_view(
+pub(crate) fn labels_in_view(
     seen: Vec<ObservedObject>,
     eye: DVec3,
     gaze: ViewGaze,
@@ -140,7 +140,7 @@ mod tests {
 
     fn labels(seen: Value) -> Result<Vec<ObjectLabel>, String> {
         let seen: Vec<ObservedObject> = serde_json::from_value(seen).map_err(|error| error.to_string())?;
-        of_view(seen, DVec3::new(1.0, 2.0, 1.5), ViewGaze::quarter_view(Heading::NORTH), SIZE_PX)
+        labels_in_view(seen, DVec3::new(1.0, 2.0, 1.5), ViewGaze::quarter_view(Heading::NORTH), SIZE_PX)
     }
 
     #[test]

@@ -39,7 +39,7 @@ mod protocol;
 mod stderr;
 
 pub use group::{end_all, start_again};
-pub use guard::{GuardProgram, stand_guard_if_asked, this_program, this_program_is};
+pub use guard::{GuardProgram, set_this_program, stand_guard_if_asked, this_program};
 pub use options::{InsideWorld, ProcessOptions};
 pub use platform::ProcessPlatform;
 pub use protocol::{PROTOCOL_VERSION, WorldOffer, WorldProgram};

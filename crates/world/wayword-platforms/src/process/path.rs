@@ -61,7 +61,7 @@ pub(crate) fn ask_random_path(
     let Some(walk) = path else {
         return Err(PlatformError::NoSuchPath {
             scene: scene.clone(),
-            request: graph_walk::in_words(request),
+            request: graph_walk::describe_path_request(request),
             hint: "widen --hops or --metres",
         });
     };
@@ -110,7 +110,7 @@ fn check_fit(path: &Path, request: &PathRequest) -> Result<(), String> {
     if !(least..=most).contains(&length_m) || (on_graph && !request.hops.contains(&hops)) {
         return Err(format!(
             "a path with hops: {hops}, metres: {length_m:.3}; expected {}",
-            graph_walk::in_words(request)
+            graph_walk::describe_path_request(request)
         ));
     }
     Ok(())

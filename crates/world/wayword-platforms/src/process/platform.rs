@@ -100,7 +100,7 @@ impl ProcessPlatform {
         }
         // Asked without the lock, so that views of other scenes need not wait. If two threads ask for the same graph,
         // the first result counts.
-        let graph = Arc::new(graph::of_scene(&self.keeper, scene)?);
+        let graph = Arc::new(graph::ask_scene_graph(&self.keeper, scene)?);
         let made = Arc::new(ProcessSceneFacts { graph, objects: OnceLock::new() });
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(Arc::clone(known.entry(scene.clone()).or_insert(made)))
@@ -166,7 +166,7 @@ impl ProcessPlatform {
             return Ok(None);
         }
         let labels = match seen.labels {
-            Some(seen) if lists_objects => labels::of_view(seen, pose.position, gaze, self.size_px())?,
+            Some(seen) if lists_objects => labels::labels_in_view(seen, pose.position, gaze, self.size_px())?,
             None if lists_objects => return Err("no `labels`, although it offers them (send [] for none)".into()),
             _ => Vec::new(),
         };

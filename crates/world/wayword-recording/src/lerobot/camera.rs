@@ -52,5 +52,5 @@ pub(super) fn choose_camera(
     };
     let is_video = info.features.get(key).is_some_and(|feature| feature.dtype == "video");
     let storage = if is_video { PictureStorage::Video } else { PictureStorage::Rows };
-    Ok(DatasetCamera { key: key.clone(), storage: storage })
+    Ok(DatasetCamera { key: key.clone(), storage })
 }

@@ -46,8 +46,8 @@ pub(super) fn read_episodes(
     camera: &DatasetCamera,
 ) -> Result<Vec<DatasetEpisode>, PlatformError> {
     let mut episodes = match info.layout() {
-        Some(DatasetLayout::Files) => in_files(root, info, camera)?,
-        _ => one_by_one(root, info, camera)?,
+        Some(DatasetLayout::Files) => read_episode_tables(root, info, camera)?,
+        _ => read_episode_lines(root, info, camera)?,
     };
     episodes.sort_by_key(|episode| episode.number);
     if let Some([twice, _]) = episodes.array_windows::<2>().find(|[one, next]| one.number == next.number) {
@@ -65,7 +65,11 @@ struct EpisodeLine {
 }
 
 /// The episodes of a dataset of version 2, from `meta/episodes.jsonl`.
-fn one_by_one(root: &Path, info: &DatasetInfo, camera: &DatasetCamera) -> Result<Vec<DatasetEpisode>, PlatformError> {
+fn read_episode_lines(
+    root: &Path,
+    info: &DatasetInfo,
+    camera: &DatasetCamera,
+) -> Result<Vec<DatasetEpisode>, PlatformError> {
     let file = root.join("meta").join("episodes.jsonl");
     let wrong = |reason: String| files::file_error(&file, reason, META_HINT);
     let text =
@@ -92,7 +96,11 @@ fn one_by_one(root: &Path, info: &DatasetInfo, camera: &DatasetCamera) -> Result
 }
 
 /// The episodes of a dataset of version 3, from `meta/episodes/chunk-000/file-000.parquet` and so on.
-fn in_files(root: &Path, info: &DatasetInfo, camera: &DatasetCamera) -> Result<Vec<DatasetEpisode>, PlatformError> {
+fn read_episode_tables(
+    root: &Path,
+    info: &DatasetInfo,
+    camera: &DatasetCamera,
+) -> Result<Vec<DatasetEpisode>, PlatformError> {
     let folder = root.join("meta").join("episodes");
     let mut episodes = Vec::new();
     for chunk in sorted_entries(&folder)? {
@@ -101,14 +109,14 @@ fn in_files(root: &Path, info: &DatasetInfo, camera: &DatasetCamera) -> Result<V
             continue;
         }
         for file in sorted_entries(&chunk)?.iter().filter(|name| name.ends_with(".parquet")) {
-            episodes.extend(in_file(root, &chunk.join(file), info, camera)?);
+            episodes.extend(read_episode_table(root, &chunk.join(file), info, camera)?);
         }
     }
     Ok(episodes)
 }
 
 /// The episodes that one of these tables lists, a row for each.
-fn in_file(
+fn read_episode_table(
     root: &Path,
     file: &Path,
     info: &DatasetInfo,

@@ -15,7 +15,7 @@ mod template;
 use crate::{
     axes::{PoseAxes, PoseBody},
     describe::{self, RecordingDescription},
-    names::{plain_files, scene_of, sorted_entries, unknown_scene},
+    names::{plain_files, scene_id_for_path, sorted_entries, unknown_scene},
     pose_plausibility::find_doubt,
     reel::{PictureReel, Recording, RecordingSource},
     track::{CameraTrack, TrackFix},
@@ -58,7 +58,7 @@ impl LeRobotDataset {
         let info = DatasetInfo::read(root)?;
         let camera = camera::choose_camera(root, &info, described.camera.as_deref())?;
         let pose_feature = PoseFeature::find_feature(root, &info, &described)?;
-        let name = scene_of(root)?;
+        let name = scene_id_for_path(root)?;
         let named = |episode: DatasetEpisode| {
             let scene = SceneId::new(format!("{name}_{:06}", episode.number));
             let scene =
@@ -122,8 +122,8 @@ impl RecordingSource for LeRobotDataset {
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
         let episode = self.find_episode(scene)?;
         let table = ParquetTable::open(&episode.data)?;
-        let rows = rows_of(&table, episode, self.info.layout())?;
-        let times_s = times_s(&table, rows.clone())?;
+        let rows = find_episode_rows(&table, episode, self.info.layout())?;
+        let times_s = read_times_s(&table, rows.clone())?;
         let track = self.read_track(&table, rows.clone(), &times_s)?;
         let reel: Box<dyn PictureReel> = match &episode.clip {
             Some(clip) => Box::new(VideoStretch::open(clip, times_s, self.info.step_s())?),
@@ -156,7 +156,7 @@ fn files_below(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, PlatformErro
 }
 
 /// The rows of an episode in its file; they must be contiguous.
-fn rows_of(
+fn find_episode_rows(
     table: &ParquetTable,
     episode: &DatasetEpisode,
     layout: Option<DatasetLayout>,
@@ -188,7 +188,7 @@ fn rows_of(
 }
 
 /// The times of the rows, seconds from the beginning of the episode.
-fn times_s(table: &ParquetTable, rows: Range<u64>) -> Result<Vec<f64>, PlatformError> {
+fn read_times_s(table: &ParquetTable, rows: Range<u64>) -> Result<Vec<f64>, PlatformError> {
     let mut times_s: Vec<f64> = Vec::new();
     table.read_numbers("timestamp", rows, &mut |row, time_s| {
         let last_s = times_s.last().copied().unwrap_or(f64::MIN);

@@ -148,7 +148,7 @@ impl McapContents {
         wanted: &TopicChannels<'_>,
         hear: &mut dyn FnMut(TopicMessage<'_>) -> Result<ControlFlow<()>, String>,
     ) -> Result<(), String> {
-        let max_bytes = |id| wanted.get(&id).map_or(0, |(_, kind)| kind.most_bytes());
+        let max_bytes = |id| wanted.get(&id).map_or(0, |(_, kind)| kind.max_indexed_bytes());
         let mut hear = |found: McapRecord<'_>| {
             if found.opcode == op::MESSAGE
                 && let Record::Message { header, data } = found.parse_record()?

@@ -45,7 +45,7 @@ impl MessageKind {
 
     /// Most bytes of a message that are read while the file is indexed: a whole pose, but of a picture only its time,
     /// frame and encoding.
-    pub(crate) fn most_bytes(self) -> u64 {
+    pub(crate) fn max_indexed_bytes(self) -> u64 {
         if self.is_pose() { 16 << 20 } else { 4 << 10 }
     }
 }
@@ -206,7 +206,7 @@ pub(crate) fn read_transforms(kind: MessageKind, message: &[u8]) -> Result<Vec<S
         let (position, rotation) = (cdr.read_f64s()?, cdr.read_f64s()?);
         all.extend(RigidTransform::new(position, rotation).map(|placing| StampedTransform {
             head,
-            child_frame: child_frame,
+            child_frame,
             placing,
         }));
     }

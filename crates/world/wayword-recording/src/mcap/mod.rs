@@ -60,7 +60,7 @@ impl McapFile {
     /// # Errors
     /// When its name cannot be the name of a scene.
     pub(crate) fn open(path: &Path, described: RecordingDescription) -> Result<Self, PlatformError> {
-        Ok(Self { path: path.to_owned(), scene: names::scene_of(path)?, described })
+        Ok(Self { path: path.to_owned(), scene: names::scene_id_for_path(path)?, described })
     }
 
     /// Checks whether its first bytes are those of an MCAP file.

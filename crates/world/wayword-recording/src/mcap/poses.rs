@@ -53,10 +53,10 @@ impl RecordedPoses {
                 self.tree.add_placed(logged_ns, placed, topic.ends_with("tf_static"));
                 continue;
             }
-            let StampedTransform { head: MessageHead { stamp_ns, frame }, child_frame: child_frame, placing } = placed;
+            let StampedTransform { head: MessageHead { stamp_ns, frame }, child_frame, placing } = placed;
             if !self.topics.contains_key(topic) {
                 let edge = TransformEdge { parent: frame, ..TransformEdge::default() };
-                self.topics.insert(topic.to_owned(), TopicPoses { kind, child_frame: child_frame, edge });
+                self.topics.insert(topic.to_owned(), TopicPoses { kind, child_frame, edge });
             }
             if let Some(poses) = self.topics.get_mut(topic) {
                 poses.edge.samples.push((MessageTimes { stamp_ns, logged_ns }, placing));
@@ -71,7 +71,10 @@ impl RecordedPoses {
     ) -> Result<Option<TransformChain<'_>>, UnclearReason> {
         match named {
             Some((topic, MessageKind::Transforms)) => {
-                let chain = self.tree.way_up(true).map(|edges| Some(TransformChain { edges, starts_at_camera: true }));
+                let chain = self
+                    .tree
+                    .edges_to_fixed_frame(true)
+                    .map(|edges| Some(TransformChain { edges, starts_at_camera: true }));
                 chain.ok_or_else(|| (self.describe_incomplete(topic), "name another topic as `poses`, or leave it out"))
             }
             Some((topic, _)) => Ok(self.topics.get(topic).map(|poses| self.chain_for_topic(poses))),
@@ -88,7 +91,7 @@ impl RecordedPoses {
     /// The chain without a named topic: of the tree of frames, else of the only topic with odometry, else of the only one
     /// with poses.
     fn obvious_chain(&self) -> Result<Option<TransformChain<'_>>, UnclearReason> {
-        if let Some(edges) = self.tree.way_up(false) {
+        if let Some(edges) = self.tree.edges_to_fixed_frame(false) {
             return Ok(Some(TransformChain { edges, starts_at_camera: true }));
         }
         for kind in [MessageKind::Odometry, MessageKind::Pose] {
@@ -111,7 +114,7 @@ impl RecordedPoses {
 
     /// The chain that a topic gives. It begins at the camera's frame if the mounting of the camera on the robot is known.
     fn chain_for_topic<'a>(&'a self, poses: &'a TopicPoses) -> TransformChain<'a> {
-        let mounted = poses.child_frame.as_ref().and_then(|what| self.tree.up_to(what));
+        let mounted = poses.child_frame.as_ref().and_then(|what| self.tree.edges_up_to(what));
         let is_mounting_known = mounted.is_some();
         let mut edges = mounted.unwrap_or_default();
         edges.push(&poses.edge);

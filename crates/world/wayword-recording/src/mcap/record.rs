@@ -37,7 +37,7 @@ impl<'a> McapRecord<'a> {
     /// # Errors
     /// When it is broken; the error includes its place.
     pub(crate) fn parse_record(&self) -> Result<Record<'a>, String> {
-        let parsed = texts_fit(self.opcode, self.bytes)
+        let parsed = check_text_lengths(self.opcode, self.bytes)
             .ok_or_else(|| "a length in the record is larger than the record".to_owned());
         let parse = || mcap::parse_record(self.opcode, self.bytes).map_err(|error| error.to_string());
         parsed.and_then(|()| run_decoder(parse)).map_err(|why| format!("{}: {why}", self.place))
@@ -46,7 +46,7 @@ impl<'a> McapRecord<'a> {
 
 /// `None` if a text of a record is longer than the record. This is checked first because `mcap` reserves the memory that
 /// a text's length asks for before it checks whether the bytes are there.
-fn texts_fit(opcode: u8, body: &[u8]) -> Option<()> {
+fn check_text_lengths(opcode: u8, body: &[u8]) -> Option<()> {
     let mut rest = body;
     // The numbers are the bytes before each text, as in the specification of MCAP.
     match opcode {
@@ -87,12 +87,12 @@ mod tests {
         let pairs = [text("key"), text("value")].concat();
         let counted_pairs = [(pairs.len() as u32).to_le_bytes().to_vec(), pairs].concat();
         let channel = [vec![1, 0, 2, 0], text("/camera"), text("cdr"), counted_pairs].concat();
-        assert!(texts_fit(op::CHANNEL, &channel).is_some());
+        assert!(check_text_lengths(op::CHANNEL, &channel).is_some());
         for length_at in [4, 4 + 4 + 7, 4 + 4 + 7 + 4 + 3, 4 + 4 + 7 + 4 + 3 + 4, 4 + 4 + 7 + 4 + 3 + 4 + 4 + 3] {
             let mut broken = channel.clone();
             broken[length_at + 3] = 0x65;
-            assert!(texts_fit(op::CHANNEL, &broken).is_none(), "the length at byte {length_at} was believed");
+            assert!(check_text_lengths(op::CHANNEL, &broken).is_none(), "the length at byte {length_at} was believed");
         }
-        assert!((0..channel.len()).all(|end| texts_fit(op::CHANNEL, &channel[..end]).is_none()));
+        assert!((0..channel.len()).all(|end| check_text_lengths(op::CHANNEL, &channel[..end]).is_none()));
     }
 }

@@ -51,7 +51,7 @@ pub(crate) fn choose_camera<'a>(
                 format!("the pictures of {named} have the encoding {why}"),
                 "name another camera, or leave `camera` out",
             )),
-            None => Err((not_there(contents, named), "name one of these, or leave `camera` out")),
+            None => Err((describe_missing_camera(contents, named), "name one of these, or leave `camera` out")),
         };
     }
     let readable: Vec<&str> = cameras.iter().filter(|(_, why)| why.is_none()).map(|(name, _)| *name).collect();
@@ -63,7 +63,7 @@ pub(crate) fn choose_camera<'a>(
 }
 
 /// The reason why a topic that the user named is no camera.
-fn not_there(contents: &McapContents, named: &str) -> String {
+fn describe_missing_camera(contents: &McapContents, named: &str) -> String {
     match contents.topics.get(named) {
         Some(topic) => format!("{named} has no pictures, but {}", describe_topic(topic)),
         None => {

@@ -152,15 +152,15 @@ impl TransformTree {
             edge.samples.push((MessageTimes { stamp_ns: placed.head.stamp_ns, logged_ns }, placed.placing));
         }
         if unknown {
-            self.forget_others();
+            self.drop_unneeded_frames();
         }
     }
 
     /// Once the way from the camera's frame up to a fixed frame is known, drops all frames that are not on it.
-    fn forget_others(&mut self) {
+    fn drop_unneeded_frames(&mut self) {
         let above = self.frames_above(&self.camera);
         let root = above.last().copied().unwrap_or_default();
-        if standing_rank(root).is_some() {
+        if fixed_frame_rank(root).is_some() {
             let kept: BTreeSet<String> = above.iter().map(|frame| (*frame).to_owned()).collect();
             self.edges.retain(|frame, _| kept.contains(frame));
             self.kept = Some(kept);
@@ -180,7 +180,7 @@ impl TransformTree {
     }
 
     /// The edges from the camera's frame up to another one; `None` if that is not above it.
-    pub(crate) fn up_to(&self, frame: &str) -> Option<Vec<&TransformEdge>> {
+    pub(crate) fn edges_up_to(&self, frame: &str) -> Option<Vec<&TransformEdge>> {
         let above = self.frames_above(&self.camera);
         let to = above.iter().position(|above| *above == frame)?;
         above.iter().take(to).map(|frame| self.edges.get(*frame)).collect()
@@ -188,16 +188,17 @@ impl TransformTree {
 
     /// The edges from the camera's frame up to the best fixed frame. With `any`, up to the root if there is no fixed frame.
     /// `None` if there is no way, or no edge of it ever moves.
-    pub(crate) fn way_up(&self, any: bool) -> Option<Vec<&TransformEdge>> {
+    pub(crate) fn edges_to_fixed_frame(&self, any: bool) -> Option<Vec<&TransformEdge>> {
         let above = self.frames_above(&self.camera);
-        let best = above.iter().filter_map(|frame| Some((standing_rank(frame)?, *frame))).min().map(|(_, frame)| frame);
-        let way = self.up_to(best.or(above.last().copied().filter(|_| any))?)?;
+        let best =
+            above.iter().filter_map(|frame| Some((fixed_frame_rank(frame)?, *frame))).min().map(|(_, frame)| frame);
+        let way = self.edges_up_to(best.or(above.last().copied().filter(|_| any))?)?;
         way.iter().any(|edge| edge.is_moving()).then_some(way)
     }
 }
 
 /// Index in [`FIXED_FRAMES`] of a frame with one of those names: `map`, `robot1/map`.
-fn standing_rank(frame: &str) -> Option<usize> {
+fn fixed_frame_rank(frame: &str) -> Option<usize> {
     let name = frame.rsplit('/').next().unwrap_or(frame);
     FIXED_FRAMES.iter().position(|standing| *standing == name)
 }
@@ -236,7 +237,7 @@ mod tests {
             ("map", "odom", 40, 200.0, false),
             ("base", "arm", 40, 7.0, false),
         ]);
-        let way = tree.way_up(false).unwrap();
+        let way = tree.edges_to_fixed_frame(false).unwrap();
         let found: Vec<_> =
             placings_along(&way, MessageClock::Stamp).iter().map(|(at, placing)| (*at, placing.position.x)).collect();
         let third = 100.0 + 100.0 / 3.0;
@@ -252,18 +253,21 @@ mod tests {
     fn a_map_that_is_known_later_counts() {
         let tree =
             tree(&[("odom", "cam", 1, 1.0, false), ("odom", "cam", 3, 1.0, false), ("map", "odom", 2, 10.0, true)]);
-        assert_eq!(tree.way_up(false).unwrap().len(), 2);
-        assert_eq!(placings_along(&tree.way_up(false).unwrap(), MessageClock::Stamp)[1].1.position.x, 11.0);
+        assert_eq!(tree.edges_to_fixed_frame(false).unwrap().len(), 2);
+        assert_eq!(
+            placings_along(&tree.edges_to_fixed_frame(false).unwrap(), MessageClock::Stamp)[1].1.position.x,
+            11.0
+        );
     }
 
     #[test]
     fn way_up_needs_a_fixed_frame() {
         let moving = [("base", "cam", 1, 0.0, false), ("base", "cam", 2, 0.0, false)];
-        assert!(tree(&moving).way_up(false).is_none());
-        assert!(tree(&moving).way_up(true).is_some());
-        assert!(tree(&[("map", "cam", 1, 0.0, true)]).way_up(true).is_none());
+        assert!(tree(&moving).edges_to_fixed_frame(false).is_none());
+        assert!(tree(&moving).edges_to_fixed_frame(true).is_some());
+        assert!(tree(&[("map", "cam", 1, 0.0, true)]).edges_to_fixed_frame(true).is_none());
         // Two frames that are placed in each other do not make an endless loop.
         let round = [("b", "cam", 1, 0.0, false), ("cam", "b", 1, 0.0, false), ("b", "cam", 2, 0.0, false)];
-        assert!(tree(&round).way_up(false).is_none());
+        assert!(tree(&round).edges_to_fixed_frame(false).is_none());
     }
 }

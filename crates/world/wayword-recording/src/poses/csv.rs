@@ -43,7 +43,7 @@ pub(super) fn read_csv(text: &str) -> Result<PoseRows, String> {
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let (_, header) = lines.next().ok_or("is empty")?;
     let names: Vec<String> =
-        CsvCells::from_line(header.trim_start_matches('\u{feff}')).plain.into_iter().map(name_of).collect();
+        CsvCells::from_line(header.trim_start_matches('\u{feff}')).plain.into_iter().map(normal_column_name).collect();
     let columns = CsvColumns::from_names(&names).ok_or_else(|| format!("line 1: {HEADER_HINT}"))?;
     let rows = lines.filter(|(_, line)| !line.starts_with('#')).map(|(at, line)| {
         columns.read_row(&CsvCells::from_line(line)).map_err(|reason| format!("line {}: {reason}", at + 1))
@@ -81,7 +81,7 @@ impl<'a> CsvCells<'a> {
 }
 
 /// A column's name in the form that is compared: `#timestamp [ns]` is `timestamp_ns`, `p_RS_R_x [m]` is `x`.
-fn name_of(cell: &str) -> String {
+fn normal_column_name(cell: &str) -> String {
     let cell = cell.trim_start_matches('#').trim().to_ascii_lowercase();
     let (name, unit) = match cell.split_once('[') {
         Some((name, unit)) => (name.trim(), unit.trim_end_matches(']').trim()),
@@ -111,7 +111,7 @@ impl CsvColumns {
         let key = any(&["image", "file", "filename", "picture", "name"]).map(CsvKeyColumn::Picture).or_else(time)?;
         let axis = |axis: &str| any(&[axis, &format!("t{axis}"), &format!("p{axis}"), &format!("{axis}_m")]);
         Some(Self {
-            key: key,
+            key,
             position: [axis("x")?, axis("y")?, axis("z").or_else(|| axis("x"))?],
             facing: CsvFacing::from_columns(&find),
         })
@@ -134,7 +134,7 @@ impl CsvColumns {
             CsvFacing::Yaw { column, per_unit_rad } => PoseFacing::Yaw(value(column)? * per_unit_rad),
             CsvFacing::Heading { column, per_unit_rad } => PoseFacing::Heading(value(column)? * per_unit_rad),
         };
-        Ok(PoseRow { key: key, position, facing })
+        Ok(PoseRow { key, position, facing })
     }
 }
 

@@ -50,17 +50,17 @@ pub(super) fn read_json(text: &str) -> Result<PoseRows, String> {
     match PoseFile::deserialize(value).map_err(|_| EXPECTED_JSON.to_owned())? {
         PoseFile::Transforms { frames } => {
             let rows = frames.into_iter().enumerate().map(|(at, frame)| frame.into_row().ok_or((at, "frame")));
-            rows_of(PoseAxes::for_body(PoseBody::OpenGl), rows)
+            collect_rows(PoseAxes::for_body(PoseBody::OpenGl), rows)
         }
         PoseFile::Poses { poses } | PoseFile::List(poses) => {
             let rows = poses.into_iter().enumerate().map(|(at, pose)| pose.into_row().ok_or((at, "pose")));
-            rows_of(PoseAxes::for_body(PoseBody::Robot), rows)
+            collect_rows(PoseAxes::for_body(PoseBody::Robot), rows)
         }
     }
 }
 
 /// Collects rows with the usual axes of their format. A row that is no pose is given as its number and its kind.
-fn rows_of(
+fn collect_rows(
     usual: PoseAxes,
     rows: impl Iterator<Item = Result<PoseRow, (usize, &'static str)>>,
 ) -> Result<PoseRows, String> {
@@ -94,6 +94,6 @@ impl JsonPose {
             (.., Some(rad)) => PoseFacing::Yaw(rad),
             _ => PoseFacing::Unknown,
         };
-        Some(PoseRow { key: key, position: DVec3::from_array(self.position), facing })
+        Some(PoseRow { key, position: DVec3::from_array(self.position), facing })
     }
 }

@@ -82,7 +82,7 @@ pub(crate) fn read_track(
     } else {
         "has no usable pose: the pictures that it names or counts are not here, or its positions are not valid"
     };
-    let track = on_clock(rows, axes, times_s, name).ok_or_else(|| wrong(why_none.into()))?;
+    let track = track_from_rows(rows, axes, times_s, name).ok_or_else(|| wrong(why_none.into()))?;
     if !times_s.iter().any(|time_s| track.fix_at(*time_s).is_some()) {
         let ((from, to), first, last) =
             (track.span_s(), times_s.first().unwrap_or(&0.0), times_s.last().unwrap_or(&0.0));
@@ -98,7 +98,7 @@ pub(crate) fn read_track(
 }
 
 /// The track of rows, on the clock of the pictures. Rows of pictures that do not exist are left out; `None` if no row is left.
-fn on_clock(
+fn track_from_rows(
     rows: Vec<rows::PoseRow>,
     axes: PoseAxes,
     times_s: &[f64],

@@ -2,7 +2,7 @@
 
 use super::{
     colour::{ChromaPlanes, PicturePlane, PicturePlanes, StreamColour},
-    decoder::{CodedSample, SampleDecoder, TakePlanes, size_is_possible},
+    decoder::{CodedSample, SampleDecoder, TakePlanes, check_picture_size},
 };
 use crate::picture_size::MAX_PIXELS;
 use re_rav1d::dav1d::{Decoder, Error, Picture, PixelLayout, PlanarImageComponent, Settings, pixel::YUVRange};
@@ -63,7 +63,7 @@ fn hand_out(picture: &Picture, container: StreamColour, out: &mut TakePlanes<'_>
         .timestamp()
         .and_then(|sample| usize::try_from(sample).ok())
         .ok_or("its decoder gave a picture that belongs to no sample")?;
-    size_is_possible(picture.width(), picture.height())?;
+    check_picture_size(picture.width(), picture.height())?;
     let shifts = match picture.pixel_layout() {
         PixelLayout::I400 => None,
         PixelLayout::I420 => Some((1, 1)),

@@ -27,7 +27,7 @@ pub(super) trait SampleDecoder {
 }
 
 /// Refuses pictures that are larger than any camera's.
-pub(super) fn size_is_possible(width_px: u32, height_px: u32) -> Result<(), String> {
+pub(super) fn check_picture_size(width_px: u32, height_px: u32) -> Result<(), String> {
     if picture_size::is_possible(width_px, height_px) {
         Ok(())
     } else {

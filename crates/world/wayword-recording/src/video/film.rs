@@ -49,7 +49,7 @@ impl Mp4Film {
         &self.times_s
     }
 
-    /// Hands out the wanted pictures: indices into [`Mp4Film::times_s`], ascending and without repetition. Decodes from
+    /// Hands out the wanted pictures: indices into [`Mp4Film::read_times_s`], ascending and without repetition. Decodes from
     /// the key picture before the first of them to the last, but skips stretches without a wanted picture.
     ///
     /// # Errors

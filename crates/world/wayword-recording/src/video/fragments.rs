@@ -33,7 +33,7 @@ struct SampleDefaults {
 
 impl SampleDefaults {
     /// The defaults in `mvex` of a movie.
-    fn of_movie(moov: &[u8], track: u32) -> Result<Self, String> {
+    fn from_movie(moov: &[u8], track: u32) -> Result<Self, String> {
         for trex in find_box(moov, b"mvex").into_iter().flat_map(boxes_in).filter(|found| found.kind == *b"trex") {
             let (mut fields, ..) = BoxFields::with_version(trex.body)?;
             if fields.read_u32()? == track {
@@ -60,7 +60,7 @@ pub(super) struct FragmentReader {
 
 impl FragmentReader {
     pub(super) fn new(moov: &[u8], track: u32, file_bytes: u64) -> Result<Self, String> {
-        let usual = SampleDefaults::of_movie(moov, track).map_err(in_box("trex"))?;
+        let usual = SampleDefaults::from_movie(moov, track).map_err(in_box("trex"))?;
         Ok(Self { track, usual, file_bytes, decoded: 0, end: 0 })
     }
 

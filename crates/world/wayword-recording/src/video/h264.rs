@@ -6,7 +6,7 @@
 use super::{
     boxes::{BoxFields, in_box},
     colour::{ChromaPlanes, PicturePlane, PicturePlanes, StreamColour},
-    decoder::{CodedSample, SampleDecoder, TakePlanes, size_is_possible},
+    decoder::{CodedSample, SampleDecoder, TakePlanes, check_picture_size},
     sps::SequenceParameters,
 };
 use h264_reader::nal::sps::ChromaFormat;
@@ -35,11 +35,11 @@ pub(super) struct H264Setup {
 impl H264Setup {
     /// Reads an `avcC` box. `colour` has the container's colours; they count if the stream leaves them open.
     pub(super) fn read(record: &[u8], colour: StreamColour) -> Result<Self, String> {
-        let (length_bytes, units) = taken_apart(record).map_err(in_box("avcC"))?;
+        let (length_bytes, units) = split_record(record).map_err(in_box("avcC"))?;
         let mut setup = Self { length_bytes, parameters: Vec::new(), colour };
         for unit in units {
             if unit_kind(unit) == SPS_UNIT {
-                setup.colour = possible_sps(unit)?.colour.or(setup.colour);
+                setup.colour = read_decodable_sps(unit)?.colour.or(setup.colour);
             }
             setup.parameters.extend_from_slice(&START_CODE);
             setup.parameters.extend_from_slice(unit);
@@ -74,7 +74,7 @@ impl H264Setup {
 }
 
 /// The number of bytes of a length, and the parameter sets.
-fn taken_apart(record: &[u8]) -> Result<(usize, Vec<&[u8]>), String> {
+fn split_record(record: &[u8]) -> Result<(usize, Vec<&[u8]>), String> {
     let mut fields = BoxFields::new(record);
     fields.read_bytes(4)?;
     let length_bytes = usize::from(fields.read_u8()? & 3) + 1;
@@ -95,9 +95,9 @@ fn unit_kind(unit: &[u8]) -> u8 {
 }
 
 /// Reads a parameter set; an error if OpenH264 cannot decode the stream, or its pictures are too large.
-fn possible_sps(unit: &[u8]) -> Result<SequenceParameters, String> {
+fn read_decodable_sps(unit: &[u8]) -> Result<SequenceParameters, String> {
     let sps = SequenceParameters::read(unit).ok_or("has a broken sequence parameter set")?;
-    size_is_possible(sps.width_px, sps.height_px)?;
+    check_picture_size(sps.width_px, sps.height_px)?;
     let cannot = |what: &str| Err(format!("is H.264 {what}, which is not read"));
     match sps {
         SequenceParameters { bits: 9.., .. } => cannot(&format!("with {} bits", sps.bits)),
@@ -127,13 +127,13 @@ impl H264Decoder {
     }
 
     /// A sample with start codes instead of lengths.
-    fn annex_b(&mut self, sample: &[u8]) -> Result<Vec<u8>, String> {
+    fn add_start_codes(&mut self, sample: &[u8]) -> Result<Vec<u8>, String> {
         let mut stream = if self.has_begun { Vec::new() } else { self.setup.parameters.clone() };
         let mut colour = self.setup.colour;
         for unit in self.setup.nal_units(sample) {
             let unit = unit?;
             if unit_kind(unit) == SPS_UNIT {
-                colour = possible_sps(unit)?.colour.or(colour);
+                colour = read_decodable_sps(unit)?.colour.or(colour);
             }
             stream.extend_from_slice(&START_CODE);
             stream.extend_from_slice(unit);
@@ -146,7 +146,7 @@ impl H264Decoder {
 
 impl SampleDecoder for H264Decoder {
     fn feed(&mut self, coded: CodedSample<'_>, out: &mut TakePlanes<'_>) -> Result<(), String> {
-        let stream = self.annex_b(coded.bytes)?;
+        let stream = self.add_start_codes(coded.bytes)?;
         self.inside.insert((coded.shown, coded.sample));
         let decoded = self.decoder.decode(&stream).map_err(|error| format!("cannot be decoded: {error}"))?;
         match decoded {

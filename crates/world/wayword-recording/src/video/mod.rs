@@ -21,7 +21,7 @@ pub(crate) use film::Mp4Film;
 
 use crate::{
     describe::RecordingDescription,
-    names::{plain_files, scene_of, unknown_scene},
+    names::{plain_files, scene_id_for_path, unknown_scene},
     poses,
     reel::{PictureReel, Recording, RecordingSource, TakePicture},
 };
@@ -41,7 +41,7 @@ impl FilmFile {
     /// # Errors
     /// When its name cannot be the name of a scene.
     pub(crate) fn open(path: &Path, described: RecordingDescription) -> Result<Self, PlatformError> {
-        Ok(Self { path: path.to_owned(), scene: scene_of(path)?, described })
+        Ok(Self { path: path.to_owned(), scene: scene_id_for_path(path)?, described })
     }
 }
 

@@ -1,7 +1,7 @@
 //! Splits a text into clauses, and decides which of them give the task ("clean the sink") and which only lead the way.
 
 use super::{
-    super::names::{LexiconName, named_with, split_words},
+    super::names::{LexiconName, find_names_with, split_words},
     vocabulary::{FILLER_WORDS, LOOK_WORDS, MOVE_VERBS, NO_VERBS, NON_TASK_OPENERS},
 };
 use std::collections::BTreeSet;
@@ -25,7 +25,7 @@ impl ListenerText {
             after_mark.extend((0..part.len()).map(|at| at == 0));
             all.extend(part);
         }
-        let names = named_with(&all, known);
+        let names = find_names_with(&all, known);
         Self { words: all, after_mark, names }
     }
 

@@ -80,7 +80,7 @@ impl ListenerText {
                 && at < self.names[target].end + 4
                 && LOOK_WORDS.contains(&self.words[at].as_str())
                 && !self.is_ordinal_from(target, at);
-            let found = RELATION_PHRASES.iter().find(|(phrase, _)| self.stands_at(phrase, at, to));
+            let found = RELATION_PHRASES.iter().find(|(phrase, _)| self.has_phrase_at(phrase, at, to));
             let Some((phrase, how)) = found else {
                 at += 1;
                 continue;
@@ -100,7 +100,7 @@ impl ListenerText {
     }
 
     /// Whether a phrase is at a word, before the word `to`.
-    pub(super) fn stands_at(&self, phrase: &str, at: usize, to: usize) -> bool {
+    pub(super) fn has_phrase_at(&self, phrase: &str, at: usize, to: usize) -> bool {
         let length = phrase.split(' ').count();
         at + length <= to && phrase.split(' ').eq(self.words[at..at + length].iter().map(String::as_str))
     }
@@ -133,7 +133,7 @@ impl ListenerText {
             ("in the middle", NamesakeRank::Middle),
             ("in the center", NamesakeRank::Middle),
         ];
-        let found = phrases.iter().find(|(phrase, _)| self.stands_at(phrase, at, to))?;
+        let found = phrases.iter().find(|(phrase, _)| self.has_phrase_at(phrase, at, to))?;
         let is_of = self.words.get(at + 3).is_some_and(|word| word == "of" || word == "from");
         (!is_of).then_some(found.1)
     }
@@ -192,7 +192,7 @@ impl ListenerText {
                 && (target.is_none() || before.iter().any(is_inside) || target.is_some_and(|target| target > at))
             {
                 let mut room = InRoom { name: name.room_word(), ..InRoom::default() };
-                self.of_room(at, to, target, &mut room);
+                self.read_room_details(at, to, target, &mut room);
                 found = Some(room);
             }
         }
@@ -200,7 +200,7 @@ impl ListenerText {
     }
 
     /// Adds the things and the neighbouring rooms that describe a room ("the bathroom with two sinks").
-    pub(super) fn of_room(&self, room: usize, to: usize, target: Option<usize>, described: &mut InRoom) {
+    pub(super) fn read_room_details(&self, room: usize, to: usize, target: Option<usize>, described: &mut InRoom) {
         let mut end = self.names[room].end;
         for (at, name) in self.names.iter().enumerate().skip(room + 1) {
             let between = &self.words[end..name.start.max(end)];
@@ -213,7 +213,7 @@ impl ListenerText {
             {
                 break;
             }
-            if name.is_floor() {
+            if name.is_fabric_part() {
                 continue;
             }
             if name.is_room && !name.is_thing {

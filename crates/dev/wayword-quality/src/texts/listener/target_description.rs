@@ -86,7 +86,7 @@ pub(super) fn describe_target(text: &str, known: &BTreeSet<String>) -> Option<Ta
         clauses.iter().find_map(|[from, to]| {
             text.names
                 .iter()
-                .position(|name| name.is_thing && !name.is_floor() && name.start >= *from && name.end <= *to)
+                .position(|name| name.is_thing && !name.is_fabric_part() && name.start >= *from && name.end <= *to)
         })
     };
     let last_move = moves.last().copied().into_iter().collect::<Vec<_>>();

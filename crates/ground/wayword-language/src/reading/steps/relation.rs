@@ -85,7 +85,7 @@ impl StepRelation {
         let mut is_joined = false;
         for at in (from..words.len()).rev() {
             let before = at.checked_sub(1).map_or("", |before| words[before].word.as_str());
-            if let Some(relation) = Self::of_word(&words[at].word, before) {
+            if let Some(relation) = Self::from_word(&words[at].word, before) {
                 return relation;
             }
             is_joined |= matches!(words[at].word.as_str(), "and" | "or");
@@ -94,7 +94,7 @@ impl StepRelation {
     }
 
     /// The relation that a word expresses, given the word before it.
-    fn of_word(word: &str, before: &str) -> Option<Self> {
+    fn from_word(word: &str, before: &str) -> Option<Self> {
         Some(match (word, before) {
             ("of", "out") => Self::OutOf,
             ("of", "front") => Self::Before,

@@ -21,7 +21,7 @@ pub(super) fn clock_turn(tokens: TokenSlice<'_>, from: usize, at: usize) -> Opti
             let side = side_after_turn(degrees, split || word != "clockwise")?;
             return Some((side, Some(verb), behind.unwrap_or(at)));
         }
-        "o'clock" | "o’clock" | "oclock" => (by_hour(tokens.word_before(at))?, at),
+        "o'clock" | "o’clock" | "oclock" => (side_at_hour(tokens.word_before(at))?, at),
         _ => return None,
     };
     let hour = at - 1;
@@ -50,7 +50,7 @@ fn side_after_turn(degrees: f64, is_counterclockwise: bool) -> Option<Side> {
 }
 
 /// The side of an hour on a clock that the walker faces: 3 is to the right. `None` for 11, 12 and 1, which are ahead.
-fn by_hour(word: &str) -> Option<Side> {
+fn side_at_hour(word: &str) -> Option<Side> {
     match cardinal_number(word)? {
         2..=4 => Some(Side::Right),
         5..=7 => Some(Side::Behind),

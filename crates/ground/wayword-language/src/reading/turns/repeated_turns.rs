@@ -12,19 +12,19 @@ pub(super) fn more_turns(tokens: TokenSlice<'_>, first: usize, last: usize) -> (
     let (times, number_tokens) = match (tokens.word_at(next), tokens.word_at(next + 1)) {
         ("twice", _) => (2, (next, next)),
         ("thrice", _) => (3, (next, next)),
-        (number, "times") => (number_of(number), (next, next + 1)),
-        _ => (number_before(tokens, first, last), (first, last)),
+        (number, "times") => (count_from_word(number), (next, next + 1)),
+        _ => (count_before_turn(tokens, first, last), (first, last)),
     };
     (times.clamp(1, MAX_TURNS_PER_WORD) - 1, number_tokens)
 }
 
 /// The number that a word counts; 1 where it counts nothing.
-fn number_of(word: &str) -> usize {
+fn count_from_word(word: &str) -> usize {
     cardinal_number(word).map_or(1, |number| number as usize)
 }
 
 /// The number before a turn: "two left turns", "two quick lefts", but not "two left doors".
-fn number_before(tokens: TokenSlice<'_>, first: usize, last: usize) -> usize {
+fn count_before_turn(tokens: TokenSlice<'_>, first: usize, last: usize) -> usize {
     let several = matches!(tokens.word_at(first), "lefts" | "rights") || tokens.word_at(last + 1) == "turns";
     let before = (first.saturating_sub(2)..first).rev().map(|at| tokens.word_at(at));
     let mut numbers = before.take_while(|word| is_count(word) || v::BEFORE_SIDE.contains(word));

@@ -79,7 +79,7 @@ pub(super) fn error_body(kind: ServiceErrorKind, message: &str, details: Option<
         ServiceErrorKind::Server => "INTERNAL",
         ServiceErrorKind::Unavailable | ServiceErrorKind::Overloaded => "UNAVAILABLE",
     };
-    let details = if kind == ServiceErrorKind::Quota { Some(day_is_over()) } else { details };
+    let details = if kind == ServiceErrorKind::Quota { Some(daily_quota_details()) } else { details };
     let mut error = json!({ "code": code, "message": message, "status": status });
     if let (Some(details), Some(error)) = (details, error.as_object_mut()) {
         error.insert("details".to_owned(), details);
@@ -88,7 +88,7 @@ pub(super) fn error_body(kind: ServiceErrorKind, message: &str, details: Option<
 }
 
 /// The details of a used-up quota. Only the quota's name distinguishes it from a rate.
-fn day_is_over() -> Value {
+fn daily_quota_details() -> Value {
     let violation = json!({ "quotaId": "GenerateRequestsPerDayPerProjectPerModel-FreeTier", "quotaValue": "250" });
     json!([{ "@type": "type.googleapis.com/google.rpc.QuotaFailure", "violations": [violation] }])
 }

@@ -83,7 +83,7 @@ pub(super) enum ServiceErrorKind {
 
 /// Separates the words of a reply from its tool calls. If the request offers tools, a line with a name and a JSON object, as in
 /// `step {"way": 1}`, is a call.
-pub(super) fn with_calls(text: String, request: &Value) -> (String, Vec<(String, Value)>) {
+pub(super) fn split_tool_calls(text: String, request: &Value) -> (String, Vec<(String, Value)>) {
     let has_tools = request.get("tools").and_then(Value::as_array).is_some_and(|tools| !tools.is_empty());
     if !has_tools {
         return (text, Vec::new());

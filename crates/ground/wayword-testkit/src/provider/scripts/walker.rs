@@ -74,7 +74,7 @@ impl ScriptedWalker {
     /// Takes the way that ends nearest to the next place of the route. The walker's progress along the route is the number of its
     /// hops, as long as that place matches its position; positions alone are ambiguous, because the map is rounded and places
     /// can lie close together.
-    fn along_route(&self, state: &WalkPrompt<'_>) -> String {
+    fn reply_along_route(&self, state: &WalkPrompt<'_>) -> String {
         let Some(ScriptedRoute(route)) = self.routes.get(state.text) else {
             return "I do not know this one.".to_owned();
         };
@@ -92,7 +92,7 @@ impl ScriptedWalker {
     }
 
     /// Takes a random way, until `hops` hops were made.
-    fn at_random(&self, state: &WalkPrompt<'_>, prompt: &str, hops: usize) -> String {
+    fn reply_at_random(&self, state: &WalkPrompt<'_>, prompt: &str, hops: usize) -> String {
         if state.hops >= hops || state.ways.is_empty() {
             return format_call("stop", None, "enough");
         }
@@ -122,8 +122,8 @@ impl ModelScript for ScriptedWalker {
         let prompt = request.prompt();
         let Some(state) = WalkPrompt::from_prompt(prompt) else { return "I was asked something else.".to_owned() };
         match self.gait {
-            WalkerGait::Route => self.along_route(&state),
-            WalkerGait::Random(hops) => self.at_random(&state, prompt, hops),
+            WalkerGait::Route => self.reply_along_route(&state),
+            WalkerGait::Random(hops) => self.reply_at_random(&state, prompt, hops),
             WalkerGait::Broken => {
                 let kind = rng_for_text(self.seed, state.text).random_range(0..BROKEN_REPLIES.len());
                 BROKEN_REPLIES[kind].to_owned()

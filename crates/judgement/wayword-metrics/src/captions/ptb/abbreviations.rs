@@ -32,7 +32,7 @@ fn list_contains(list: &str, word: &str) -> bool {
 }
 
 /// Whether a word is an abbreviation that keeps its full stop in every place.
-pub(super) fn is_one(word: &str) -> bool {
+pub(super) fn is_abbreviation(word: &str) -> bool {
     let is_capitalised = word.starts_with(|c: char| c.is_ascii_uppercase());
     let is_in_capitals = !word.contains(|c: char| c.is_ascii_lowercase());
     list_contains(ABBREVIATIONS_IN_ANY_CASE, word)
@@ -41,11 +41,11 @@ pub(super) fn is_one(word: &str) -> bool {
 }
 
 /// Whether a word is an abbreviation that keeps its full stop even if a letter follows directly, as in `etc.a`.
-pub(super) fn often_ends(word: &str) -> bool {
-    is_one(word) && list_contains(SENTENCE_ENDING_ABBREVIATIONS, word)
+pub(super) fn often_ends_sentence(word: &str) -> bool {
+    is_abbreviation(word) && list_contains(SENTENCE_ENDING_ABBREVIATIONS, word)
 }
 
 /// Whether a word is an abbreviation that keeps its full stop before a number.
-pub(super) fn is_one_before_a_number(word: &str) -> bool {
+pub(super) fn is_abbreviation_before_number(word: &str) -> bool {
     list_contains(BEFORE_A_NUMBER, word)
 }

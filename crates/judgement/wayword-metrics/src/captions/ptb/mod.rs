@@ -40,15 +40,15 @@ pub fn ptb_tokens(text: &str) -> Vec<String> {
 
 /// Finds the token at the beginning of a text: how much of the match becomes the token, and the token's length in characters.
 fn first_token(text: &[char]) -> (TokenExtent, usize) {
-    let longest = TOKEN_SHAPES.longest_match(text, |row, length| length_of(row, text, length) > 0);
-    match longest.and_then(|(row, length)| Some((SHAPE_ROWS.get(row)?.taken, length_of(row, text, length)))) {
+    let longest = TOKEN_SHAPES.longest_match(text, |row, length| token_length(row, text, length) > 0);
+    match longest.and_then(|(row, length)| Some((SHAPE_ROWS.get(row)?.taken, token_length(row, text, length)))) {
         Some((taken, length)) => (taken, length.clamp(1, text.len())),
         None => (TokenExtent::All, 1),
     }
 }
 
 /// The length of the token if the pattern of row `row` matches `length` characters; 0 if the rest of its condition does not hold.
-fn length_of(row: usize, text: &[char], length: usize) -> usize {
+fn token_length(row: usize, text: &[char], length: usize) -> usize {
     let (covered, after) = text.split_at(length);
     let next_is = |wanted: fn(char) -> bool| after.first().is_some_and(|c| wanted(*c));
     let ends = after.is_empty() || next_is(|c| c == ' ');
@@ -59,9 +59,9 @@ fn length_of(row: usize, text: &[char], length: usize) -> usize {
         TokenExtent::All | TokenExtent::Address => length,
         TokenExtent::First(count) => count,
         TokenExtent::AllBut(count) => length.saturating_sub(count),
-        TokenExtent::Abbreviation => only_if(abbreviations::is_one(&word()), through_stop()),
-        TokenExtent::BeforeLetter => only_if(abbreviations::often_ends(&word()), through_stop()),
-        TokenExtent::BeforeNumber => only_if(abbreviations::is_one_before_a_number(&word()), through_stop()),
+        TokenExtent::Abbreviation => only_if(abbreviations::is_abbreviation(&word()), through_stop()),
+        TokenExtent::BeforeLetter => only_if(abbreviations::often_ends_sentence(&word()), through_stop()),
+        TokenExtent::BeforeNumber => only_if(abbreviations::is_abbreviation_before_number(&word()), through_stop()),
         TokenExtent::BeforeSentence => only_if(ends, 1),
         TokenExtent::BeforeBlank => only_if(ends, length),
         TokenExtent::File => only_if(ends || next_is(|c| matches!(c, '!' | ',' | '.' | '?')), length),
@@ -93,7 +93,7 @@ fn write_token(taken: TokenExtent, token: &[char]) -> Option<String> {
     if matches!(taken, TokenExtent::Address) {
         return Some(text.to_lowercase().replace(' ', "\u{a0}"));
     }
-    Some(of_characters(taken, &text.replace("&amp;", "&").replace("&AMP;", "&")))
+    Some(write_characters(taken, &text.replace("&amp;", "&").replace("&AMP;", "&")))
 }
 
 /// Whether a token is a run of one sign, possibly with blanks between.
@@ -102,7 +102,7 @@ fn is_run(token: &[char], sign: char) -> bool {
 }
 
 /// Writes a token character by character: lower case, with round brackets and blanks as the reference writes them.
-fn of_characters(taken: TokenExtent, token: &str) -> String {
+fn write_characters(taken: TokenExtent, token: &str) -> String {
     let is_ending = has_curly_apostrophe(token);
     let mut text = String::with_capacity(token.len());
     for c in token.chars() {

@@ -61,7 +61,7 @@ impl CharacterClass {
 
     fn matches_char(&self, c: char) -> bool {
         match self {
-            Self::Same(same) => is_same(*same, c),
+            Self::Same(same) => matches_either_case(*same, c),
             Self::Set { ranges, is_without } => {
                 let small = c.to_ascii_lowercase();
                 ranges.iter().any(|(low, high)| (*low..=*high).contains(&c) || (*low..=*high).contains(&small))
@@ -79,7 +79,7 @@ impl CharacterClass {
     }
 }
 
-fn is_same(pattern: char, c: char) -> bool {
+fn matches_either_case(pattern: char, c: char) -> bool {
     pattern == c || pattern == c.to_ascii_lowercase()
 }
 

@@ -9,7 +9,7 @@ fn every_shape_has_its_example() {
     for (number, row) in SHAPE_ROWS.iter().enumerate() {
         let example: Vec<char> = row.example.chars().collect();
         let alone = TokenShapes::new([row.shape]);
-        let found = alone.longest_match(&example, |_, length| length_of(number, &example, length) > 0);
+        let found = alone.longest_match(&example, |_, length| token_length(number, &example, length) > 0);
         assert_eq!(found, Some((0, example.len())), "{} {}", row.shape, row.example);
     }
 }

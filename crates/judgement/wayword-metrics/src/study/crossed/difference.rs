@@ -83,8 +83,8 @@ impl ConditionPair {
         let mut all = error_contributions(first, figures[0].value);
         all.extend(error_contributions(second, figures[1].value).into_iter().map(|error| -error));
         let [(shares_persons, person_count), (shares_items, item_count)] = [
-            in_both(first, second, &figures, |answer| &answer.person, |figure| figure.persons),
-            in_both(first, second, &figures, |answer| &answer.item, |figure| figure.items),
+            find_shared(first, second, &figures, |answer| &answer.person, |figure| figure.persons),
+            find_shared(first, second, &figures, |answer| &answer.item, |figure| figure.items),
         ];
         let is_apart = !shares_persons && !shares_items;
         let several = [person_count, item_count].into_iter().filter(|count| *count > 1);
@@ -137,7 +137,7 @@ impl ConditionPair {
 
 /// Whether any person (or item) is in both conditions, and the number to use for the degrees of freedom: all distinct ones if some
 /// are in both, and otherwise those of the condition with fewer, because its error is known least.
-fn in_both<'a, P, I, T: Ord + 'a>(
+fn find_shared<'a, P, I, T: Ord + 'a>(
     first: &'a [StudyAnswer<P, I>],
     second: &'a [StudyAnswer<P, I>],
     figures: &[StudyFigure; 2],

@@ -107,13 +107,13 @@ impl AnswerSample {
             let fewest = self.parts.fewest_groups() as f64;
             (IntervalMethod::Extreme, wilson_interval(self.mean * fewest, fewest, level))
         } else {
-            (IntervalMethod::Clustered, self.on_logits(level))
+            (IntervalMethod::Clustered, self.logit_interval(level))
         };
         self.to_figure(method, interval)
     }
 
     /// The interval on the logit scale, by the delta method: the derivative of the logit is 1 / (p (1 - p)).
-    fn on_logits(&self, level: f64) -> Option<ConfidenceInterval> {
+    fn logit_interval(&self, level: f64) -> Option<ConfidenceInterval> {
         let half = self.half_width(level)? / (self.mean * (1.0 - self.mean));
         let centre = logit_normal::logit(self.mean);
         Some(ConfidenceInterval { low: logit_normal::expit(centre - half), high: logit_normal::expit(centre + half) })

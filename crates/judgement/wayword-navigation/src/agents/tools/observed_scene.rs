@@ -157,7 +157,7 @@ fn sector_line(
 }
 
 /// The views with their turns from ahead (radians, positive right): the view nearest to ahead first, then clockwise.
-fn from_ahead(views: &[View; 4], heading: Heading) -> Vec<(f64, &View)> {
+fn views_from_ahead(views: &[View; 4], heading: Heading) -> Vec<(f64, &View)> {
     let mut turned: Vec<(f64, &View)> = views.iter().map(|view| (heading.turn_to(view.pose.heading), view)).collect();
     turned.sort_by(|a, b| clockwise_turn(a.0).total_cmp(&clockwise_turn(b.0)));
     turned
@@ -170,7 +170,7 @@ pub(super) fn clockwise_turn(turn_rad: f64) -> f64 {
 
 fn scene_from_pictures(views: &[View; 4], heading: Heading) -> Result<ObservedScene, WalkError> {
     let mut scene = ObservedScene { brief: "you looked around".to_owned(), ..ObservedScene::default() };
-    for (turn_rad, view) in from_ahead(views, heading) {
+    for (turn_rad, view) in views_from_ahead(views, heading) {
         scene.pictures.push(view.image.clone().ok_or_else(|| missing_input("pictures"))?);
         scene.lines.push(format!("picture {} looks {}", scene.pictures.len(), describe_turn(turn_rad)));
     }
@@ -184,7 +184,7 @@ fn scene_from_captions(
 ) -> Result<ObservedScene, WalkError> {
     let mut scene = ObservedScene::default();
     let mut summaries = Vec::new();
-    for (turn_rad, view) in from_ahead(views, heading) {
+    for (turn_rad, view) in views_from_ahead(views, heading) {
         let caption = match by.describe_view(view) {
             Ok(caption) => shorten_line(&caption, MAX_CAPTION_CHARS),
             // If a view cannot be described, for example because a filter refuses its picture, the walk goes on.

@@ -48,12 +48,12 @@ const TOOL_NAMES: [&str; 3] = ["observe", "step", "stop"];
 /// The calls of a reply, in their order; empty where there is none.
 pub(super) fn read_calls(reply: &str) -> Vec<AgentToolCall> {
     let text = &reply[..reply.floor_char_boundary(MAX_READ_BYTES)];
-    let calls = with_json(text);
+    let calls = read_json_calls(text);
     if calls.is_empty() { read_bare_call(text.trim()).into_iter().collect() } else { calls }
 }
 
 /// The calls that have JSON.
-fn with_json(text: &str) -> Vec<AgentToolCall> {
+fn read_json_calls(text: &str) -> Vec<AgentToolCall> {
     let mut calls = Vec::new();
     let mut at = 0;
     while at < text.len() && calls.len() < MAX_CALLS {

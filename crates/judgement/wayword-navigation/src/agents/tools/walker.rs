@@ -158,7 +158,7 @@ impl<'a> ToolWalker<'a> {
                 return Ok(None);
             }
             Some(Err(error)) => return Err(error.into()),
-            None => return Err(self.gave_none().into()),
+            None => return Err(self.no_reply_error().into()),
         };
         self.count_usage(&reply);
         let calls = read_calls(&reply.text);
@@ -171,7 +171,7 @@ impl<'a> ToolWalker<'a> {
     }
 
     /// The error for a model that gives no result at all for a request.
-    fn gave_none(&self) -> ModelError {
+    fn no_reply_error(&self) -> ModelError {
         ModelError::Failed { model: self.by.model.name().to_owned(), reason: "it gave no reply".to_owned() }
     }
 

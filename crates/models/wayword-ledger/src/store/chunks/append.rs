@@ -33,7 +33,7 @@ impl ChunkAppender {
             let first =
                 ChunkEntry::Ledger { format: CHUNK_LINE_FORMAT }.to_line().map_err(|error| failed(error.into()))?;
             tail.append_bytes(&first).map_err(&failed)?;
-            keep_name(path);
+            sync_folder(path);
         } else {
             tail.cut_torn_end().map_err(&failed)?;
         }
@@ -115,7 +115,7 @@ impl GroupCommit for ChunkFileTail {
 }
 
 /// Makes the name of a new file survive a loss of power, by syncing its folder. File systems that do not support this do not need it.
-fn keep_name(path: &Path) {
+fn sync_folder(path: &Path) {
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         let _ = File::open(folder).and_then(|folder| folder.sync_all());
     }

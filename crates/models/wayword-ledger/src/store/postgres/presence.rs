@@ -71,14 +71,14 @@ impl DatabasePresence {
         let thread_link = Arc::clone(link);
         thread::Builder::new()
             .name("ledger's signs of life".to_owned())
-            .spawn(move || go_on(&pool, &thread_link, pulse.beat, &stopped))
+            .spawn(move || give_signs_of_life(&pool, &thread_link, pulse.beat, &stopped))
             .map_err(LedgerError::io_error(link.ledger_location(), "start the ledger's thread"))?;
         Ok(Self { link: Arc::clone(link), stop: Some(stop) })
     }
 }
 
 /// The work of the thread: a sign of life after each pause, until the sender of `stopped` is dropped.
-fn go_on(pool: &ConnectionPool, link: &DatabaseLink, pause: Duration, stopped: &mpsc::Receiver<()>) {
+fn give_signs_of_life(pool: &ConnectionPool, link: &DatabaseLink, pause: Duration, stopped: &mpsc::Receiver<()>) {
     while let Err(mpsc::RecvTimeoutError::Timeout) = stopped.recv_timeout(pause) {
         // If this fails for a while, others take over this program's calls, and the first answer is kept.
         if write_beat(pool, &link.program).is_ok() {

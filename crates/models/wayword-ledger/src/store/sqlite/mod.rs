@@ -39,11 +39,11 @@ impl SqliteStore {
     pub(crate) fn open(path: &Path) -> Result<Self, LedgerError> {
         // SQLite gives names such as ":memory:" a special meaning. An absolute path is always a file.
         let path = &std::path::absolute(path).map_err(LedgerError::io_error(path, "find the ledger"))?;
-        may_hold(path)?;
+        check_file_system(path)?;
         if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
             fs::create_dir_all(folder).map_err(LedgerError::io_error(folder, "make the folder"))?;
         }
-        own_file(path)?;
+        make_private_file(path)?;
         let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
         let connect = || -> Result<Connection, LedgerError> {
             let connection =
@@ -193,7 +193,7 @@ impl CallStore for SqliteStore {
 }
 
 /// Refuses a path on a file system on which the database is not reliable.
-pub(crate) fn may_hold(path: &Path) -> Result<(), LedgerError> {
+pub(crate) fn check_file_system(path: &Path) -> Result<(), LedgerError> {
     match network_at(path) {
         Some(kind) => Err(LedgerError::Network { path: path.to_owned(), kind }),
         None => Ok(()),
@@ -201,7 +201,7 @@ pub(crate) fn may_hold(path: &Path) -> Result<(), LedgerError> {
 }
 
 /// Makes the file if it does not exist. Only its owner can read it, because prompts may be private.
-fn own_file(path: &Path) -> Result<(), LedgerError> {
+fn make_private_file(path: &Path) -> Result<(), LedgerError> {
     let mut options = fs::OpenOptions::new();
     options.create(true).append(true);
     #[cfg(unix)]

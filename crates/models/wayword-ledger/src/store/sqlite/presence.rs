@@ -79,11 +79,11 @@ pub(super) fn remove_stale_files(ledger: &Path) -> Vec<String> {
     let prefix = format!("{}{PRESENCE_FILE_MARK}", file.to_string_lossy());
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let names = entries.filter_map(|entry| Some(entry.file_name().to_str()?.strip_prefix(&prefix)?.to_owned()));
-    names.filter(|name| is_removed(&presence_path(ledger, name))).collect()
+    names.filter(|name| remove_if_stale(&presence_path(ledger, name))).collect()
 }
 
 /// Removes a file if no program has it locked. Returns whether it did.
-fn is_removed(path: &Path) -> bool {
+fn remove_if_stale(path: &Path) -> bool {
     let Ok(file) = File::open(path) else { return false };
     match file.try_lock() {
         Ok(()) => fs::remove_file(path).is_ok(),

@@ -57,7 +57,7 @@ pub(super) fn prepare_tables(connection: &mut Connection, path: &Path) -> Result
     // A file that is not a ledger is not changed. One check is one transaction, so that it sees all or none of the
     // tables that another program is making.
     read_format(&connection.transaction().map_err(&failed)?, path)?;
-    write_ahead(connection).map_err(&failed)?;
+    turn_on_write_ahead_log(connection).map_err(&failed)?;
     connection.pragma_update(None, "synchronous", "FULL").map_err(&failed)?;
     // Two programs may open a new ledger at the same moment. The second then finds the tables made.
     let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(&failed)?;
@@ -90,7 +90,7 @@ fn read_format(transaction: &Transaction<'_>, path: &Path) -> Result<i64, Ledger
 
 /// Turns on the write-ahead log, so that others can read while one program writes. Retries while another program does
 /// the same, because SQLite does not wait here by itself.
-fn write_ahead(connection: &Connection) -> rusqlite::Result<()> {
+fn turn_on_write_ahead_log(connection: &Connection) -> rusqlite::Result<()> {
     let until = Instant::now() + OPEN_TIMEOUT;
     loop {
         match connection.pragma_update(None, "journal_mode", "WAL") {

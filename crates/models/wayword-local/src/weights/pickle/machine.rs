@@ -66,14 +66,14 @@ impl<'a> PickleMachine<'a> {
                 b'j' => self.recall_value(4)?,
                 b'c' => self.push_known_name()?,
                 b't' => self.push_marked_tuple()?,
-                0x85..=0x87 => self.short_tuple(usize::from(step - 0x84))?,
+                0x85..=0x87 => self.push_short_tuple(usize::from(step - 0x84))?,
                 b'Q' => self.push_storage()?,
                 b'R' => self.call_name()?,
                 b'b' => drop(self.pop_value()?),
                 b'a' => drop(self.pop_value()?),
-                b'e' => drop(self.since_mark()?),
-                b's' => self.set_one()?,
-                b'u' => self.set_many()?,
+                b'e' => drop(self.take_since_mark()?),
+                b's' => self.set_item()?,
+                b'u' => self.set_items()?,
                 other => return Err(format!("step {other:#04x} is not one of a checkpoint")),
             }
         }
@@ -104,7 +104,7 @@ impl<'a> PickleMachine<'a> {
     }
 
     /// Takes all values since the last mark, and the mark.
-    fn since_mark(&mut self) -> Result<Vec<PickleValue>, String> {
+    fn take_since_mark(&mut self) -> Result<Vec<PickleValue>, String> {
         let mark = self.marks.pop().ok_or("it ends a list that did not begin")?;
         Ok(self.stack.split_off(mark.min(self.stack.len())))
     }
@@ -193,7 +193,7 @@ impl<'a> PickleMachine<'a> {
     }
 
     fn push_marked_tuple(&mut self) -> Result<(), String> {
-        let values = self.since_mark()?;
+        let values = self.take_since_mark()?;
         self.push_tuple(values)
     }
 
@@ -208,7 +208,7 @@ impl<'a> PickleMachine<'a> {
     }
 
     /// Pushes a tuple of the topmost values.
-    fn short_tuple(&mut self, length: usize) -> Result<(), String> {
+    fn push_short_tuple(&mut self, length: usize) -> Result<(), String> {
         let mut values = (0..length).map(|_| self.pop_value()).collect::<Result<Vec<_>, _>>()?;
         values.reverse();
         self.push_tuple(values)
@@ -255,13 +255,13 @@ impl<'a> PickleMachine<'a> {
         Ok(())
     }
 
-    fn set_one(&mut self) -> Result<(), String> {
+    fn set_item(&mut self) -> Result<(), String> {
         let (value, key) = (self.pop_value()?, self.pop_value()?);
         self.set_pairs(vec![key, value])
     }
 
-    fn set_many(&mut self) -> Result<(), String> {
-        let pairs = self.since_mark()?;
+    fn set_items(&mut self) -> Result<(), String> {
+        let pairs = self.take_since_mark()?;
         self.set_pairs(pairs)
     }
 

@@ -100,7 +100,7 @@ impl OtherPlatformScenes {
         let path_there = if self.is_film { self.as_filmed(path, &scene)? } else { Path { scene, ..path.clone() } };
         let base_frame_of = path_there.frames.iter().map(|frame| nearest_frame(path, frame)).collect();
         let platform: Box<dyn Platform + '_> = match sees_labels {
-            true => Box::new(RememberingPlatform::labels_of(self.platform.as_ref())),
+            true => Box::new(RememberingPlatform::for_labels(self.platform.as_ref())),
             false => Box::new(self.platform.as_ref()),
         };
         Ok(ChangedWorld { platform, path: path_there, base_frame_of })

@@ -120,7 +120,7 @@ impl JavaProcess {
     }
 
     /// Waits until the program exits or is killed. Returns whether it was successful.
-    fn is_well_at_end(&self) -> bool {
+    fn wait_for_success(&self) -> bool {
         loop {
             let state = self.child.lock().unwrap_or_else(PoisonError::into_inner).try_wait();
             match state {

@@ -44,7 +44,7 @@ pub(super) fn spice_score(args: &Args, jar: &Path, texts: &[TextWithReferences])
         CommandError::usage(problem, "use spice-1.0.jar with Stanford's models in lib/ beside it, and Java 8")
     };
     let is_there = fs::metadata(&score_file).is_ok_and(|file| file.len() <= MAX_SCORE_FILE_BYTES);
-    if !running.is_well_at_end() || !is_there {
+    if !running.wait_for_success() || !is_there {
         return Err(failed());
     }
     let text = fs::read_to_string(&score_file).map_err(CommandError::io(&score_file, "read"))?;

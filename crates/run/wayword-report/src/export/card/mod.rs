@@ -181,7 +181,7 @@ impl DatasetCard {
             ambiguous: looked_at.clone().filter(|ambiguity| TextAmbiguity::is_ambiguous(ambiguity)).count(),
             looked_at: looked_at.count(),
             platforms: platform_lines(records),
-            is_somebodys: records.iter().any(|record| terms::are_somebodys(&record.platform)),
+            is_somebodys: records.iter().any(|record| terms::belong_to_others(&record.platform)),
         }
     }
 }

@@ -37,7 +37,7 @@ use wayword_run::{
     in_order::{core_count, in_order},
     interrupt,
     output::CommandOutput,
-    run_folder::{keep_config, lock_folder, settings_of},
+    run_folder::{keep_config, lock_folder, read_run_settings},
 };
 
 /// Result of an export of trajectories.
@@ -60,10 +60,10 @@ pub(super) fn write_steps(
     output: &CommandOutput,
 ) -> Result<Exit, CommandError> {
     items::refuse_without_poses(ExportFormat::Steps, records)?;
-    let splits = splits::of_records(args, records)?;
+    let splits = splits::splits_of_records(args, records)?;
     let steps = StepExportSettings::from_flags(&args.steps, hash_texts(records, &splits))?;
     let [run] = args.run.as_slice() else { return Err(CommandError::usage("--run is missing", "give one run")) };
-    let scenes = WalkingScenes::open_run(&settings_of(run)?, [steps.width_px, steps.height_px])?;
+    let scenes = WalkingScenes::open_run(&read_run_settings(run)?, [steps.width_px, steps.height_px])?;
     fs::create_dir_all(out).map_err(CommandError::io(out, "make the folder"))?;
     let _folder_lock = lock_folder(out)?;
     keep_config(out, &steps)?;
@@ -94,7 +94,7 @@ fn take_walks(
     let numbers: Vec<usize> = (0..walks.len()).collect();
     let units: Vec<&[usize]> = numbers.chunks(maker.steps.shard.unwrap_or(1)).collect();
     let bar = output.progress_bar(walks.len(), "walks");
-    let _interrupt_guard = interrupt::finish_first(None);
+    let _interrupt_guard = interrupt::finish_items_first(None);
     let make = |unit: &&[usize]| {
         interrupt::check_interrupt()?;
         maker.make_unit(walks, unit)

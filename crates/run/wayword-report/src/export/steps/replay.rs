@@ -13,7 +13,7 @@ use wayword_formats::{
 use wayword_habitat::walk::{AgentStance, replay_actions};
 use wayword_run::{
     error::CommandError,
-    run_folder::{config_of, file, settings_of},
+    run_folder::{file, read_config, read_run_settings},
 };
 
 /// A pose counts as the written one if it is closer to it than this, metres.
@@ -39,8 +39,8 @@ pub struct TrajectoryReplay {
 /// # Errors
 /// When a file breaks a rule of its format, or a scene cannot be drawn.
 pub fn replay_export(folder: &Path, run: &Path, every: usize) -> Result<TrajectoryReplay, CommandError> {
-    let steps: StepExportSettings = config_of(folder)?;
-    let scenes = WalkingScenes::open_run(&settings_of(run)?, [steps.width_px, steps.height_px])?;
+    let steps: StepExportSettings = read_config(folder)?;
+    let scenes = WalkingScenes::open_run(&read_run_settings(run)?, [steps.width_px, steps.height_px])?;
     let ends: BTreeMap<String, DVec3> = jsonl::read_records(&run.join(file::INSTRUCTIONS))?
         .into_iter()
         .filter_map(|record| floor_positions(&record.path).last().map(|end| (record.path.id, *end)))

@@ -139,7 +139,7 @@ impl TrajectoryMaker<'_> {
         match self.steps.shard {
             None => PictureLocation::Folder(format!("{IMAGES_FOLDER}/{}", walk.path.id)),
             Some(walks_per_shard) => {
-                PictureLocation::Sample { shard: shard_of(number, walks_per_shard), key: format!("{number:06}") }
+                PictureLocation::Sample { shard: shard_file(number, walks_per_shard), key: format!("{number:06}") }
             }
         }
     }
@@ -178,7 +178,7 @@ impl TrajectoryMaker<'_> {
         walks_per_shard: usize,
     ) -> Result<Vec<ActionTrajectory>, CommandError> {
         let Some((first, ..)) = walks.first() else { return Ok(Vec::new()) };
-        let file = self.folder.join(shard_of(*first, walks_per_shard));
+        let file = self.folder.join(shard_file(*first, walks_per_shard));
         let folder = self.folder.join(SHARDS_FOLDER);
         fs::create_dir_all(&folder).map_err(CommandError::io(&folder, "make the folder"))?;
         let mut shard = ShardWriter::begin(&file).map_err(CommandError::io(&file, "write"))?;
@@ -221,6 +221,6 @@ pub(super) fn take_picture(
 }
 
 /// The path of the shard that has a walk, below the folder of the export.
-fn shard_of(number: usize, walks_per_shard: usize) -> String {
+fn shard_file(number: usize, walks_per_shard: usize) -> String {
     format!("{SHARDS_FOLDER}/{:06}.tar", number / walks_per_shard)
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use wayword_core::{FailureKind, Heading, Path};
 use wayword_formats::{
     jsonl::InstructionRecord,
-    trajectories::{ActionTrajectory, PictureLocation, TrajectoryInstruction, as_written},
+    trajectories::{ActionTrajectory, PictureLocation, TrajectoryInstruction, round_pose},
 };
 use wayword_habitat::walk::follow_places;
 use wayword_run::{error::CommandError, run_folder::FailedItem};
@@ -56,7 +56,7 @@ pub(super) fn trajectory_from_walk(
         Ok(walked) => walked,
         Err(astray) => return Ok(Err(failed(FailureKind::Broken, astray.to_string()))),
     };
-    let stances = walked.stances.iter().map(|stance| as_written(stance.foothold.place, stance.heading(gait)));
+    let stances = walked.stances.iter().map(|stance| round_pose(stance.foothold.place, stance.heading(gait)));
     let (positions, headings) = stances.unzip();
     let instructions = walk.texts.iter().map(|(episode_id, record)| TrajectoryInstruction {
         episode_id: episode_id.clone(),

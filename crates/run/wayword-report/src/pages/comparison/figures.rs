@@ -118,7 +118,7 @@ pub(super) const SWAP_COLUMNS: [&str; 3] = ["texts changed", "p", "follows"];
 
 /// The lines of the main table.
 pub(super) fn comparison_lines(comparison: &AgentComparison) -> Vec<ComparisonLine<'_>> {
-    mark_first_lines(comparison.rows.iter().map(|row| of_row(comparison, row, &row.figures, vec![])))
+    mark_first_lines(comparison.rows.iter().map(|row| line_for_row(comparison, row, &row.figures, vec![])))
 }
 
 /// Each set minus the first, with the numbers of items on which only one of the two succeeds.
@@ -127,7 +127,7 @@ pub(super) fn difference_lines(comparison: &AgentComparison) -> Vec<ComparisonLi
         let difference = row.against_first.as_ref()?;
         let mcnemar = difference.mcnemar;
         let beside = vec![mcnemar.only_first.to_string(), mcnemar.only_second.to_string(), p_value_text(&mcnemar)];
-        Some(of_row(comparison, row, &difference.figures, beside))
+        Some(line_for_row(comparison, row, &difference.figures, beside))
     }))
 }
 
@@ -170,7 +170,7 @@ pub(super) const TROUBLE_COLUMNS: [&str; 8] = [
 
 /// The average effort of walks by a language model: calls, tokens, money, time.
 pub(super) fn effort_lines(comparison: &AgentComparison) -> Vec<ComparisonLine<'_>> {
-    of_efforts(comparison, |effort| {
+    lines_with_efforts(comparison, |effort| {
         let means =
             [&effort.calls, &effort.tokens_in, &effort.tokens_out].map(|estimate| mean_with_interval(estimate, 1));
         let usd = effort.usd.as_ref().map_or_else(|| "-".to_owned(), |usd| mean_with_interval(usd, 4));
@@ -185,7 +185,7 @@ pub(super) fn effort_lines(comparison: &AgentComparison) -> Vec<ComparisonLine<'
 
 /// The problems in walks by a language model: counts of useless replies, then counts of walks.
 pub(super) fn trouble_lines(comparison: &AgentComparison) -> Vec<ComparisonLine<'_>> {
-    of_efforts(comparison, |effort| {
+    lines_with_efforts(comparison, |effort| {
         let UselessReplies { no_call, no_way, idle, failed } = effort.useless;
         let by_a_limit: usize = effort
             .ended
@@ -200,8 +200,11 @@ pub(super) fn trouble_lines(comparison: &AgentComparison) -> Vec<ComparisonLine<
 }
 
 /// A line without figures for each row that has an effort, with the cells that `beside` makes of it.
-fn of_efforts(comparison: &AgentComparison, beside: impl Fn(&EffortSummary) -> Vec<String>) -> Vec<ComparisonLine<'_>> {
-    let line = |row: &'_ ComparisonRow| Some(of_row(comparison, row, &NO_FIGURES, beside(row.effort.as_ref()?)));
+fn lines_with_efforts(
+    comparison: &AgentComparison,
+    beside: impl Fn(&EffortSummary) -> Vec<String>,
+) -> Vec<ComparisonLine<'_>> {
+    let line = |row: &'_ ComparisonRow| Some(line_for_row(comparison, row, &NO_FIGURES, beside(row.effort.as_ref()?)));
     mark_first_lines(comparison.rows.iter().filter_map(line))
 }
 
@@ -218,7 +221,7 @@ fn mean_with_interval(estimate: &MeanEstimate, decimals: usize) -> String {
 }
 
 /// The line for a row of the comparison.
-fn of_row<'a>(
+fn line_for_row<'a>(
     comparison: &AgentComparison,
     row: &ComparisonRow,
     figures: &'a BTreeMap<TrajectoryMetric, MeanEstimate>,
@@ -248,11 +251,11 @@ fn mark_first_lines<'a>(lines: impl Iterator<Item = ComparisonLine<'a>>) -> Vec<
 
 /// The agents that are not shown to do worse with another path's instruction.
 pub(super) fn deaf_agents(comparison: &AgentComparison) -> impl Iterator<Item = &SwapEffect> {
-    other_path(comparison).filter(|swapped| swapped.listening == ListeningVerdict::NotShown)
+    other_path_swaps(comparison).filter(|swapped| swapped.listening == ListeningVerdict::NotShown)
 }
 
 /// The results of the swap with another path's instruction, for each agent.
-pub(super) fn other_path(comparison: &AgentComparison) -> impl Iterator<Item = &SwapEffect> {
+pub(super) fn other_path_swaps(comparison: &AgentComparison) -> impl Iterator<Item = &SwapEffect> {
     comparison.swaps.iter().filter(|swapped| swapped.swap == InstructionSwap::OtherPath)
 }
 

@@ -1,7 +1,7 @@
 //! The sentences around the figures of a comparison: subject, warnings, and notes on how to read it. Every format shows the same and
 //! escapes the text itself.
 
-use super::figures::{DEAF_MARK, RoundedFigure, deaf_agents, other_path, printable_name};
+use super::figures::{DEAF_MARK, RoundedFigure, deaf_agents, other_path_swaps, printable_name};
 use wayword_metrics::{TrajectoryMetric, TrajectorySuccessRule};
 use wayword_navigation::comparison::{
     AgentComparison, AgentKind, ComparisonInfo, InstructionSet, ListeningVerdict, MIN_PATHS, SwapEffect,
@@ -77,7 +77,8 @@ pub(super) fn list_warnings(comparison: &AgentComparison) -> Vec<String> {
     };
     let mut warnings: Vec<String> = deaf_agents(comparison).map(note).collect();
     let is_tested = |agent: &str| {
-        other_path(comparison).any(|swapped| swapped.agent == agent && swapped.listening != ListeningVerdict::TooFew)
+        other_path_swaps(comparison)
+            .any(|swapped| swapped.agent == agent && swapped.listening != ListeningVerdict::TooFew)
     };
     let mut untested: Vec<String> = Vec::new();
     for row in comparison.rows.iter().filter(|row| row.kind == AgentKind::Agent && !is_tested(&row.agent)) {
@@ -110,29 +111,29 @@ pub(super) fn listener_notes(comparison: &AgentComparison) -> Vec<String> {
             "{agent} follows its instructions: another path's instruction costs it {lost} points of SR on {paths}."
         ))
     };
-    other_path(comparison).filter_map(note).collect()
+    other_path_swaps(comparison).filter_map(note).collect()
 }
 
 /// How all figures were made, and how to read them.
 pub(super) fn all_notes(comparison: &AgentComparison) -> Vec<String> {
-    let mut notes = of_table(comparison);
-    notes.extend(of_differences(comparison));
-    notes.push(made_by(&comparison.about));
+    let mut notes = table_notes(comparison);
+    notes.extend(difference_notes(comparison));
+    notes.push(version_note(&comparison.about));
     notes
 }
 
 /// The notes for a table without differences and swaps.
 pub(super) fn notes_of_table(comparison: &AgentComparison) -> Vec<String> {
-    let mut notes = of_table(comparison);
-    notes.push(made_by(&comparison.about));
+    let mut notes = table_notes(comparison);
+    notes.push(version_note(&comparison.about));
     notes
 }
 
-fn made_by(about: &ComparisonInfo) -> String {
+fn version_note(about: &ComparisonInfo) -> String {
     format!("Made by Wayword {}.", printable_name(&about.wayword))
 }
 
-fn of_table(comparison: &AgentComparison) -> Vec<String> {
+fn table_notes(comparison: &AgentComparison) -> Vec<String> {
     let about = &comparison.about;
     let mut notes = vec![
         format!(
@@ -188,7 +189,7 @@ fn reader_notes(comparison: &AgentComparison) -> Vec<String> {
         ));
     }
     let has_weights = !notes.is_empty();
-    notes.extend(about.tools.as_ref().filter(|_| has(TOOLS_AGENT)).map(|(llm, see)| by_tools(llm, see)));
+    notes.extend(about.tools.as_ref().filter(|_| has(TOOLS_AGENT)).map(|(llm, see)| tool_agent_note(llm, see)));
     if has_weights {
         notes
             .push("The weights of the agents that read were fitted to the train splits of R2R and REVERIE.".to_owned());
@@ -197,7 +198,7 @@ fn reader_notes(comparison: &AgentComparison) -> Vec<String> {
 }
 
 /// The information that the agent by a language model gets, and how its walks are scored.
-fn by_tools(llm: &str, see: &str) -> String {
+fn tool_agent_note(llm: &str, see: &str) -> String {
     let sees = match see {
         "labels" => {
             "It is told the room, and labels of what is around it with their distances: ground truth, not perception"
@@ -213,7 +214,7 @@ fn by_tools(llm: &str, see: &str) -> String {
 }
 
 /// How to read differences and swaps, if there are any.
-fn of_differences(comparison: &AgentComparison) -> Vec<String> {
+fn difference_notes(comparison: &AgentComparison) -> Vec<String> {
     let mut notes = Vec::new();
     if comparison.rows.iter().any(|row| row.against_first.is_some()) || !comparison.swaps.is_empty() {
         notes.push(

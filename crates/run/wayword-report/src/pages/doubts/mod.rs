@@ -66,7 +66,7 @@ pub struct DoubtTally {
 }
 
 impl DoubtSummary {
-    fn of_texts(texts: &[DoubtedText]) -> Self {
+    fn from_texts(texts: &[DoubtedText]) -> Self {
         let tally = |is_counted: &dyn Fn(&TextDoubt) -> bool| {
             let mut tally = DoubtTally::default();
             for text in texts {
@@ -112,7 +112,7 @@ impl DoubtHighlights {
         for text in &doubted {
             *worlds.entry(text.world).or_default() += 1;
         }
-        let summary = DoubtSummary::of_texts(&doubted);
+        let summary = DoubtSummary::from_texts(&doubted);
         Self { format: "wayword-doubts", version: FORMAT_VERSION, checked_against, worlds, summary, texts: doubted }
     }
 }

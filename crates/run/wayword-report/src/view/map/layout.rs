@@ -90,7 +90,7 @@ fn sketch_edges(
 fn sketch_path(plan: &MapPlan<'_>, path: &Path, stops: &[DVec3], sheet: &MapSheet, marks: &mut Vec<MapMark>) {
     let at: Vec<SheetPoint> = stops.iter().map(|stop| sheet.place_point([stop.x, stop.y])).collect();
     let Some(start) = path.frames.first().map(|frame| frame.pose.heading) else { return };
-    let trail = MapTrail::of_frames(stops, start);
+    let trail = MapTrail::from_frames(stops, start);
     let spots = place_spots(&trail, &at, sheet.size);
     let line = |points: Vec<SheetPoint>, width: f64, ink: InkColour, dash| MapMark::Line { points, width, ink, dash };
     marks.push(line(at.clone(), 7.5, WHITE_INK, None));

@@ -32,14 +32,14 @@ pub fn film_steps(path: &Path, between: usize) -> Result<Vec<FilmStep>, CommandE
     let mut steps = Vec::new();
     for pair in path.frames.windows(2) {
         steps.push(path_step(&pair[0]));
-        steps.extend((1..=between).map(|at| on_the_way(&pair[0], &pair[1], at as f64 / (between + 1) as f64)));
+        steps.extend((1..=between).map(|at| step_between(&pair[0], &pair[1], at as f64 / (between + 1) as f64)));
     }
     steps.extend(path.frames.last().map(path_step));
     Ok(steps)
 }
 
 /// The place at a share of the time that a move takes.
-fn on_the_way(from: &Frame, to: &Frame, share: f64) -> FilmStep {
+fn step_between(from: &Frame, to: &Frame, share: f64) -> FilmStep {
     let step = PathMove::between_poses(&from.pose, &to.pose);
     let turning_s = step.turn_rad.abs() / TURN_SPEED_RAD_PER_S;
     let passed_s = share * (turning_s + from.pose.position.distance(to.pose.position) / WALK_SPEED_M_PER_S);

@@ -40,7 +40,7 @@ pub(super) fn write_path(args: &ViewPath, output: &CommandOutput) -> Result<Writ
     let (mut size, mut frames) = (None, 0);
     for step in &steps {
         if let Some(image) = look_ahead(&*platform, &path.scene, step)? {
-            let size = *size.get_or_insert_with(|| size_of(&image, args.width));
+            let size = *size.get_or_insert_with(|| picture_size(&image, args.width));
             let picture = fit_size(image, size)?;
             film.add_picture(&picture)?;
             frames += 1;
@@ -79,7 +79,7 @@ fn look_ahead(platform: &dyn Platform, scene: &SceneId, step: &FilmStep) -> Resu
 }
 
 /// The size of all pictures: that of the first, scaled to `width` if the user chose one.
-fn size_of(first: &Image, width: Option<u32>) -> (u32, u32) {
+fn picture_size(first: &Image, width: Option<u32>) -> (u32, u32) {
     let size = (first.width_px(), first.height_px());
     width.map_or(size, |width| {
         let height = f64::from(size.1) * f64::from(width) / f64::from(size.0.max(1));

@@ -38,7 +38,7 @@ impl ChunkHandout {
     }
 
     /// Records this choice in the folder of the run, or refuses it if other workers use another one.
-    fn keep_in(&self, place: &RunPlace) -> Result<(), CommandError> {
+    fn record_in(&self, place: &RunPlace) -> Result<(), CommandError> {
         let (folder, path) = (place.folder(), place.folder().join(WORKERS_FILE));
         let text = serde_json::to_string(self).unwrap_or_default();
         put_new(&path, text.as_bytes())?;
@@ -86,7 +86,7 @@ impl<'a> WorkerBoard<'a> {
         match (asked.shard, &asked.queue) {
             (Some(part), _) => {
                 let (folder, token) = (place.folder(), worker.to_owned());
-                ChunkHandout::Shards.keep_in(place)?;
+                ChunkHandout::Shards.record_in(place)?;
                 let beat = WorkerHeartbeat { worker: token.clone(), token, part: format!("shard {part}") };
                 let heart =
                     HeartbeatThread::start(folder, &part.heartbeat_name(), beat, asked.lease_duration(), |file| {
@@ -108,7 +108,7 @@ impl<'a> WorkerBoard<'a> {
         asked: &AskedWorkers,
     ) -> Result<Self, CommandError> {
         let database = wayword_database::PostgresDatabase::from_name(name, asked.password_env.as_deref())?;
-        ChunkHandout::Queue(name.to_owned()).keep_in(place)?;
+        ChunkHandout::Queue(name.to_owned()).record_in(place)?;
         let queue = wayword_queue::ChunkQueue::open(database.clone(), place.folder(), plan)?
             .join_as(worker, asked.lease_duration())?;
         Ok(Self::Queue { queue, database, lease: asked.lease_duration() })
@@ -123,7 +123,7 @@ impl<'a> WorkerBoard<'a> {
     pub(super) fn kept_calls(&self) -> CallKeeping {
         match self {
             Self::Shard { folder, plan, part, .. } => {
-                let recordings = part.chunk_numbers(plan).map(|chunk| calls_of(&chunk_folder(folder, chunk, 0)));
+                let recordings = part.chunk_numbers(plan).map(|chunk| recording_path(&chunk_folder(folder, chunk, 0)));
                 CallKeeping::Chunks(recordings.filter(|path| path.exists()).collect())
             }
             #[cfg(feature = "queue")]
@@ -151,13 +151,13 @@ impl<'a> WorkerBoard<'a> {
 }
 
 /// The recording of a chunk's calls.
-pub(crate) fn calls_of(chunk: &Path) -> std::path::PathBuf {
+pub(crate) fn recording_path(chunk: &Path) -> std::path::PathBuf {
     chunk.join("calls.jsonl")
 }
 
 /// The limits of one worker: a shard gets its part of the budget and the rates; a worker of a queue gets the whole, because the
 /// database counts for all workers together.
-pub(super) fn part_of(
+pub(super) fn worker_service(
     service: &Service,
     asked: &AskedWorkers,
     output: &CommandOutput,

@@ -1,6 +1,6 @@
 //! Makes one chunk of a run, in a run folder of its own.
 
-use super::{WorkerStop, board::calls_of};
+use super::{WorkerStop, board::recording_path};
 use crate::{
     count::count_phrase,
     error::{CommandError, Exit},
@@ -70,11 +70,11 @@ fn fill_chunk(
     output: &CommandOutput,
 ) -> Result<Option<WorkerStop>, CommandError> {
     let items = shop.plan.items.get(plan.chunk_range(claimed.chunk)).unwrap_or_default();
-    let mut run = RunFolder::of_worker(folder, shop.settings)?;
+    let mut run = RunFolder::open_for_chunk(folder, shop.settings)?;
     if let Some(calls) = shop.calls {
-        calls.turn_to(&calls_of(folder))?;
+        calls.turn_to(&recording_path(folder))?;
     }
-    let data = WorldData::from_folder(folder)?.expecting_plan(&plan.data, &out.join(wayword_queue::PLAN));
+    let data = WorldData::from_folder(folder)?.with_planned_hashes(&plan.data, &out.join(wayword_queue::PLAN));
     let stopped = shop.fill_folder(&mut run, &data, items, output)?;
     drop(run);
     match stopped {

@@ -55,8 +55,8 @@ pub fn run_worker(
     warn_of_no_effect(&job.settings, output);
     plan_file::refuse_other_folder(out)?;
     let kept = wayword_queue::ChunkPlan::find_plan(out)?;
-    let before = kept.as_ref().map(|kept| plan_file::settings_of(out, kept)).transpose()?;
-    let service = board::part_of(&job.service, asked, output)?;
+    let before = kept.as_ref().map(|kept| plan_file::settings_in_plan(out, kept)).transpose()?;
+    let service = board::worker_service(&job.service, asked, output)?;
     // The list of recordings is filled in once this worker has its part.
     let job = RunJob { service, keeping: CallKeeping::Chunks(Vec::new()), ..job.clone() };
     let continued = before.map(|before| RunSettings { left_out: before.left_out, ..job.settings.clone() });
@@ -76,7 +76,7 @@ pub fn run_worker(
         output.print_result(&summary, &summary);
         return Ok(Exit::Done);
     }
-    watch::is_of_run(&kept.run);
+    watch::record_run_id(&kept.run);
     let worked = make_chunks(&place, &kept, plan, settings, asked, worker, output)?;
     output.print_result(&worked, &worked);
     Ok(worked.exit)
@@ -109,7 +109,7 @@ fn make_chunks(
     let lookout = DetectorLookout::from_settings(settings, calls.as_ref(), &plan.styles)?;
     let team = RoleTeam::new(settings, calls.as_ref(), plan.platform)?.with_lookout(lookout);
     let shop = ItemWorkshop { plan, settings, calls: calls.as_ref(), team: &team, scenes: KnownScenes::new() };
-    let _graceful = interrupt::finish_first(calls.as_ref());
+    let _graceful = interrupt::finish_items_first(calls.as_ref());
     let make =
         |claimed| watch::within_chunk_span(claimed, || chunk::make_chunk(out, kept, &shop, claimed, worker, output));
     let finished: WorkSummary<WorkerStop> =
@@ -124,6 +124,6 @@ fn make_chunks(
 }
 
 fn interrupt_stop() -> Option<WorkerStop> {
-    interrupt::is_asked()
+    interrupt::is_interrupted()
         .then(|| WorkerStop { reason: "interrupted: its chunk was handed back".to_owned(), exit: Exit::Interrupted })
 }

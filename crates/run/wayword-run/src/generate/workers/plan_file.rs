@@ -24,7 +24,7 @@ pub(super) fn refuse_other_folder(out: &Path) -> Result<(), CommandError> {
 }
 
 /// The settings in a plan.
-pub(crate) fn settings_of(out: &Path, plan: &wayword_queue::ChunkPlan) -> Result<RunSettings, CommandError> {
+pub(crate) fn settings_in_plan(out: &Path, plan: &wayword_queue::ChunkPlan) -> Result<RunSettings, CommandError> {
     own_format::parse_document(&plan.config).map_err(|unread| {
         let hint = unread.hint_or("it was changed by hand or by another version: use another folder");
         CommandError::usage(format!("{}: {unread}", out.join(wayword_queue::PLAN).display()), hint)
@@ -57,7 +57,7 @@ pub(super) fn check_agreement(
     settings: &RunSettings,
     asked: &AskedWorkers,
 ) -> Result<(), CommandError> {
-    let before = settings_of(out, kept)?;
+    let before = settings_in_plan(out, kept)?;
     let mut differs: Vec<String> = differing_keys(&before, settings).into_iter().collect();
     if asked.chunk.is_some_and(|chunk| chunk.get() != kept.chunk) {
         differs.push(format!("chunk ({} in the plan)", kept.chunk));

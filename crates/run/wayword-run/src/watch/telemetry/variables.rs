@@ -19,7 +19,7 @@ pub(super) fn variable_text(name: &str) -> Option<String> {
 /// The value of a variable of OTLP, the protocol for collectors. `what` is the end of its name, as in `TIMEOUT`. A
 /// variable for spans alone (`OTEL_EXPORTER_OTLP_TRACES_TIMEOUT`) wins over the one for all telemetry
 /// (`OTEL_EXPORTER_OTLP_TIMEOUT`).
-pub(super) fn of_spans_or_all(what: &str) -> Option<String> {
+pub(super) fn otlp_variable_text(what: &str) -> Option<String> {
     variable_text(&format!("OTEL_EXPORTER_OTLP_TRACES_{what}"))
         .or_else(|| variable_text(&format!("OTEL_EXPORTER_OTLP_{what}")))
 }

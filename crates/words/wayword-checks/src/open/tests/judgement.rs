@@ -219,14 +219,16 @@ fn a_claim_about_a_thing_fails_from_eight_metres_on() {
 fn company_counts_the_other_claims_that_are_shown_and_missed() {
     let mut one = missed(ClaimCase::Thing, 9.0);
     let other = ClaimSight::Missed(missed(ClaimCase::Room, 9.0));
-    one.keep_company([ClaimSight::Shown, ClaimSight::Unknown, ClaimSight::Shown, ClaimSight::Shown, other].iter());
+    one.add_company_features(
+        [ClaimSight::Shown, ClaimSight::Unknown, ClaimSight::Shown, ClaimSight::Shown, other].iter(),
+    );
     let wanted = [("others shown".to_owned(), 4_f64.ln()), ("others missed".to_owned(), 2_f64.ln())];
     assert_eq!(one.features.len(), 2);
     for (found, wanted) in one.features.iter().zip(wanted) {
         assert!(found.0 == wanted.0 && (found.1 - wanted.1).abs() < 1e-12, "{found:?}");
     }
     let mut alone = missed(ClaimCase::Thing, 9.0);
-    alone.keep_company([].iter());
+    alone.add_company_features([].iter());
     assert!(alone.features.iter().all(|(_, value)| *value == 0.0));
 }
 
@@ -422,7 +424,7 @@ fn a_colour_that_no_label_has_is_in_doubt() {
 #[test]
 fn an_open_world_without_evidence_is_unverified_even_if_no_place_is_named() {
     let (path, ..) = path(0, 3);
-    let evidence = Evidence::of_path_alone(&path);
+    let evidence = Evidence::for_path_alone(&path);
     let reason = "the program does not know what can be seen along the path";
     let found = places("Walk straight ahead.", &evidence, WorldReach::default());
     assert_eq!(found, [(Verdict::Unverified, reason.to_owned())]);

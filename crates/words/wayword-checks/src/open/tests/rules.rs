@@ -16,7 +16,7 @@ fn found(check: CheckKind, text: &str, points: &[(f64, f64, f64)]) -> Vec<(Verdi
 }
 
 fn evidence_along(points: &[(f64, f64, f64)]) -> Evidence {
-    Evidence::of_path_alone(&path_along(points))
+    Evidence::for_path_alone(&path_along(points))
 }
 
 fn path_along(points: &[(f64, f64, f64)]) -> Path {
@@ -406,7 +406,7 @@ fn a_side_is_in_doubt_where_each_listed_thing_is_on_the_other() {
 fn a_mirrored_path_mirrors_the_sides() {
     let along = |points: &[(f64, f64, f64)], text: &str| {
         let path = path_along(points);
-        let mut evidence = Evidence::of_path_alone(&path);
+        let mut evidence = Evidence::for_path_alone(&path);
         evidence.source = crate::EvidenceSource::Labels;
         let building = Arc::new(BuildingInventory::from_survey(&survey()));
         let around = PathSurroundings::around_path(&building, &path).unwrap();

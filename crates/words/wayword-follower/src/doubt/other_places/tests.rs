@@ -19,7 +19,7 @@ fn names_along_are_the_rooms_of_the_walk_and_the_striking_things_that_are_seen_f
 fn may_be_replaces_a_room_by_another_room_and_a_thing_by_another_thing() {
     let may = |told: (bool, &str), other: (bool, &str)| {
         let name = PlaceQuery { is_room: other.0, name: other.1.to_owned() };
-        may_be(&make_mention(StepRelation::To, told.0, told.1), &name)
+        can_replace(&make_mention(StepRelation::To, told.0, told.1), &name)
     };
     assert!(may((true, "kitchen"), (true, "bedroom")) && may((false, "sofa"), (false, "piano")));
     assert!(!may((true, "kitchen"), (false, "piano")) && !may((false, "sofa"), (true, "bedroom")));
@@ -32,7 +32,7 @@ fn may_be_replaces_a_room_by_another_room_and_a_thing_by_another_thing() {
 fn words_instead_fit_the_number_the_article_and_the_capitals() {
     let words = |text: &'static str, old: &str, told: &str, name: &str| {
         let span = |words: &str| text.find(words).map(|from| [from, from + words.len()]).unwrap();
-        words_instead(&TokenisedText::from_text(text), span(old), span(told), name)
+        replacement_words(&TokenisedText::from_text(text), span(old), span(told), name)
     };
     assert_eq!(words("pass the sofas", "sofas", "sofas", "piano"), "pianos");
     assert_eq!(words("pass the sofa", "sofa", "sofa", "piano"), "piano");

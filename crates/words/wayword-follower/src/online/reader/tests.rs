@@ -143,7 +143,7 @@ fn onward_fit_is_the_sum_over_steps_in_progress_and_their_begins() {
                 let mut found = Vec::new();
                 stretch_features(&trial, step, &WalkStretch::to_node(&tree, node, hops), &mut found);
                 let left = weights.left[guide.len() - 1 - step];
-                sum += (fit.sum_after(step, back[hops]) + weights.going.sum_of(&found) + left).exp();
+                sum += (fit.sum_after(step, back[hops]) + weights.going.sum_weights(&found) + left).exp();
             }
             count += 1;
         }

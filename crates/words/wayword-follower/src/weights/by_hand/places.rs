@@ -25,7 +25,7 @@ pub(super) fn set_places(set: &mut WeightSetter<'_>) {
         set(&TURN_AT, &[(0, 2), (class, CLASSES)], 0.4 * THING_WEIGHTS[class]);
         set(&TURN_AT, &[(1, 2), (class, CLASSES)], 0.4 * ROOM_WEIGHTS[class]);
         for is_goal in 0..2 {
-            of_walk(class, is_goal, set);
+            set_walk_ends(class, is_goal, set);
         }
     }
     for at in 0..12 {
@@ -49,7 +49,7 @@ pub(super) fn set_places(set: &mut WeightSetter<'_>) {
 }
 
 /// Weights of the whole walk by its distance from the named places.
-fn of_walk(class: usize, is_goal: usize, set: &mut WeightSetter<'_>) {
+fn set_walk_ends(class: usize, is_goal: usize, set: &mut WeightSetter<'_>) {
     let (is_goal, class) = ((is_goal, 2), (class, CLASSES));
     set(&NAMED_ROOM, &[is_goal, class], 0.5 * ROOM_WEIGHTS[class.0]);
     for commonness in 0..3 {

@@ -36,7 +36,7 @@ fn of_turn_is_highest_at_the_usual_angle() {
         (3, -55.0, (0.2 + e1).ln()),
         (11, 0.0, 1.2f64.ln()),
     ] {
-        assert_near(of_turn(kind, deg), expected);
+        assert_near(turn_weight(kind, deg), expected);
     }
 }
 
@@ -83,7 +83,7 @@ fn set_lengths_take_more_for_more_hops() {
 fn set_turns_share_a_turn_between_the_tables() {
     for (kind, [opening, after]) in [(0, [0.6, 0.3]), (2, [0.6, 0.3]), (3, [0.1, 0.7]), (6, [0.1, 0.7])] {
         for at in [0, 5, 17, 23] {
-            let goes = of_turn(kind, 15.0 * at as f64 - 172.5);
+            let goes = turn_weight(kind, 15.0 * at as f64 - 172.5);
             let place = [(kind, KINDS), (at, ANGLES)];
             assert_near(weight(&OPENING_TURN, place), opening * goes);
             assert_near(weight(&TURN_AFTER_OPENING, place), after * goes);
@@ -94,7 +94,7 @@ fn set_turns_share_a_turn_between_the_tables() {
     }
     for (kind, opens) in [(0, 0), (1, 1), (2, 0)] {
         let deg = 15.0 * 4.0 + 7.5;
-        let expected = (of_turn(kind, deg).exp() + 2.0 * of_turn(6, deg).exp()).ln() - 1.0;
+        let expected = (turn_weight(kind, deg).exp() + 2.0 * turn_weight(6, deg).exp()).ln() - 1.0;
         assert_near(weight(&TURN_BEFORE, [(kind, 3), (opens, 2), (16, ANGLES)]), expected);
     }
     for (kind, later, expected) in [(0, 0, 0.0), (0, 1, -0.2), (0, 2, -0.4), (10, 2, 0.0), (11, 2, -0.4)] {

@@ -17,7 +17,7 @@ use wayword_language::{
 
 /// All sightings of an exchange, attributed to `by`.
 pub(super) fn read_exchange(exchange: &DialogueExchange, by: &str) -> Vec<AnswerSighting> {
-    let mut sightings = of_answer(exchange);
+    let mut sightings = sightings_from_answer(exchange);
     for answered in &mut sightings {
         by.clone_into(&mut answered.sighting.by);
     }
@@ -25,7 +25,7 @@ pub(super) fn read_exchange(exchange: &DialogueExchange, by: &str) -> Vec<Answer
 }
 
 /// The sightings of an answer, without the name of the answerer.
-fn of_answer(exchange: &DialogueExchange) -> Vec<AnswerSighting> {
+fn sightings_from_answer(exchange: &DialogueExchange) -> Vec<AnswerSighting> {
     let answer = &exchange.answer.replace('’', "'");
     match read_question(&exchange.question) {
         _ if answer.trim().is_empty() => Vec::new(),
@@ -33,7 +33,7 @@ fn of_answer(exchange: &DialogueExchange) -> Vec<AnswerSighting> {
         QuestionSubject::Colour { name, guesses } => read_colour(&name, &guesses, answer),
         QuestionSubject::Number(wanted) => read_number(wanted, answer),
         QuestionSubject::Place(wanted) => read_place(&wanted, answer),
-        QuestionSubject::Room | QuestionSubject::IsRoom(_) => beside_the_room(answer),
+        QuestionSubject::Room | QuestionSubject::IsRoom(_) => things_beside_room(answer),
         QuestionSubject::Other(place) => match parse_enumeration(answer) {
             Some(listed) => listed.into_iter().map(aside_sighting).collect(),
             None => asides_from_mentions(mentioned_things(answer, &BTreeSet::new()), place),
@@ -76,7 +76,7 @@ fn new_sighting(name: &str, witness: WitnessAnswer) -> ObjectSighting {
 }
 
 /// The mentions of the thing with this name, and the other mentions.
-fn of_wanted(name: &str, mentions: Vec<AnswerMention>) -> (Vec<AnswerMention>, Vec<AnswerMention>) {
+fn split_by_name(name: &str, mentions: Vec<AnswerMention>) -> (Vec<AnswerMention>, Vec<AnswerMention>) {
     mentions.into_iter().partition(|mention| names_agree(&mention.name, name))
 }
 
@@ -94,10 +94,10 @@ fn read_presence(wanted: &[QuestionThing], or: bool, answer: &str) -> Vec<Answer
     let both = answer_words(&lower).contains(&"both");
     let mut found = Vec::new();
     for thing in wanted {
-        let (own, others) = of_wanted(&thing.name, rest);
+        let (own, others) = split_by_name(&thing.name, rest);
         rest = others;
         let witness = presence_witness(&own, polarity, or && !both && wanted.len() > 1, wanted.len() > 1);
-        found.extend(witness.map(|witness| direct_sighting(of_one(thing, witness, &own, place))));
+        found.extend(witness.map(|witness| direct_sighting(presence_sighting(thing, witness, &own, place))));
     }
     found.extend(asides_from_mentions(rest, None));
     found
@@ -129,7 +129,7 @@ fn presence_witness(
 }
 
 /// The sighting of a wanted thing. What the answer does not mention of it is taken from the question.
-fn of_one(
+fn presence_sighting(
     wanted: &QuestionThing,
     witness: WitnessAnswer,
     own: &[AnswerMention],
@@ -168,7 +168,7 @@ fn read_colour(name: &str, guesses: &[String], answer: &str) -> Vec<AnswerSighti
         return vec![direct_sighting(ObjectSighting { colour, ..new_sighting(name, WitnessAnswer::Seen) })];
     }
     let known = BTreeSet::from([normalise_name(name)]);
-    let (own, others) = of_wanted(name, mentioned_things(answer, &known));
+    let (own, others) = split_by_name(name, mentioned_things(answer, &known));
     let lower = answer.to_lowercase();
     let said = answer_words(&lower);
     let seen = own.iter().find(|mention| mention.witness == WitnessAnswer::Seen);
@@ -226,7 +226,7 @@ fn read_place(wanted: &QuestionThing, answer: &str) -> Vec<AnswerSighting> {
 
 /// The things that the answer to a question for the room mentions besides the room. An answer of up to four words ("It
 /// is an office") names the room only.
-fn beside_the_room(answer: &str) -> Vec<AnswerSighting> {
+fn things_beside_room(answer: &str) -> Vec<AnswerSighting> {
     let is_long = answer_words(answer).len() > 4;
     let named = mentioned_things(answer, &BTreeSet::new()).into_iter().filter(|mention| is_long && !mention.is_room);
     asides_from_mentions(named.collect(), None)

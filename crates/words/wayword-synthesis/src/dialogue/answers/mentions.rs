@@ -9,7 +9,7 @@ use std::{collections::BTreeSet, ops::Range};
 use wayword_core::{ViewThird, WitnessAnswer};
 use wayword_language::{
     answers::{BRINGS_IN, MATERIALS, NO_OBJECTS, NUMBERS, OTHERS, PERCEIVING, QUALITIES, TELLS_NOTHING},
-    lexicon::{find_thing, names_agree, normalise_name, says_several, to_singular},
+    lexicon::{find_thing, means_several, names_agree, normalise_name, to_singular},
     reading::{
         EventContent, read_instruction,
         vocabulary::{ABSTRACT, BREAKERS, COLOURS},
@@ -55,7 +55,7 @@ pub(in crate::dialogue) fn find_mentions(text: &str, known: &BTreeSet<String>) -
         let within: Vec<&NounMention> =
             nouns.iter().filter(|noun| sentence.contains(&noun.at.start) && noun.at.end <= sentence.end).collect();
         if !within.is_empty() {
-            of_sentence(&words[sentence.clone()], sentence.start, &within, &mut found);
+            add_sentence_mentions(&words[sentence.clone()], sentence.start, &within, &mut found);
         }
     }
     found
@@ -77,11 +77,11 @@ fn sentence_ranges(text: &str, tokens: &[TextToken]) -> Vec<Range<usize>> {
 
 /// Adds the mentions of one sentence. `words` are those of the sentence, which begins at token `start` of the text; the
 /// ranges of `nouns` count from the beginning of the text.
-fn of_sentence(words: &[&str], start: usize, nouns: &[&NounMention], found: &mut Vec<AnswerMention>) {
+fn add_sentence_mentions(words: &[&str], start: usize, nouns: &[&NounMention], found: &mut Vec<AnswerMention>) {
     let ranges: Vec<Range<usize>> = nouns.iter().map(|noun| noun.at.start - start..noun.at.end - start).collect();
     let mut witnesses = AnswerSentence { words, nouns: &ranges }.noun_witnesses();
     let doubles = mark_alternatives(words, &ranges, &mut witnesses);
-    let places = places_of(words, &ranges);
+    let places = noun_places(words, &ranges);
     for (at, noun) in nouns.iter().enumerate().filter(|(at, _)| !doubles.contains(at)) {
         let (range, witness) = (&ranges[at], witnesses[at]);
         let spelling = words[range.clone()].join(" ");
@@ -89,7 +89,7 @@ fn of_sentence(words: &[&str], start: usize, nouns: &[&NounMention], found: &mut
         if witness == WitnessAnswer::Denied && distinctions.iter().any(|word| OTHERS.contains(word)) {
             continue;
         }
-        let is_plural = says_several(&spelling);
+        let is_plural = means_several(&spelling);
         let name = if is_plural { to_singular(&spelling) } else { spelling };
         let denied = witness == WitnessAnswer::Denied;
         let colour = noun.colour.clone().or_else(|| colour_said_of(&words[range.end..])).filter(|_| !denied);
@@ -188,7 +188,7 @@ fn is_counted(words: &[&str], noun: usize) -> bool {
 
 /// The place in the view of each noun of a sentence. A phrase of place belongs to the noun before it, or, at the head
 /// of its part of the sentence, to all nouns that follow.
-fn places_of(words: &[&str], nouns: &[Range<usize>]) -> Vec<Option<ViewThird>> {
+fn noun_places(words: &[&str], nouns: &[Range<usize>]) -> Vec<Option<ViewThird>> {
     let mut places = vec![None; nouns.len()];
     let phrases = place_phrases(words);
     for (at, phrase) in phrases.iter().enumerate() {

@@ -139,13 +139,13 @@ pub(crate) fn dialogue_room(transcript: &[DialogueExchange]) -> Option<String> {
     let asked_for = transcript.iter().find_map(|exchange| match read_question(&exchange.question) {
         QuestionSubject::Room => room_from_answer(&exchange.answer),
         QuestionSubject::IsRoom(name) if polarity_of(&exchange.answer) == AnswerPolarity::Yes => Some(name),
-        QuestionSubject::IsRoom(_) => first_named(&exchange.answer, true),
+        QuestionSubject::IsRoom(_) => first_named_room(&exchange.answer, true),
         _ => None,
     });
     let described = || {
         let opening =
             transcript.first().filter(|first| read_question(&first.question) == QuestionSubject::Other(None))?;
-        parse_enumeration(&opening.answer).is_none().then(|| first_named(&opening.answer, false)).flatten()
+        parse_enumeration(&opening.answer).is_none().then(|| first_named_room(&opening.answer, false)).flatten()
     };
     asked_for.or_else(described)
 }
@@ -165,7 +165,7 @@ fn room_from_answer(answer: &str) -> Option<String> {
     if exact {
         return Some(bare.to_owned());
     }
-    first_named(answer, true).or_else(|| (short(bare) && words.len() <= 4).then(|| bare.to_owned()))
+    first_named_room(answer, true).or_else(|| (short(bare) && words.len() <= 4).then(|| bare.to_owned()))
 }
 
 /// Whether a text is a sentence and not just a name.
@@ -177,7 +177,7 @@ fn is_sentence(said: &str) -> bool {
 
 /// The first room that a text names as the one in view. `ambiguous`: whether names count that can also be a thing's
 /// ("stairs").
-fn first_named(text: &str, ambiguous: bool) -> Option<String> {
+fn first_named_room(text: &str, ambiguous: bool) -> Option<String> {
     const ELSEWHERE_PREPOSITIONS: [&str; 10] =
         ["to", "into", "through", "toward", "towards", "from", "beyond", "adjoining", "next", "onto"];
     let found = find_mentions(text, &BTreeSet::new()).into_iter().find(|mention| {

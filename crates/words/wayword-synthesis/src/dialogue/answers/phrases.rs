@@ -4,7 +4,7 @@
 use wayword_core::ViewThird;
 use wayword_language::{
     answers::{ANYTHING, BEFORE_SIDE, FILLERS, MORE_COLOURS, PREPOSITIONS, SIDE_PARTS, WHOLES},
-    lexicon::{is_room, is_thing, normalise_name, says_several, to_singular},
+    lexicon::{is_room, is_thing, means_several, normalise_name, to_singular},
     reading::vocabulary::{ABSTRACT, BREAKERS, COLOURS},
 };
 
@@ -217,7 +217,7 @@ pub(super) fn question_thing(name: &[&str], place: Option<ViewThird>) -> Option<
     if bare.is_empty() {
         return None;
     }
-    let several = says_several(&bare);
+    let several = means_several(&bare);
     Some(QuestionThing { phrase: said, name: if several { to_singular(&bare) } else { bare }, colour, several, place })
 }
 

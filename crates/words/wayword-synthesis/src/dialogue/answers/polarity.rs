@@ -32,14 +32,14 @@ pub(super) fn polarity_of(answer: &str) -> AnswerPolarity {
     let answer = answer.replace('’', "'");
     let first = answer.split_inclusive(['.', '!', '?', '\n']).find(|part| part.contains(char::is_alphanumeric));
     let first = first.unwrap_or_default();
-    match of_words(&split_words(first)) {
+    match words_polarity(&split_words(first)) {
         AnswerPolarity::Open => {}
         polarity => return polarity,
     }
     if let Some((_, rest)) = first.split_once(',').filter(|(before, _)| split_words(before).len() <= 8) {
         let rest = split_words(rest);
         if rest.first().is_some_and(|first| matches!(first.as_str(), "yes" | "no")) {
-            return of_words(&rest);
+            return words_polarity(&rest);
         }
     }
     let all_words = split_words(&answer);
@@ -51,7 +51,7 @@ pub(super) fn polarity_of(answer: &str) -> AnswerPolarity {
 }
 
 /// The polarity of the words at the beginning of an answer.
-fn of_words(words: &[String]) -> AnswerPolarity {
+fn words_polarity(words: &[String]) -> AnswerPolarity {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let words = words.strip_prefix(&["well"]).unwrap_or(&words);
     let longest = |phrases: &[Vec<&'static str>]| {

@@ -40,16 +40,20 @@ pub fn describe_target(target: &mut PathTarget, last: &Frame, listing: &Building
     properties.truncate(MAX_PROPERTIES);
     let namesakes: Vec<bool> = context.rivals.iter().map(|rival| context.sight_of_object(*rival).is_some()).collect();
     target.has_namesake = namesakes.contains(&true);
-    target.told_by = told_by(&context, &properties, &namesakes);
+    target.told_by = distinctions_in_view(&context, &properties, &namesakes);
     target.descriptions = search_descriptions(&context, &properties);
     target.hangs = context.target_hangs();
     target.storeys = listing.storeys;
 }
 
 /// The single properties that no namesake in view has, the cheapest first.
-fn told_by(context: &TargetContext<'_>, properties: &[TargetProperty], namesakes: &[bool]) -> Vec<ObjectDistinction> {
+fn distinctions_in_view(
+    context: &TargetContext<'_>,
+    properties: &[TargetProperty],
+    namesakes: &[bool],
+) -> Vec<ObjectDistinction> {
     let distinguishes = |property: &&TargetProperty| {
-        !property.distinction.is_of_room()
+        !property.distinction.is_about_room()
             && !property.fits.iter().zip(namesakes).any(|(fits, in_view)| *fits && *in_view)
     };
     let mut told: Vec<(f64, ObjectDistinction)> =
@@ -58,7 +62,8 @@ fn told_by(context: &TargetContext<'_>, properties: &[TargetProperty], namesakes
         told.extend(context.superlatives_among(namesakes));
     }
     // A listener who hears "on the right" looks for the only one there.
-    let is_clear = |told: &ObjectDistinction| !told.is_of_room() && !matches!(told, ObjectDistinction::OnSide { .. });
+    let is_clear =
+        |told: &ObjectDistinction| !told.is_about_room() && !matches!(told, ObjectDistinction::OnSide { .. });
     if told.is_empty() {
         // No property excludes all namesakes: one that excludes most of them is better than none.
         let count = |fits: &[bool]| fits.iter().zip(namesakes).filter(|(fits, in_view)| **fits && **in_view).count();
@@ -69,7 +74,7 @@ fn told_by(context: &TargetContext<'_>, properties: &[TargetProperty], namesakes
     }
     if told.is_empty() {
         // A property that all of them share still narrows down where to look.
-        let is_usable = |told: &ObjectDistinction| is_clear(told) || !told.is_of_room() && context.is_outermost();
+        let is_usable = |told: &ObjectDistinction| is_clear(told) || !told.is_about_room() && context.is_outermost();
         let of_object = properties.iter().filter(|property| is_usable(&property.distinction));
         told.extend(of_object.map(|property| (property.cost, property.distinction.clone())));
     }
@@ -151,7 +156,7 @@ fn push_candidate(
 ) {
     let cost = by.iter().map(|property| property.cost).sum::<f64>() + superlative.as_ref().map_or(0.0, |of| of.0);
     // Two properties of the object and two of its room are enough.
-    let of_room = by.iter().filter(|property| property.distinction.is_of_room()).count();
+    let of_room = by.iter().filter(|property| property.distinction.is_about_room()).count();
     if of_room > 2 || by.len() + usize::from(superlative.is_some()) - of_room > 2 {
         return;
     }
@@ -162,7 +167,7 @@ fn push_candidate(
         return;
     }
     let of_object = |told: &&&TargetProperty| {
-        !told.distinction.is_of_room() && !matches!(told.distinction, ObjectDistinction::Colour { .. })
+        !told.distinction.is_about_room() && !matches!(told.distinction, ObjectDistinction::Colour { .. })
     };
     let more = by.iter().filter(of_object).count() + usize::from(superlative.is_some());
     let has_side = by.iter().any(|property| matches!(property.distinction, ObjectDistinction::OnSide { .. }));

@@ -90,7 +90,7 @@ impl<'a> TargetContext<'a> {
 
     /// All properties of the target that do not depend on the rest of the description, as superlatives do.
     pub(super) fn all_properties(&self) -> Vec<TargetProperty> {
-        let mut all = self.of_room();
+        let mut all = self.room_properties();
         let own = self.object_at(self.target);
         if let Some(colour) = &own.colour {
             let told = ObjectDistinction::Colour { colour: colour.clone() };
@@ -128,7 +128,7 @@ impl<'a> TargetContext<'a> {
 
     /// Properties of the room where the path ends: its storey, a neighbouring room, a thing in it. None where the
     /// target is in another room.
-    fn of_room(&self) -> Vec<TargetProperty> {
+    fn room_properties(&self) -> Vec<TargetProperty> {
         let (listing, own) = (self.listing, self.object_at(self.target));
         let mut all = Vec::new();
         if !self.is_in_end_room() {

@@ -19,7 +19,7 @@ impl TargetContext<'_> {
     pub(super) fn superlatives_among(&self, among: &[bool]) -> Vec<(f64, ObjectDistinction)> {
         let others: Vec<usize> =
             self.rivals.iter().zip(among).filter(|(_, among)| **among).map(|(rival, _)| *rival).collect();
-        self.in_row(&others)
+        self.row_superlative(&others)
             .into_iter()
             .chain(self.range_superlative(&others))
             .chain(self.height_superlative(&others))
@@ -27,7 +27,7 @@ impl TargetContext<'_> {
     }
 
     /// "The leftmost", "the second from the right". `None` where the objects make no clear row.
-    fn in_row(&self, others: &[usize]) -> Option<(f64, ObjectDistinction)> {
+    fn row_superlative(&self, others: &[usize]) -> Option<(f64, ObjectDistinction)> {
         let own = self.turn_rad(self.target)?.to_degrees();
         let turns: Option<Vec<f64>> = others.iter().map(|other| Some(self.turn_rad(*other)?.to_degrees())).collect();
         let turns = turns?;

@@ -17,7 +17,7 @@ pub(in crate::writer) fn carry_out(
     landmarks: &LandmarkChooser<'_>,
     dice: TextDice,
 ) -> Vec<WayClause> {
-    let mut things = things_of(plan, landmarks);
+    let mut things = choose_things(plan, landmarks);
     let (mut clauses, mut passed) = (Vec::new(), 0);
     let mut follows_offer = false;
     for (at, clause) in plan.iter().enumerate() {
@@ -41,7 +41,7 @@ pub(in crate::writer) fn carry_out(
 
 /// The thing of each place, by the number of its clause. An offer that replaces another one keeps its thing only if no
 /// other offer of that hop got one.
-fn things_of(plan: &[WayClause], landmarks: &LandmarkChooser<'_>) -> BTreeMap<usize, ChosenLandmark> {
+fn choose_things(plan: &[WayClause], landmarks: &LandmarkChooser<'_>) -> BTreeMap<usize, ChosenLandmark> {
     let offers = || plan.iter().enumerate().filter_map(|(at, clause)| Some((at, clause.offer.as_ref()?)));
     let spots: Vec<LandmarkSpot> = offers().map(|(_, offer)| offer.landmark_spot()).collect();
     let found = offers().zip(landmarks.landmarks_at(&spots)).filter_map(|((at, _), thing)| Some((at, thing?)));
@@ -49,7 +49,7 @@ fn things_of(plan: &[WayClause], landmarks: &LandmarkChooser<'_>) -> BTreeMap<us
     let mut served_hops: BTreeSet<usize> = plan
         .iter()
         .enumerate()
-        .filter(|(at, clause)| is_own(clause) && things.contains_key(at))
+        .filter(|(at, clause)| is_original_offer(clause) && things.contains_key(at))
         .map(|(_, clause)| clause.at)
         .collect();
     for (at, offer) in offers() {
@@ -61,7 +61,7 @@ fn things_of(plan: &[WayClause], landmarks: &LandmarkChooser<'_>) -> BTreeMap<us
 }
 
 /// Whether a clause exists for a thing and is no replacement of another.
-fn is_own(clause: &WayClause) -> bool {
+fn is_original_offer(clause: &WayClause) -> bool {
     clause.is_offer() && clause.offer.as_ref().is_some_and(|offer| offer.stands_in_for.is_none())
 }
 
@@ -110,7 +110,7 @@ fn with_thing(
             let tells_side = clause.offer.as_ref().is_some_and(|offer| offer.tells_side);
             let kind = match side {
                 Some(_) if tells_side => ClauseKind::PassOnSide,
-                _ => passing_kind(&brief.profile.way, side, thing.side, dice.in_turn("past", passed)),
+                _ => passing_kind(&brief.profile.way, side, thing.side, dice.spread_share("past", passed)),
             };
             let side = side.filter(|_| kind == ClauseKind::PassOnSide);
             vec![WayClause { kind, side, thing: Some(thing), weight: MAIN_WEIGHT, ..bare_clause(&clause) }]

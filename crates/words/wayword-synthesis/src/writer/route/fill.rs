@@ -65,7 +65,7 @@ pub(in crate::writer) fn fill_plan(clauses: &mut Vec<WayClause>, brief: &Writing
             FillerKind::Room => filler.add_room(),
             FillerKind::Door => filler.add_door(),
             FillerKind::With => filler.add_thing_in_room(),
-            FillerKind::StopRoom => filler.stop_room(),
+            FillerKind::StopRoom => filler.add_stop_room(),
             FillerKind::Onward => filler.add_onward(),
         };
         if is_added {
@@ -195,7 +195,7 @@ impl PlanFiller<'_> {
     }
 
     /// The room in the clause to stop, and in the role of its thing.
-    fn stop_room(&mut self) -> bool {
+    fn add_stop_room(&mut self) -> bool {
         let Some(stop) = self.clauses.last_mut().filter(|stop| stop.room.is_some()) else { return false };
         let named = [(ClauseKind::StopAt, ClauseKind::StopAtIn), (ClauseKind::Stop, ClauseKind::StopIn)];
         let with_room = |kind: ClauseKind| named.iter().find(|(without, _)| *without == kind).map(|(_, with)| *with);

@@ -110,7 +110,7 @@ impl WayClause {
         self
     }
 
-    fn with_start_room(mut self, room: &str) -> Self {
+    fn with_left_room(mut self, room: &str) -> Self {
         self.from = Some(room.to_owned());
         self
     }

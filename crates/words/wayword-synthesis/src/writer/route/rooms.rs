@@ -44,9 +44,9 @@ impl WayPlanner<'_> {
         let kind = draw_option(&kinds, &mut self.rng)?;
         let mut clause = WayClause::new(kind, opening.before, MAIN_WEIGHT);
         match kind {
-            ClauseKind::LeaveEnter => clause = clause.with_start_room(&from).with_room(&opening.to),
+            ClauseKind::LeaveEnter => clause = clause.with_left_room(&from).with_room(&opening.to),
             ClauseKind::ThroughDoor => {}
-            _ => clause = clause.with_start_room(&from).with_room(&from),
+            _ => clause = clause.with_left_room(&from).with_room(&from),
         }
         self.push(clause);
         self.enter_room(to.as_deref().filter(|_| kind == ClauseKind::LeaveEnter));
@@ -108,18 +108,18 @@ impl WayPlanner<'_> {
         let mut clause = WayClause::new(kind, at, weight);
         match kind {
             ClauseKind::Leave | ClauseKind::LeaveByDoor => {
-                clause = clause.with_start_room(&opening.from).with_room(&opening.from);
+                clause = clause.with_left_room(&opening.from).with_room(&opening.from);
             }
             ClauseKind::ThroughDoor | ClauseKind::ToDoor => {}
             ClauseKind::AlongToEnd => clause = clause.with_room(&opening.from),
             ClauseKind::PassEnter => {
                 clause = clause
-                    .with_start_room(&opening.from)
+                    .with_left_room(&opening.from)
                     .with_room(&opening.to)
                     .with_offer(ThingOffer::new(OfferRole::PassEnter, at));
                 clause.kind = ClauseKind::Enter;
             }
-            _ => clause = clause.with_start_room(&opening.from).with_room(&opening.to),
+            _ => clause = clause.with_left_room(&opening.from).with_room(&opening.to),
         }
         self.push(clause);
         if kind == ClauseKind::AlongToEnd {
@@ -131,7 +131,7 @@ impl WayPlanner<'_> {
             let kinds = [(1.0, ClauseKind::ThroughDoor), (if to.is_some() { 2.0 } else { 0.0 }, ClauseKind::Enter)];
             let kind = draw_option(&kinds, &mut self.rng).unwrap_or(ClauseKind::ThroughDoor);
             if kind == ClauseKind::Enter {
-                self.push(WayClause::new(kind, at, weight).with_start_room(&opening.from).with_room(&opening.to));
+                self.push(WayClause::new(kind, at, weight).with_left_room(&opening.from).with_room(&opening.to));
                 return self.enter_room(to.as_deref());
             }
         }
@@ -197,7 +197,7 @@ impl WayPlanner<'_> {
                 self.push(WayClause::new(ClauseKind::Turn, at, MAIN_WEIGHT).with_side(side));
                 self.push(
                     WayClause::new(ClauseKind::Leave, at, MAIN_WEIGHT)
-                        .with_start_room(&opening.from)
+                        .with_left_room(&opening.from)
                         .with_room(&opening.from),
                 );
                 self.enter_room(None);
@@ -212,7 +212,7 @@ impl WayPlanner<'_> {
                     WayClause::new(ClauseKind::TurnOut, at, MAIN_WEIGHT)
                         .with_side(side)
                         .with_room(&opening.from)
-                        .with_start_room(&opening.from),
+                        .with_left_room(&opening.from),
                 );
                 self.enter_room(None);
             }

@@ -30,7 +30,7 @@ const STEP_M: f64 = 0.05;
 impl NumberedRooms {
     /// The hallways among `silent`, the rooms in which no thing suggests another name.
     pub(super) fn find_hallways(&self, silent: &[u32], things: &[SemanticThing]) -> Vec<u32> {
-        if self.shell.as_ref().is_none_or(|shell| shell.most_near() > MAX_TRIANGLES_PER_CELL) {
+        if self.shell.as_ref().is_none_or(|shell| shell.max_triangles_per_cell() > MAX_TRIANGLES_PER_CELL) {
             return Vec::new();
         }
         let examined = silent.iter().copied().take(MAX_EXAMINED_ROOMS);

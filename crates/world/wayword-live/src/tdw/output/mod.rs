@@ -14,7 +14,7 @@
 mod read;
 
 use super::flatbuffer_reader::FlatBufferError;
-pub(super) use read::id_of;
+pub(super) use read::frame_id;
 
 /// One frame of output data. All positions and rotations are Unity's (see [`crate::unity`]).
 #[derive(Debug, Clone, PartialEq)]

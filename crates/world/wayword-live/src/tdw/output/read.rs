@@ -7,7 +7,7 @@ use super::{
 };
 
 /// The id of a frame: bytes 4 to 8, a FlatBuffer's file identifier.
-pub(in super::super) fn id_of(frame: &[u8]) -> Option<[u8; 4]> {
+pub(in super::super) fn frame_id(frame: &[u8]) -> Option<[u8; 4]> {
     frame.get(4..)?.first_chunk().copied()
 }
 
@@ -17,7 +17,7 @@ impl<'a> BuildOutput<'a> {
     /// # Errors
     /// Where its bytes do not fit its id.
     pub fn read(frame: &'a [u8]) -> Result<Self, OutputError> {
-        let id = id_of(frame).ok_or(OutputError {
+        let id = frame_id(frame).ok_or(OutputError {
             id: String::new(),
             source: FlatBufferError { at: 4, expected: "an id of four letters" },
         })?;
@@ -39,7 +39,7 @@ impl<'a> BuildOutput<'a> {
             b"cate" => Self::Categories(read_categories(&table()?)?),
             b"cama" => Self::Camera(read_camera(&table()?)?),
             b"imse" => read_sensors(&table()?)?,
-            b"isnm" => Self::OnNavMesh(on_nav_mesh(&table()?)?),
+            b"isnm" => Self::OnNavMesh(read_on_nav_mesh(&table()?)?),
             b"quit" => Self::Quit(table()?.read_bool(0)?),
             b"vers" => Self::Version(read_version(frame)?),
             b"ftre" => Self::FailedToReceive,
@@ -49,7 +49,7 @@ impl<'a> BuildOutput<'a> {
 }
 
 /// Checks that a vector has the length that fits the vectors it belongs to.
-fn has_length(
+fn check_length(
     (table, slot): (&FlatBufferTable<'_>, usize),
     count: usize,
     fitting: usize,
@@ -85,9 +85,9 @@ fn read_images<'a>(table: &FlatBufferTable<'a>) -> Result<AvatarImages<'a>, Flat
 fn read_segments<'a>(table: &FlatBufferTable<'a>) -> Result<Vec<SegmentedObject<'a>>, FlatBufferError> {
     let (ids, names, categories) = (table.read_i32s(0)?, table.read_texts(1)?, table.read_texts(2)?);
     let colours = table.read_i32s(3)?;
-    has_length((table, 1), names.len(), ids.len(), "a name for each id")?;
-    has_length((table, 2), categories.len(), ids.len(), "a category for each id")?;
-    has_length((table, 3), colours.len(), 3 * ids.len(), "three colour channels for each id")?;
+    check_length((table, 1), names.len(), ids.len(), "a name for each id")?;
+    check_length((table, 2), categories.len(), ids.len(), "a category for each id")?;
+    check_length((table, 3), colours.len(), 3 * ids.len(), "three colour channels for each id")?;
     let rows = ids.into_iter().zip(names).zip(categories).zip(colours.as_chunks::<3>().0);
     rows.map(|(((id, name), category), rgb)| {
         Ok(SegmentedObject { id, name, category, colour: byte_colour((table, 3), *rgb)? })
@@ -98,7 +98,7 @@ fn read_segments<'a>(table: &FlatBufferTable<'a>) -> Result<Vec<SegmentedObject<
 fn read_path(table: &FlatBufferTable<'_>) -> Result<NavMeshPath, FlatBufferError> {
     let raw = table.read_bytes(0)?;
     let (corners, rest) = raw.as_chunks::<12>();
-    has_length((table, 0), rest.len(), 0, "a path of whole points of 12 bytes")?;
+    check_length((table, 0), rest.len(), 0, "a path of whole points of 12 bytes")?;
     let corners = corners.iter().map(|point| little_endian_floats(point)).collect();
     Ok(NavMeshPath { corners, state: table.read_u8(1, 1)?, id: table.read_i32(2, 0)? })
 }
@@ -127,9 +127,9 @@ fn read_occupancy(table: &FlatBufferTable<'_>) -> Result<TdwOccupancyMap, FlatBu
     let side = |side: i32| usize::try_from(side).map_err(|_| table.field_error(2, expected));
     let (rows, columns) = (side(rows)?, side(columns)?);
     let cells: Vec<i8> = table.read_bytes(0)?.iter().map(|cell| cell.cast_signed()).collect();
-    has_length((table, 0), cells.len(), rows.saturating_mul(columns), "as many cells as the shape has")?;
+    check_length((table, 0), cells.len(), rows.saturating_mul(columns), "as many cells as the shape has")?;
     let positions = table.read_f32s(1)?.as_chunks().0.to_vec();
-    has_length((table, 1), positions.len(), cells.len(), "a position for each cell")?;
+    check_length((table, 1), positions.len(), cells.len(), "a position for each cell")?;
     Ok(TdwOccupancyMap { shape: [rows, columns], cells, positions })
 }
 
@@ -145,9 +145,9 @@ fn read_avatar<'a>(table: &FlatBufferTable<'a>) -> Result<AvatarPose<'a>, FlatBu
 fn read_transforms(table: &FlatBufferTable<'_>) -> Result<Vec<TdwObjectTransform>, FlatBufferError> {
     let (ids, positions) = (table.read_i32s(0)?, table.read_f32s(1)?);
     let (rotations, forwards) = (table.read_f32s(2)?, table.read_f32s(3)?);
-    has_length((table, 1), positions.len(), 3 * ids.len(), "a position for each id")?;
-    has_length((table, 2), rotations.len(), 4 * ids.len(), "a rotation for each id")?;
-    has_length((table, 3), forwards.len(), 3 * ids.len(), "a direction for each id")?;
+    check_length((table, 1), positions.len(), 3 * ids.len(), "a position for each id")?;
+    check_length((table, 2), rotations.len(), 4 * ids.len(), "a rotation for each id")?;
+    check_length((table, 3), forwards.len(), 3 * ids.len(), "a direction for each id")?;
     let rows = ids.into_iter().zip(positions.as_chunks().0).zip(rotations.as_chunks().0).zip(forwards.as_chunks().0);
     let transforms = rows.map(|(((id, position), rotation), forward)| TdwObjectTransform {
         id,
@@ -160,7 +160,7 @@ fn read_transforms(table: &FlatBufferTable<'_>) -> Result<Vec<TdwObjectTransform
 
 fn read_bounds(table: &FlatBufferTable<'_>) -> Result<Vec<TdwObjectBounds>, FlatBufferError> {
     let (ids, numbers) = (table.read_i32s(0)?, table.read_f32s(1)?);
-    has_length((table, 1), numbers.len(), 21 * ids.len(), "seven points for each id")?;
+    check_length((table, 1), numbers.len(), 21 * ids.len(), "seven points for each id")?;
     let points = numbers.as_chunks::<3>().0.as_chunks::<7>().0;
     Ok(ids.into_iter().zip(points).map(|(id, points)| TdwObjectBounds { id, points: *points }).collect())
 }
@@ -199,7 +199,7 @@ fn read_sensors<'a>(table: &FlatBufferTable<'a>) -> Result<BuildOutput<'a>, Flat
     Ok(BuildOutput::Sensors(table.read_text(0)?, sensors))
 }
 
-fn on_nav_mesh(table: &FlatBufferTable<'_>) -> Result<OnNavMesh, FlatBufferError> {
+fn read_on_nav_mesh(table: &FlatBufferTable<'_>) -> Result<OnNavMesh, FlatBufferError> {
     let position = table.read_f32s(0)?;
     let position = position.try_into().map_err(|_| table.field_error(0, "a position of three numbers"))?;
     Ok(OnNavMesh { position, is_on: table.read_bool(1)?, id: table.read_i32(2, 0)? })

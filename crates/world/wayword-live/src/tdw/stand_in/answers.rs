@@ -29,9 +29,9 @@ pub(super) fn answer_command(state: &BuildState, kind: &str, command: &Value) ->
         "send_transforms" => vec![transforms_frame(state)],
         "send_occupancy_map" => vec![occupancy_frame(state, command["cell_size"].as_f64().unwrap_or(0.5))],
         "send_avatars" => avatars().map(avatar_frame).collect(),
-        "send_camera_matrices" => avatars().map(|avatar| camera_matrices(state, avatar)).collect(),
+        "send_camera_matrices" => avatars().map(|avatar| camera_matrices_frame(state, avatar)).collect(),
         "send_image_sensors" => avatars().map(sensors_frame).collect(),
-        "send_is_on_nav_mesh" => vec![on_nav_mesh(state, command, id)],
+        "send_is_on_nav_mesh" => vec![on_nav_mesh_frame(state, command, id)],
         "send_nav_mesh_path" => vec![path_frame(state, command, id)],
         "terminate" => vec![write_buffer(b"quit", vec![FlatBufferField::U8(1)])],
         _ => Vec::new(),
@@ -203,7 +203,7 @@ fn sensors_frame(avatar: &StandInAvatar) -> Vec<u8> {
 }
 
 /// Unity's own matrices: camera space is right-handed, looking along -z.
-fn camera_matrices(state: &BuildState, avatar: &StandInAvatar) -> Vec<u8> {
+fn camera_matrices_frame(state: &BuildState, avatar: &StandInAvatar) -> Vec<u8> {
     let camera = avatar.render_camera(state.size);
     let axes = camera.world_from_camera();
     let rows = [axes.x_axis, axes.y_axis, axes.z_axis].map(|axis| {
@@ -227,9 +227,9 @@ fn camera_matrices(state: &BuildState, avatar: &StandInAvatar) -> Vec<u8> {
     write_buffer(b"cama", fields)
 }
 
-fn on_nav_mesh(state: &BuildState, command: &Value, id: i32) -> Vec<u8> {
+fn on_nav_mesh_frame(state: &BuildState, command: &Value, id: i32) -> Vec<u8> {
     let asked = point_from_json(&command["position"]);
-    let found = state.world.on_nav_mesh(asked, command["max_distance"].as_f64().unwrap_or(1.0));
+    let found = state.world.nearest_walkable(asked, command["max_distance"].as_f64().unwrap_or(1.0));
     let position = found.map_or([0.0; 3], unity_f32);
     write_buffer(
         b"isnm",

@@ -40,13 +40,13 @@ struct WorldStates {
 impl StandInWorlds {
     /// The first house is loaded.
     pub(super) fn new(houses: StandInHouses, furnished: StandInFurnishing) -> Self {
-        let seed = house_of(&houses, "");
+        let seed = seed_for_scene(&houses, "");
         Self { houses, furnished, seed, shown: WorldStates::from_seed(seed, furnished) }
     }
 
     /// Loads the house of a scene.
     pub(super) fn enter_scene(&mut self, scene: &str) {
-        let seed = house_of(&self.houses, scene);
+        let seed = seed_for_scene(&self.houses, scene);
         if seed != self.seed {
             self.shown = WorldStates::from_seed(seed, self.furnished);
             self.seed = seed;
@@ -65,7 +65,7 @@ impl StandInWorlds {
 }
 
 /// The seed of the house that a scene shows.
-fn house_of(houses: &StandInHouses, scene: &str) -> u64 {
+fn seed_for_scene(houses: &StandInHouses, scene: &str) -> u64 {
     let place = scenes::floor_plan_names().iter().position(|plan| plan == scene).unwrap_or(0);
     houses.seeds().get(place).or(houses.seeds().first()).copied().unwrap_or(0)
 }
@@ -73,11 +73,13 @@ fn house_of(houses: &StandInHouses, scene: &str) -> u64 {
 impl WorldStates {
     fn from_seed(seed: u64, furnished: StandInFurnishing) -> Self {
         if furnished != StandInFurnishing::OnceAdded {
-            let world =
-                Arc::new(StandInWorld::from_house(one_storey(seed), furnished == StandInFurnishing::WithFixtures));
+            let world = Arc::new(StandInWorld::from_house(
+                first_one_storey_house(seed),
+                furnished == StandInFurnishing::WithFixtures,
+            ));
             return Self { loaded: world.clone(), furnished: world };
         }
-        let furnished = StandInWorld::from_house(one_storey(seed), false);
+        let furnished = StandInWorld::from_house(first_one_storey_house(seed), false);
         let bare = House { furniture: Vec::new(), ..furnished.scene.house.clone() };
         Self { loaded: Arc::new(StandInWorld::from_house(bare, false)), furnished: Arc::new(furnished) }
     }
@@ -85,7 +87,7 @@ impl WorldStates {
 
 /// The first house with a single storey from a seed on: TDW's floor plans have one.
 #[allow(clippy::expect_used, reason = "a stand-in is for tests, and one house in a few has one storey")]
-fn one_storey(seed: u64) -> House {
+fn first_one_storey_house(seed: u64) -> House {
     (seed..).map(generate_house).find(|house| house.storeys == 1).expect("a house with one storey")
 }
 
@@ -96,7 +98,7 @@ impl StandInWorld {
     /// Never: generated houses can be drawn, and one in a few has one storey.
     #[must_use]
     pub fn with_one_storey(seed: u64) -> Self {
-        Self::from_house(one_storey(seed), true)
+        Self::from_house(first_one_storey_house(seed), true)
     }
 
     #[allow(clippy::expect_used, reason = "a stand-in is for tests, and a generated house can be drawn")]
@@ -151,7 +153,7 @@ impl StandInWorld {
     }
 
     /// The walkable point nearest to a Unity position, within a distance.
-    pub(super) fn on_nav_mesh(&self, position: [f64; 3], max_distance: f64) -> Option<DVec3> {
+    pub(super) fn nearest_walkable(&self, position: [f64; 3], max_distance: f64) -> Option<DVec3> {
         let place = wayword_from_unity(position).with_z(0.0);
         let reach = (max_distance.clamp(0.0, 2.0) / SNAP_STEP_M) as i32;
         let offsets = (-reach..=reach).flat_map(|dx| (-reach..=reach).map(move |dy| (dx, dy)));
@@ -162,7 +164,7 @@ impl StandInWorld {
 
     /// The corners of a way over the ground between two Unity positions.
     pub(super) fn shortest_way(&self, from: [f64; 3], to: [f64; 3]) -> Option<Vec<DVec3>> {
-        let (from, to) = (self.on_nav_mesh(from, 0.5)?, self.on_nav_mesh(to, 0.5)?);
+        let (from, to) = (self.nearest_walkable(from, 0.5)?, self.nearest_walkable(to, 0.5)?);
         self.ground.shortest_route(from, to).ok().map(|way| way.corners)
     }
 }

@@ -142,8 +142,8 @@ impl SchemaTree<'_, '_> {
         let mut number = 0;
         while let Some(kind) = self.thrift.next_field(&mut number)? {
             match (number, kind) {
-                (1, thrift::KIND_I32) => physical = Some(physical_of(self.thrift.read_number()?)?),
-                (3, thrift::KIND_I32) => repetition = repetition_of(self.thrift.read_number()?)?,
+                (1, thrift::KIND_I32) => physical = Some(physical_type_from_number(self.thrift.read_number()?)?),
+                (3, thrift::KIND_I32) => repetition = repetition_from_number(self.thrift.read_number()?)?,
                 (4, thrift::KIND_BYTES) => {
                     name = std::str::from_utf8(self.thrift.read_bytes()?).map_err(|_| "a column's name is not text")?;
                 }
@@ -170,7 +170,7 @@ impl SchemaTree<'_, '_> {
 }
 
 /// The repetition type with this number in parquet.thrift.
-fn repetition_of(number: i64) -> Result<Repetition, String> {
+fn repetition_from_number(number: i64) -> Result<Repetition, String> {
     match number {
         0 => Ok(Repetition::REQUIRED),
         1 => Ok(Repetition::OPTIONAL),
@@ -180,7 +180,7 @@ fn repetition_of(number: i64) -> Result<Repetition, String> {
 }
 
 /// The type of values with this number in parquet.thrift.
-fn physical_of(number: i64) -> Result<Physical, String> {
+fn physical_type_from_number(number: i64) -> Result<Physical, String> {
     use Physical::{BOOLEAN, BYTE_ARRAY, DOUBLE, FIXED_LEN_BYTE_ARRAY, FLOAT, INT32, INT64, INT96};
     let kinds = [BOOLEAN, INT32, INT64, INT96, FLOAT, DOUBLE, BYTE_ARRAY, FIXED_LEN_BYTE_ARRAY];
     let kind = kinds.into_iter().find(|kind| *kind as i64 == number);

@@ -92,11 +92,11 @@ impl<'a> ThriftReader<'a> {
 
     /// Skips a field's value.
     pub(super) fn skip_value(&mut self, kind: u8) -> Result<(), String> {
-        self.pass_within(kind, 0)
+        self.skip_nested_value(kind, 0)
     }
 
     /// Skips a value that lies in `depth` other values.
-    fn pass_within(&mut self, kind: u8, depth: usize) -> Result<(), String> {
+    fn skip_nested_value(&mut self, kind: u8, depth: usize) -> Result<(), String> {
         match kind {
             // The value of a boolean field is in the kind itself.
             KIND_TRUE | KIND_FALSE => Ok(()),
@@ -108,12 +108,12 @@ impl<'a> ThriftReader<'a> {
                 let (count, kind) = self.read_list()?;
                 // In a list a boolean is a byte.
                 let kind = if matches!(kind, KIND_TRUE | KIND_FALSE) { 3 } else { kind };
-                (0..count).try_for_each(|_| self.pass_within(kind, depth + 1))
+                (0..count).try_for_each(|_| self.skip_nested_value(kind, depth + 1))
             }
             KIND_STRUCT if depth < MAX_DEPTH => {
                 let mut number = 0;
                 while let Some(kind) = self.next_field(&mut number)? {
-                    self.pass_within(kind, depth + 1)?;
+                    self.skip_nested_value(kind, depth + 1)?;
                 }
                 Ok(())
             }
