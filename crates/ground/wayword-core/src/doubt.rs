@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn apart_in_gives_the_stronger_doubt_the_alternatives_of_the_weaker() {
+    fn separate_doubts_gives_the_stronger_doubt_the_alternatives_of_the_weaker() {
         let doubts = vec![
             doubt([0, 19], DoubtGrade::Likely, &[(None, 5.0)]),
             doubt([14, 18], DoubtGrade::Uncertain, &[(Some("right"), 1.0), (None, 2.0)]),
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn apart_in_sorts_and_separates_any_spans() {
+    fn separate_doubts_sorts_and_separates_any_spans() {
         let texts = ["", "a", "Go on.", "Türe – 門 hinter 🪑", "\u{202e}e\u{301}x . , and so on , left ."];
         let mut random = seeded_rng(7, &["doubts"]);
         for text in texts.iter().cycle().take(3000) {

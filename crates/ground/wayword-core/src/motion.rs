@@ -83,7 +83,7 @@ pub const FULL_DEG: f64 = 55.0;
 /// The smallest turn that is called turning around, degrees.
 pub const AROUND_DEG: f64 = 150.0;
 /// The smallest rise that is stairs and not a door sill, metres.
-pub const CLIMB_M: f64 = 0.5;
+pub const MIN_CLIMB_M: f64 = 0.5;
 
 /// The smallest turn for which "turn around" is not a mistake in a third-party text, degrees. People say it as soon as
 /// they end up looking back more than sideways. Wayword itself uses the words only from [`AROUND_DEG`] on.
@@ -167,9 +167,9 @@ impl ClimbDirection {
     /// The word for a rise of `rise_m` metres.
     #[must_use]
     pub fn from_rise(rise_m: f64) -> Self {
-        if rise_m >= CLIMB_M {
+        if rise_m >= MIN_CLIMB_M {
             Self::Up
-        } else if rise_m <= -CLIMB_M {
+        } else if rise_m <= -MIN_CLIMB_M {
             Self::Down
         } else {
             Self::Level

@@ -160,12 +160,12 @@ mod tests {
     }
 
     #[test]
-    fn clustered_interval_of_no_values_is_none() {
+    fn clustered_interval_from_draws_no_values_is_none() {
         assert_eq!(clustered_interval::<u8>(&[], 1000, 0.95, 0), None);
     }
 
     #[test]
-    fn clustered_interval_of_one_cluster_has_no_width() {
+    fn clustered_interval_from_draws_one_cluster_has_no_width() {
         let of_one = interval(&[(1, 0.0), (1, 1.0), (1, 0.5)], 0.95);
         assert_eq!((of_one.mean, of_one.low, of_one.high), (0.5, 0.5, 0.5));
         assert_eq!((of_one.values, of_one.clusters), (3, 1));

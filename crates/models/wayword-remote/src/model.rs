@@ -237,7 +237,7 @@ mod tests {
 
     /// If a tokenizer does not know a script, each byte is a token.
     #[test]
-    fn most_tokens_in_bounds_every_script() {
+    fn max_tokens_in_bounds_every_script() {
         let sampling = SamplingOptions { temperature: 0.0, max_tokens: 20, seed: 0 };
         for text in ["మెట్లు ఎక్కండి", "सीढ़ियाँ चढ़ो", "\u{1f6cb}\u{1f6aa}"]
         {

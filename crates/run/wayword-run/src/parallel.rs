@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn at_once_begins_no_item_after_the_end() {
+    fn make_in_parallel_begins_no_item_after_the_end() {
         let items: Vec<usize> = (0..1000).collect();
         let made = make_in_parallel(&items, 4, |item| *item, |item| *item == 10);
         assert!((11..=20).contains(&made.len()), "{}", made.len());

@@ -312,7 +312,7 @@ fn places_of_an_unknown_motion_are_checked_in_their_order() {
 }
 
 #[test]
-fn check_own_fails_statements_about_an_unknown_motion() {
+fn check_own_text_fails_statements_about_an_unknown_motion() {
     let own = |text: &str, evidence: &Evidence| {
         let checked = check_own_text(text, CheckSubject::closed_world(evidence, &style(false), None));
         let failed = checked.findings.into_iter().filter(|finding| finding.verdict == Verdict::Fail);
@@ -353,7 +353,7 @@ fn check_own_fails_statements_about_an_unknown_motion() {
 }
 
 #[test]
-fn objects_meant_counts_one_object_that_the_text_identifies() {
+fn count_objects_meant_counts_one_object_that_the_text_identifies() {
     let mut evidence = to_the_bedroom();
     let lamp = |colour: &str, turn_rad: f64| SeenThing {
         name: "lamp".into(),

@@ -95,7 +95,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn in_order_is_a_total_order(mut names in prop::collection::vec("[a0-9]{0,5}", 3)) {
+        fn compare_names_is_a_total_order(mut names in prop::collection::vec("[a0-9]{0,5}", 3)) {
             names.sort_by(|a, b| compare_names(a, b));
             prop_assert_ne!(compare_names(&names[0], &names[2]), Ordering::Greater);
             prop_assert_eq!(compare_names(&names[0], &names[1]), compare_names(&names[1], &names[0]).reverse());

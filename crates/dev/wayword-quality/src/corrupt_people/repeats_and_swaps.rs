@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn other_path_replaces_the_whole_text_by_a_different_one() {
+    fn take_other_path_replaces_the_whole_text_by_a_different_one() {
         let other =
             |text: &str| all(text, |original, seed| take_other_path(original, &mut seeded_rng(seed, &["test"])));
         assert_eq!(other("Walk past the couch."), ["Go home.".to_owned()].into());

@@ -238,7 +238,7 @@ impl CosineGrounder for Red {
 }
 
 #[test]
-fn by_pictures_finds_the_pictures_of_a_run_by_item_or_path() {
+fn score_by_pictures_finds_the_pictures_of_a_run_by_item_or_path() {
     let run = tempfile::tempdir().unwrap();
     let frame = Frame { pose: Pose::looking_level(DVec3::ZERO, Heading::NORTH), viewpoint: None, level: None };
     let path = wayword_core::Path {

@@ -172,7 +172,7 @@ wayword is well
 ";
 
     #[test]
-    fn commands_of_reads_shell_fences_tables_and_wrapped_text() {
+    fn commands_in_markdown_reads_shell_fences_tables_and_wrapped_text() {
         let found: Vec<String> = commands_in_markdown("A.md", DOCUMENT)
             .into_iter()
             .map(|found| format!("{} {} {:?} {}", found.place, found.program, found.args, found.is_within_text))
@@ -191,7 +191,7 @@ wayword is well
     }
 
     #[test]
-    fn commands_of_keeps_the_variables_of_a_command() {
+    fn commands_in_markdown_keeps_the_variables_of_a_command() {
         let found = commands_in_markdown("A.md", DOCUMENT);
         assert_eq!(found[3].variables, [("OFFLINE".into(), "1".into())]);
     }

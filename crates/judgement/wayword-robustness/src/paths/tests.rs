@@ -72,7 +72,7 @@ fn thinning_keeps_frames_that_there_are() {
 }
 
 #[test]
-fn start_heading_turns_the_first_frame_and_along_removes_the_turn() {
+fn turn_start_heading_turns_the_first_frame_and_along_removes_the_turn() {
     assert!((turn_start_heading(&bent(), -90.0).path.frames[0].pose.heading.deg() - 270.0).abs() < 1e-9);
     assert!((face_first_hop(&bent()).path.frames[0].pose.heading.deg() - 90.0).abs() < 1e-9);
 }

@@ -75,7 +75,7 @@ fn every_status_and_body_has_its_meaning() {
 }
 
 #[test]
-fn of_response_stops_on_a_long_wait_and_retries_after_a_short_one() {
+fn fault_from_response_stops_on_a_long_wait_and_retries_after_a_short_one() {
     let with = |status, wait: &'static str| {
         let headers = HeaderMap::from_iter([(ureq::http::header::RETRY_AFTER, HeaderValue::from_static(wait))]);
         fault_from_response(status, &headers, b"", SystemTime::UNIX_EPOCH, who(None))
@@ -109,7 +109,7 @@ fn fault_reasons_name_the_setting_for_an_unknown_field() {
 }
 
 #[test]
-fn of_transport_distinguishes_faults_before_and_after_sending() {
+fn fault_from_transport_distinguishes_faults_before_and_after_sending() {
     let io = |kind| ureq::Error::Io(std::io::Error::new(kind, "x"));
     let of = |error: ureq::Error| fault_from_transport(&error, None, "http://h", who(None));
     assert_eq!(kind(&of(io(ErrorKind::ConnectionRefused))), "again");

@@ -144,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn file_of_replaces_an_ending_that_the_user_typed() {
+    fn file_with_ending_replaces_an_ending_that_the_user_typed() {
         let names =
             |name: &str| ["html", "json"].map(|end| file_with_ending(Path::new(name), end).display().to_string());
         assert_eq!(names("a/doubts"), ["a/doubts.html", "a/doubts.json"]);

@@ -134,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn of_file_name_finds_the_split() {
+    fn split_in_file_name_finds_the_split() {
         for (file, split) in [
             ("R2R_val_seen.json", Some("val_seen")),
             ("a/REVERIE_val_unseen_enc.json", Some("val_unseen")),

@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn find_inside_opens_a_world_until_it_is_forgotten() {
+    fn find_registered_world_opens_a_world_until_it_is_forgotten() {
         let data = register_world("Yard", ProcessOptions::for_inside_world("Yard", InsideWorld::new(answer)));
         let yard = open_named("process", Some(&data), None, None).unwrap();
         assert_eq!(yard.list_scenes().unwrap()[0].as_str(), "yard");

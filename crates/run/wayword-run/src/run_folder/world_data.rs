@@ -176,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hash_of_a_large_file_depends_on_its_end_and_length() {
+    fn hash_scene_file_a_large_file_depends_on_its_end_and_length() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.glb");
         let mut bytes = vec![7; MAX_WHOLE_BYTES as usize + 5];

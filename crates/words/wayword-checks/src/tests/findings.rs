@@ -97,7 +97,7 @@ fn add_worse_keeps_the_worse_of_two_looks_at_the_same_words() {
 }
 
 #[test]
-fn or_pass_passes_only_where_nothing_is_wrong() {
+fn findings_or_pass_passes_only_where_nothing_is_wrong() {
     assert_eq!(findings_or_pass(CheckKind::Form, Vec::new()), [pass_finding(CheckKind::Form)]);
     let wrong = vec![finding(CheckKind::Form, Verdict::Fail, None)];
     assert_eq!(findings_or_pass(CheckKind::Form, wrong.clone()), wrong);
@@ -156,7 +156,7 @@ fn mentions_have_their_kind_their_words_and_their_frame() {
 }
 
 #[test]
-fn check_own_replaces_what_it_failed_and_keeps_other_failures() {
+fn check_own_text_replaces_what_it_failed_and_keeps_other_failures() {
     let video = on_video();
     let own = |text: &str| {
         let checked = check_own_text(text, CheckSubject::closed_world(&video, &style(false), None));
@@ -172,7 +172,7 @@ fn check_own_replaces_what_it_failed_and_keeps_other_failures() {
 }
 
 #[test]
-fn check_own_is_strict_about_captions_unless_the_writer_saw_the_pictures() {
+fn check_own_text_is_strict_about_captions_unless_the_writer_saw_the_pictures() {
     let mut evidence = to_the_bedroom();
     evidence.source = EvidenceSource::Captions;
     let style = style(false);
@@ -192,7 +192,7 @@ fn check_own_is_strict_about_captions_unless_the_writer_saw_the_pictures() {
 }
 
 #[test]
-fn objects_meant_needs_a_neighbour_that_is_there_and_close_in_the_text() {
+fn count_objects_meant_needs_a_neighbour_that_is_there_and_close_in_the_text() {
     let mut evidence = to_the_bedroom();
     let lamp = |colour: Option<&str>, turn_rad: Option<f64>| SeenThing {
         name: "lamp".into(),
@@ -218,7 +218,7 @@ fn objects_meant_needs_a_neighbour_that_is_there_and_close_in_the_text() {
 }
 
 #[test]
-fn objects_meant_counts_objects_of_unknown_colour_and_direction() {
+fn count_objects_meant_counts_objects_of_unknown_colour_and_direction() {
     let mut evidence = to_the_bedroom();
     let lamp = |colour: Option<&str>, more: &[&str], turn_rad: Option<f64>| SeenThing {
         name: "lamp".into(),

@@ -73,7 +73,7 @@ fn find_nearness_is_computed_anew_after_a_change() {
 }
 
 #[test]
-fn told_apart_by_prefers_the_room_and_then_the_most_striking_thing() {
+fn distinguishing_name_prefers_the_room_and_then_the_most_striking_thing() {
     let mut building = make_corridor(&["attic", "kitchen", "attic", ""]);
     add_thing(&mut building, "lamp", [0.0, 0.0, 1.0], &[0]);
     add_thing(&mut building, "piano", [0.0, 0.0, 1.0], &[0, 1]);

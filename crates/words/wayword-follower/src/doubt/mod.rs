@@ -2,7 +2,7 @@
 //! suggests these.
 //!
 //! [`find_sites`] computes the gain of each possible change. [`find_doubts`] selects those with enough gain, by [`DoubtBounds`];
-//! [`from_checks`] adds the doubts from checks and ambiguity. [`wayword_core::doubt::apart_in`] combines all of them.
+//! [`from_checks`] adds the doubts from checks and ambiguity. [`wayword_core::doubt::separate_doubts`] combines all of them.
 
 mod bounds;
 pub mod from_checks;

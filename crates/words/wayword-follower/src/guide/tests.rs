@@ -47,7 +47,7 @@ fn for_step_takes_the_most_important_content() {
 }
 
 #[test]
-fn tells_way_needs_more_than_a_place_to_go_to() {
+fn describes_way_needs_more_than_a_place_to_go_to() {
     type Change<'a> = &'a dyn Fn(&mut GuideStep);
     let tells = |change: Change<'_>| {
         let mut told = bare_step(GuideStepKind::Other);
@@ -178,7 +178,7 @@ fn three_steps() -> Guide {
 }
 
 #[test]
-fn stands_without_needs_something_to_lose_and_a_step_that_stays() {
+fn has_step_without_needs_something_to_lose_and_a_step_that_stays() {
     let guide = three_steps();
     for (span, stands) in [
         ([2, 4], true),
@@ -203,7 +203,7 @@ fn stands_without_needs_something_to_lose_and_a_step_that_stays() {
 }
 
 #[test]
-fn stands_without_keeps_a_step_that_has_another_turn_or_place() {
+fn has_step_without_keeps_a_step_that_has_another_turn_or_place() {
     let mut guide = three_steps();
     guide.steps.truncate(1);
     assert!(!guide.has_step_without([2, 4]), "nothing is left of the only step");

@@ -66,7 +66,7 @@ fn add_text_ignores_a_goal_that_no_step_leads_to() {
 }
 
 #[test]
-fn add_floor_adds_the_slope_of_an_empty_text_without_its_loss() {
+fn add_empty_text_adds_the_slope_of_an_empty_text_without_its_loss() {
     let building = KnownBuilding::from_survey(&surveyed());
     let (guide, nothing) = (Guide::read_text(TEXT), Guide::read_text(""));
     let (trial, empty) = (GuideTrial::new(&guide, &building), GuideTrial::new(&nothing, &building));

@@ -143,7 +143,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn of_tables_refuses_weights_that_are_not_finite() {
+    fn weights_from_tables_refuses_weights_that_are_not_finite() {
         let mut tables = tables_from_weights(&FeatureWeights::by_hand());
         assert!(weights_from_tables(&tables).is_ok());
         tables.get_mut("HOPS").unwrap()[3] = f64::NAN;

@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn sum_of_adds_the_weights_of_features() {
+    fn sum_weights_adds_the_weights_of_features() {
         let mut values = vec![0.0; tables::COUNT];
         values[3] = 1.5;
         values[7] = -4.0;

@@ -47,7 +47,7 @@ pub enum GroundRouteError {
 }
 
 impl HouseGround {
-    /// The ground of a house, for a walker of [`WALKER_RADIUS_CM`].
+    /// The ground of a house, for a walker of [`RADIUS_CM`].
     #[must_use]
     pub fn for_house(house: &House) -> Self {
         let mut layers: Vec<GroundLayer> = (0..house.storeys).map(|floor| floor_layer(house, floor)).collect();

@@ -49,7 +49,7 @@ fn the_graph_is_one_even_where_a_door_is_narrow() {
 }
 
 #[test]
-fn of_cells_refuses_huge_empty_and_invalid_floors() {
+fn from_cells_refuses_huge_empty_and_invalid_floors() {
     let far = [([0.0, 0.0], true), ([1e9, 1e9], true)];
     assert_eq!(FloorRaster::from_cells(&far, 0.25), None);
     assert_eq!(FloorRaster::from_cells(&[([f64::NAN, 0.0], true)], 0.25), None);

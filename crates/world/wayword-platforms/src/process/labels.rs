@@ -155,14 +155,14 @@ mod tests {
     }
 
     #[test]
-    fn of_view_leaves_out_objects_outside_the_gaze() {
+    fn labels_in_view_leaves_out_objects_outside_the_gaze() {
         let behind = json!([{"object": "1", "name": "door", "position": [1.0, -3.0, 1.0]}, {"object": "2", "name": "rug", "heading_rad": -0.5}]);
         let found = labels(behind).unwrap();
         assert_eq!(found.iter().map(|label| label.name.as_str()).collect::<Vec<_>>(), ["rug"]);
     }
 
     #[test]
-    fn of_view_names_the_object_of_an_impossible_label() {
+    fn labels_in_view_names_the_object_of_an_impossible_label() {
         for (bad, says) in [
             (json!({"object": "7", "name": "lamp"}), "position"),
             (json!({"object": "7", "name": "a\nb", "heading_rad": 0}), "name"),
@@ -179,7 +179,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn of_view_accepts_only_labels_within_the_view(
+        fn labels_in_view_accepts_only_labels_within_the_view(
             position in prop::array::uniform3(-20.0..20.0f64), corners in prop::array::uniform4(-50.0..700.0f64),
         ) {
             let seen = json!([{"object": "7", "name": "lamp", "position": position, "box_px": corners}]);

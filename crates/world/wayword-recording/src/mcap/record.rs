@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn texts_fit_refuses_lengths_beyond_the_record() {
+    fn check_text_lengths_refuses_lengths_beyond_the_record() {
         let pairs = [text("key"), text("value")].concat();
         let counted_pairs = [(pairs.len() as u32).to_le_bytes().to_vec(), pairs].concat();
         let channel = [vec![1, 0, 2, 0], text("/camera"), text("cdr"), counted_pairs].concat();

@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn way_up_needs_a_fixed_frame() {
+    fn edges_to_fixed_frame_needs_a_fixed_frame() {
         let moving = [("base", "cam", 1, 0.0, false), ("base", "cam", 2, 0.0, false)];
         assert!(tree(&moving).edges_to_fixed_frame(false).is_none());
         assert!(tree(&moving).edges_to_fixed_frame(true).is_some());

@@ -16,7 +16,7 @@ fn names_along_are_the_rooms_of_the_walk_and_the_striking_things_that_are_seen_f
 }
 
 #[test]
-fn may_be_replaces_a_room_by_another_room_and_a_thing_by_another_thing() {
+fn can_replace_replaces_a_room_by_another_room_and_a_thing_by_another_thing() {
     let may = |told: (bool, &str), other: (bool, &str)| {
         let name = PlaceQuery { is_room: other.0, name: other.1.to_owned() };
         can_replace(&make_mention(StepRelation::To, told.0, told.1), &name)
@@ -29,7 +29,7 @@ fn may_be_replaces_a_room_by_another_room_and_a_thing_by_another_thing() {
 }
 
 #[test]
-fn words_instead_fit_the_number_the_article_and_the_capitals() {
+fn replacement_words_fit_the_number_the_article_and_the_capitals() {
     let words = |text: &'static str, old: &str, told: &str, name: &str| {
         let span = |words: &str| text.find(words).map(|from| [from, from + words.len()]).unwrap();
         replacement_words(&TokenisedText::from_text(text), span(old), span(told), name)

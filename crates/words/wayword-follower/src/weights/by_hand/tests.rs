@@ -17,7 +17,7 @@ fn weight<const N: usize>(table: &FeatureTable, places: [(usize, usize); N]) -> 
 }
 
 #[test]
-fn of_turn_is_highest_at_the_usual_angle() {
+fn turn_weight_is_highest_at_the_usual_angle() {
     let e1 = (-1.0f64).exp();
     for (kind, deg, expected) in [
         (0, 85.0, 1.03f64.ln() + 1.5),
