@@ -162,7 +162,7 @@ fn open_lerobot(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> 
 
 #[cfg(not(feature = "lerobot"))]
 fn open_lerobot(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
-    Err(not_built(path, "LeRobot datasets"))
+    Err(error_for_missing_feature(path, "LeRobot datasets"))
 }
 
 #[cfg(feature = "video")]
@@ -172,7 +172,7 @@ fn open_video(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
 
 #[cfg(not(feature = "video"))]
 fn open_video(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
-    Err(not_built(path, "MP4 files"))
+    Err(error_for_missing_feature(path, "MP4 files"))
 }
 
 #[cfg(feature = "mcap")]
@@ -182,7 +182,7 @@ fn open_mcap(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
 
 #[cfg(not(feature = "mcap"))]
 fn open_mcap(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
-    Err(not_built(path, "MCAP files"))
+    Err(error_for_missing_feature(path, "MCAP files"))
 }
 
 /// The error for a recording of a kind that was left out when this program was built.

@@ -54,13 +54,13 @@ pub(super) fn open_store(text: &str) -> Result<OpenedStore, CloudError> {
     let store: Arc<dyn ObjectStore> = match scheme {
         ObjectStoreScheme::Local => return open_folder(&url, shown),
         ObjectStoreScheme::AmazonS3 => {
-            Arc::new(open_s3(&url).map_err(|error| store_errors::of_settings(&shown, &error))?)
+            Arc::new(open_s3(&url).map_err(|error| store_errors::from_settings_error(&shown, &error))?)
         }
         ObjectStoreScheme::GoogleCloudStorage => {
-            Arc::new(open_google(&url).map_err(|error| store_errors::of_settings(&shown, &error))?)
+            Arc::new(open_google(&url).map_err(|error| store_errors::from_settings_error(&shown, &error))?)
         }
         ObjectStoreScheme::MicrosoftAzure => {
-            Arc::new(open_azure(&url).map_err(|error| store_errors::of_settings(&shown, &error))?)
+            Arc::new(open_azure(&url).map_err(|error| store_errors::from_settings_error(&shown, &error))?)
         }
         _ => return Err(address_error("is of a server whose kind is not known", ADDRESS_HINT)),
     };
@@ -80,7 +80,7 @@ fn parse_address(text: &str) -> Result<Url, CloudError> {
         return Err(address_error("has a part `.` or `..`", ADDRESS_HINT));
     }
     let url = Url::parse(text).map_err(|_| address_error("cannot be read", ADDRESS_HINT))?;
-    let is_user = !url.username().is_empty() && !CONTAINER_FIRST.contains(&url.scheme());
+    let is_user = !url.username().is_empty() && !CONTAINER_SCHEMES.contains(&url.scheme());
     if url.password().is_some() || is_user {
         let hint =
             "take it out, and set the variables of the provider, such as AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY";
@@ -103,7 +103,7 @@ fn parse_address(text: &str) -> Result<Url, CloudError> {
 fn open_folder(url: &Url, shown: String) -> Result<OpenedStore, CloudError> {
     let path = url.to_file_path().map_err(|()| address_error("is no folder of this machine", ADDRESS_HINT))?;
     fs::create_dir_all(&path).map_err(CloudError::for_local_file(&path, "make this folder"))?;
-    let store = LocalFileSystem::new_with_prefix(&path).map_err(|error| store_errors::of_settings(&shown, &error))?;
+    let store = LocalFileSystem::new_with_prefix(&path).map_err(|error| store_errors::from_settings_error(&shown, &error))?;
     Ok(OpenedStore { store: Arc::new(store.with_fsync(true)), prefix: Path::default(), shown })
 }
 

@@ -187,7 +187,7 @@ impl CloudBucket {
         let place = self.object_path(name)?;
         self.block_on_store(async {
             match self.store.get(&place).await {
-                Ok(object) => self.bytes_of(name, object, most_bytes).await.map(Some),
+                Ok(object) => self.read_bytes(name, object, most_bytes).await.map(Some),
                 Err(error @ object_store::Error::NotFound { .. }) => match self.object_error(name, "read it", &error) {
                     no_bucket @ CloudError::NoBucket { .. } => Err(no_bucket),
                     _ => Ok(None),
@@ -231,8 +231,8 @@ impl CloudBucket {
             let mut objects = self.store.list(Some(&place));
             while let Some(about) = objects.try_next().await.map_err(|error| self.listing_error(prefix, &error))? {
                 let Some(entry) = self.object_from_meta(&about)? else { continue };
-                if entries.len() == MOST_OBJECTS {
-                    return Err(CloudError::TooMany { at: self.shown_address(prefix), most: MOST_OBJECTS });
+                if entries.len() == MAX_LISTED_OBJECTS {
+                    return Err(CloudError::TooMany { at: self.shown_address(prefix), most: MAX_LISTED_OBJECTS });
                 }
                 entries.push(entry);
             }

@@ -118,7 +118,7 @@ impl FolderFetch<'_> {
 
     /// Fetches a file under an unfinished name, and gives it its own name when it is whole.
     async fn fetch_one<'e>(&self, entry: &'e StoredObject) -> Result<&'e StoredObject, CloudError> {
-        let relative = names::file_of(&entry.name)?;
+        let relative = names::local_file_path(&entry.name)?;
         let path = self.local.join(&relative);
         make_parents(self.local, &relative)?;
         let mut part = path.clone().into_os_string();
@@ -189,7 +189,7 @@ fn objects_below(prefix: &str, entries: Vec<StoredObject>) -> Result<Vec<StoredO
             let Some(rest) = rest else { continue };
             entry.name = rest.to_owned();
         }
-        names::file_of(&entry.name)?;
+        names::local_file_path(&entry.name)?;
         if entry.name.starts_with(FETCH_INDEX_FILE) {
             return Err(names::name_error(&entry.name, "is kept for the list of what was fetched"));
         }

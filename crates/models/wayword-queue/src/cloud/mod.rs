@@ -37,7 +37,7 @@ mod send;
 mod store_errors;
 mod stored_run;
 
-pub use bucket::{CloudBucket, MOST_OBJECTS, StoredObject};
+pub use bucket::{CloudBucket, MAX_LISTED_OBJECTS, StoredObject};
 pub use error::CloudError;
 pub use fetch::FetchSummary;
 pub use index::FETCH_INDEX_FILE;

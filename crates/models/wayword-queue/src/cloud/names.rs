@@ -27,14 +27,14 @@ fn name_problem(name: &str) -> Option<&'static str> {
     name.split('/').find_map(|part| match part {
         "" => Some("starts or ends with `/`, or has an empty part"),
         "." | ".." => Some("has a part `.` or `..`"),
-        _ if part.len() > LONGEST_PART => Some("has a part that is too long"),
+        _ if part.len() > MAX_PART_BYTES => Some("has a part that is too long"),
         _ => None,
     })
 }
 
 /// Returns an error if the name cannot be used.
 pub(super) fn check_name(name: &str) -> Result<(), CloudError> {
-    problem_of(name).map_or(Ok(()), |problem| Err(name_error(name, problem)))
+    name_problem(name).map_or(Ok(()), |problem| Err(name_error(name, problem)))
 }
 
 /// The error of a name, which is cut after 80 characters.
@@ -67,13 +67,13 @@ pub(super) fn local_file_path(name: &str) -> Result<PathBuf, CloudError> {
 
 #[cfg(test)]
 mod tests {
-    use super::{check_name, file_of};
+    use super::{check_name, local_file_path};
 
     #[test]
     fn a_plain_name_is_taken_and_becomes_a_file_below_the_folder() {
         for name in ["a", "a/b.jsonl.gz", "chunk 7/ü.json", "a..b/...", "-", "~"] {
             assert!(check_name(name).is_ok(), "{name}");
-            assert!(file_of(name).unwrap().is_relative());
+            assert!(local_file_path(name).unwrap().is_relative());
         }
     }
 
@@ -98,7 +98,7 @@ mod tests {
         ];
         for name in hostile {
             assert!(check_name(name).is_err(), "{name:?}");
-            assert!(file_of(name).is_err(), "{name:?}");
+            assert!(local_file_path(name).is_err(), "{name:?}");
         }
     }
 }

@@ -49,7 +49,7 @@ impl CloudBucket {
     /// When a file cannot be read, has a name that stores do not take, changes meanwhile, or the store cannot be used.
     pub fn send_folder(&self, local: &Path, name: &str) -> Result<SendSummary, CloudError> {
         names::check_name(name)?;
-        let items = files_of(local, name)?;
+        let items = list_files(local, name)?;
         self.block_on_store(async {
             let sent = stream::iter(items.iter().map(|item| self.send_file(item))).buffer_unordered(CONCURRENT_FILES);
             sent.try_fold(SendSummary::default(), |sum, bytes| async move {
@@ -67,7 +67,7 @@ impl CloudBucket {
             return self.send_parts(item, &place, file).await;
         }
         let bytes = read_piece(&file, item, item.bytes)?;
-        is_at_end(&file, item)?;
+        check_at_end(&file, item)?;
         let put = self.store.put(&place, PutPayload::from(bytes)).await;
         put.map(|_| item.bytes).map_err(|error| self.object_error(&item.name, "write it", &error))
     }
@@ -104,13 +104,13 @@ impl CloudBucket {
                 .map_err(|error| self.object_error(&item.name, "write it", &error))?;
             writer.put(bytes.into());
         }
-        is_at_end(file, item)
+        check_at_end(file, item)
     }
 }
 
 /// The size of the parts of a file. All but the last have the same size, as some stores demand.
 fn part_size(bytes: u64) -> u64 {
-    PART_BYTES.max(bytes.div_ceil(MOST_PARTS))
+    PART_BYTES.max(bytes.div_ceil(MAX_PARTS))
 }
 
 /// The next `length` bytes of a file.
@@ -150,7 +150,7 @@ fn list_files(local: &Path, name: &str) -> Result<Vec<OutgoingFile>, CloudError>
             if about.is_dir() {
                 names::check_name(&name)?;
                 folders.push((path, name));
-            } else if about.is_file() && !is_of_fetch(&last, folder == local) {
+            } else if about.is_file() && !is_fetch_file(&last, folder == local) {
                 names::check_name(&name)?;
                 let bytes = inside.metadata().map_err(CloudError::for_local_file(&path, "read"))?.len();
                 items.push(OutgoingFile { path, name, bytes });
@@ -163,13 +163,13 @@ fn list_files(local: &Path, name: &str) -> Result<Vec<OutgoingFile>, CloudError>
 
 #[cfg(test)]
 mod tests {
-    use super::{MOST_PARTS, PART_BYTES, part_size};
+    use super::{MAX_PARTS, PART_BYTES, part_size};
 
     #[test]
     fn a_huge_file_has_no_more_parts_than_stores_take() {
         assert_eq!(part_size(PART_BYTES + 1), PART_BYTES);
         let huge = 4 << 40;
-        assert!(huge_parts(huge) <= MOST_PARTS);
+        assert!(huge_parts(huge) <= MAX_PARTS);
     }
 
     fn huge_parts(bytes: u64) -> u64 {

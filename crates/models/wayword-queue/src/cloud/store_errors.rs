@@ -47,10 +47,10 @@ pub(super) fn from_store_error(at: &str, doing: &'static str, error: &object_sto
     let has = |codes: &[&str]| codes.iter().any(|code| text.contains(code));
     let at = at.to_owned();
     let answer = answer_code(&text);
-    if has(&NO_BUCKET) {
+    if has(&NO_BUCKET_CODES) {
         return CloudError::NoBucket { bucket: at };
     }
-    if has(&BAD_CREDENTIALS) || has(&NO_CREDENTIALS) || matches!(error, E::Unauthenticated { .. }) {
+    if has(&BAD_CREDENTIALS_CODES) || has(&NO_CREDENTIALS_TEXTS) || matches!(error, E::Unauthenticated { .. }) {
         return CloudError::Credentials { at, answer };
     }
     if matches!(error, E::NotFound { .. }) {
@@ -81,7 +81,7 @@ pub(super) fn from_store_error(at: &str, doing: &'static str, error: &object_sto
 /// The error of a store that could not be opened. Opening sends no request, so a setting is wrong.
 pub(super) fn from_settings_error(at: &str, error: &object_store::Error) -> CloudError {
     let text = format!("{error} {error:?}");
-    if NO_CREDENTIALS.iter().any(|known| text.contains(known)) {
+    if NO_CREDENTIALS_TEXTS.iter().any(|known| text.contains(known)) {
         return CloudError::Credentials { at: at.to_owned(), answer: "none are set".to_owned() };
     }
     let (problem, hint) = if text.contains("CA certificates") {
@@ -114,7 +114,7 @@ pub(super) fn is_conflict(error: &object_store::Error) -> bool {
 /// code is read instead.
 pub(super) fn is_no_bucket(error: &object_store::Error) -> bool {
     let text = error.to_string();
-    NO_BUCKET.iter().any(|code| text.contains(code))
+    NO_BUCKET_CODES.iter().any(|code| text.contains(code))
 }
 
 /// An error, its cause, the cause's cause and so on.

@@ -8,7 +8,7 @@ use super::{CloudBucket, CloudError};
 use crate::{
     ChunkBoard, ChunkClaim, ChunkPlan, ChunkRecord, PLAN, QueueError, RemainingChunks, chunk_folder,
     folder::remove_if_there,
-    marks::{CHUNKS_FOLDER, done_of, done_path, to_bytes},
+    marks::{CHUNKS_FOLDER, read_done_mark, done_path, to_bytes},
     put_whole,
 };
 use std::{
@@ -61,7 +61,7 @@ impl CloudRun {
     /// # Errors
     /// When the store or the folder cannot be used.
     pub fn fetch_file(&self, name: &str) -> Result<(), QueueError> {
-        match self.bucket.get_object(name, MOST_BYTES)? {
+        match self.bucket.get_object(name, MAX_FILE_BYTES)? {
             Some(bytes) => put_whole(&self.folder.join(name), &bytes),
             None => Ok(()),
         }
@@ -111,7 +111,7 @@ impl CloudRun {
     pub fn send_marks(&self, plan: &ChunkPlan) -> Result<(), QueueError> {
         let marked = self.marked_chunks(plan)?;
         for chunk in (0..plan.chunk_count()).filter(|chunk| !marked.contains(chunk)) {
-            if let Some(done) = done_of(&self.folder, chunk)? {
+            if let Some(done) = read_done_mark(&self.folder, chunk)? {
                 self.put_mark(&done)?;
             }
         }
@@ -132,7 +132,7 @@ impl CloudRun {
     /// # Errors
     /// When there is no run, the folder has another one, or the store or the folder cannot be used.
     pub fn fetch_run(&self, progress: &dyn Fn(usize, usize)) -> Result<(), QueueError> {
-        let Some(bytes) = self.bucket.get_object(PLAN, MOST_BYTES)? else {
+        let Some(bytes) = self.bucket.get_object(PLAN, MAX_FILE_BYTES)? else {
             return Err(QueueError::NoPlan(self.bucket.to_string().into()));
         };
         let path = self.folder.join(PLAN);
@@ -147,9 +147,9 @@ impl CloudRun {
         let plan = ChunkPlan::for_folder(&self.folder)?;
         self.fetch_marks(&plan)?;
         for chunk in 0..plan.chunk_count() {
-            if let Some(done) = done_of(&self.folder, chunk)? {
+            if let Some(done) = read_done_mark(&self.folder, chunk)? {
                 let local = chunk_folder(&self.folder, chunk, done.epoch);
-                self.bucket.fetch_folder(&self.results_name(&local), &local, MOST_CHUNK_BYTES, &|_, _| ())?;
+                self.bucket.fetch_folder(&self.results_name(&local), &local, MAX_CHUNK_BYTES, &|_, _| ())?;
             }
             progress(chunk + 1, plan.chunk_count());
         }
@@ -164,12 +164,12 @@ impl CloudRun {
 
     /// The name of a chunk's mark, in the folder and in the store.
     fn mark_name(&self, chunk: usize) -> String {
-        name_in(&self.folder, &done_path(&self.folder, chunk))
+        stored_name(&self.folder, &done_path(&self.folder, chunk))
     }
 
     /// Where the results of a try are, in the store.
     fn results_name(&self, local: &Path) -> String {
-        format!("{RESULTS_FOLDER}/{}", name_in(&self.folder.join(CHUNKS_FOLDER), local))
+        format!("{RESULTS_FOLDER}/{}", stored_name(&self.folder.join(CHUNKS_FOLDER), local))
     }
 
     /// Makes the mark of a chunk. Returns whether the store's mark is now this one. A mark of an earlier claim of a queue is
@@ -181,10 +181,10 @@ impl CloudRun {
             return Ok(true);
         }
         self.fetch_file(&name)?;
-        match done_of(&self.folder, done.chunk)? {
+        match read_done_mark(&self.folder, done.chunk)? {
             Some(stored) if stored.epoch == done.epoch => Ok(true),
             // Another try of a shard was first, or the queue gave the chunk to another worker later.
-            Some(stored) if is_try(done.epoch) || stored.epoch > done.epoch => Ok(false),
+            Some(stored) if is_try_number(done.epoch) || stored.epoch > done.epoch => Ok(false),
             _ => {
                 self.bucket.put_object(&name, bytes)?;
                 Ok(true)
@@ -203,7 +203,7 @@ fn stored_name(folder: &Path, path: &Path) -> String {
 /// store; with these numbers they get two prefixes for their results.
 fn new_try_number() -> i64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    i64::try_from(since.as_micros()).unwrap_or(i64::MAX).max(FIRST_TRY)
+    i64::try_from(since.as_micros()).unwrap_or(i64::MAX).max(MIN_TRY_NUMBER)
 }
 
 /// The smallest number of a try. It is larger than any number of a claim, because no chunk is claimed so often.
@@ -211,12 +211,12 @@ const MIN_TRY_NUMBER: i64 = 1 << 40;
 
 /// Whether this is the number of a try, and not the claim of a queue.
 fn is_try_number(epoch: i64) -> bool {
-    epoch >= FIRST_TRY
+    epoch >= MIN_TRY_NUMBER
 }
 
 /// The claim as the board behind a [`SendingBoard`] knows it: with epoch 0 if the board is a shard, which has no tries.
 fn board_claim(claimed: ChunkClaim) -> ChunkClaim {
-    if is_try(claimed.epoch) { ChunkClaim { epoch: 0, ..claimed } } else { claimed }
+    if is_try_number(claimed.epoch) { ChunkClaim { epoch: 0, ..claimed } } else { claimed }
 }
 
 /// A board that sends the results of chunks into an object store.
@@ -231,7 +231,7 @@ impl SendingBoard<'_> {
         let sent = self.run.bucket.send_folder(results, &self.run.results_name(results));
         sent.map(drop).or_else(|error: CloudError| {
             // The failure has no connection with the chunk, so it does not count as a try.
-            self.board.hand_back(on_board(claimed))?;
+            self.board.hand_back(board_claim(claimed))?;
             Err(error.into())
         })
     }
@@ -240,14 +240,14 @@ impl SendingBoard<'_> {
 impl ChunkBoard for SendingBoard<'_> {
     fn take_chunk(&self) -> Result<Option<ChunkClaim>, QueueError> {
         let taken = self.board.take_chunk()?;
-        Ok(taken.map(|taken| if taken.epoch == 0 { ChunkClaim { epoch: new_try(), ..taken } } else { taken }))
+        Ok(taken.map(|taken| if taken.epoch == 0 { ChunkClaim { epoch: new_try_number(), ..taken } } else { taken }))
     }
 
     fn complete_chunk(&self, claimed: ChunkClaim, done: &ChunkRecord) -> Result<bool, QueueError> {
         let results = chunk_folder(&self.run.folder, claimed.chunk, claimed.epoch);
         self.send_results(claimed, &results)?;
-        let counts = self.board.complete_chunk(on_board(claimed), done)? && self.run.put_mark(done)?;
-        if !is_try(claimed.epoch) {
+        let counts = self.board.complete_chunk(board_claim(claimed), done)? && self.run.put_mark(done)?;
+        if !is_try_number(claimed.epoch) {
             // The queue knows which chunks are finished, also after one was opened again. A local mark would be outdated then.
             remove_if_there(&done_path(&self.run.folder, claimed.chunk))?;
         }
@@ -258,11 +258,11 @@ impl ChunkBoard for SendingBoard<'_> {
     }
 
     fn hand_back(&self, claimed: ChunkClaim) -> Result<(), QueueError> {
-        self.board.hand_back(on_board(claimed))
+        self.board.hand_back(board_claim(claimed))
     }
 
     fn give_up(&self, claimed: ChunkClaim, reason: &str) -> Result<(), QueueError> {
-        self.board.give_up(on_board(claimed), reason)
+        self.board.give_up(board_claim(claimed), reason)
     }
 
     fn count_remaining(&self) -> Result<RemainingChunks, QueueError> {
@@ -328,7 +328,7 @@ mod tests {
             whole.fetch_run(&|_, _| ()).unwrap();
             (0..3)
                 .map(|chunk| {
-                    let done = done_of(all.path(), chunk).unwrap()?;
+                    let done = read_done_mark(all.path(), chunk).unwrap()?;
                     Some(fs::read_to_string(chunk_folder(all.path(), chunk, done.epoch).join("texts")).unwrap())
                 })
                 .collect::<Vec<_>>()
@@ -347,11 +347,11 @@ mod tests {
         let put = |epoch| run.put_mark(&done(epoch)).unwrap();
         assert_eq!([put(2), put(2), put(1), put(3), put(2)], [true, true, false, true, false]);
         run.fetch_marks(&plan()).unwrap();
-        assert_eq!(done_of(here.path(), 0).unwrap().unwrap().epoch, 3);
+        assert_eq!(read_done_mark(here.path(), 0).unwrap().unwrap().epoch, 3);
         // The queue has the chunk as finished, and the store has no mark of it.
         run.reopen_chunk(0).unwrap();
         run.send_marks(&plan()).unwrap();
         run.fetch_marks(&plan()).unwrap();
-        assert_eq!(done_of(here.path(), 0).unwrap().unwrap().epoch, 3);
+        assert_eq!(read_done_mark(here.path(), 0).unwrap().unwrap().epoch, 3);
     }
 }

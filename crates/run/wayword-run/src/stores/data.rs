@@ -36,16 +36,16 @@ pub(super) fn fetch_data(address: &str) -> Result<PathBuf, CommandError> {
     if address.strip_prefix("file://").is_some_and(|folder| !Path::new(folder).exists()) {
         return Err(no_data_error());
     }
-    let folder = folder_of(address)?;
+    let folder = cache_folder_for(address)?;
     let bucket = CloudBucket::open(address).map_err(QueueError::from)?;
     let last_message = Cell::new(None::<Instant>);
     let progress = |done: u64, all: u64| {
         if done < all && last_message.get().is_none_or(|at| at.elapsed() > PROGRESS_INTERVAL) {
             last_message.set(Some(Instant::now()));
-            output::pass_on(&format!("fetching {address}: {} of {} MB", done >> 20, all >> 20));
+            output::print_foreign_line(&format!("fetching {address}: {} of {} MB", done >> 20, all >> 20));
         }
     };
-    let fetched = bucket.fetch_folder("", &folder, MOST_BYTES, &progress).map_err(QueueError::from)?;
+    let fetched = bucket.fetch_folder("", &folder, MAX_FETCHED_BYTES, &progress).map_err(QueueError::from)?;
     if fetched.files + fetched.kept == 0 {
         return Err(no_data_error());
     }

@@ -24,7 +24,7 @@ impl CollectorClient {
     ///
     /// # Errors
     /// When the certificates of the environment cannot be read.
-    pub(super) fn new(teller: Arc<FailureReporter>) -> Result<Self, String> {
+    pub(super) fn new(reporter: Arc<FailureReporter>) -> Result<Self, String> {
         let config = Agent::config_builder()
             .http_status_as_error(false)
             // A redirect would send the headers, which may have a key, to another server.
@@ -32,13 +32,13 @@ impl CollectorClient {
             .timeout_global(Some(variables::request_timeout()))
             .user_agent(concat!("wayword/", env!("CARGO_PKG_VERSION")))
             .tls_config(TlsConfig::builder().root_certs(trusted_roots()?).build());
-        Ok(Self { agent: config.build().new_agent(), teller })
+        Ok(Self { agent: config.build().new_agent(), reporter })
     }
 }
 
 /// The certificate authorities to trust: those of the environment's file, or else the public ones.
 fn trusted_roots() -> Result<RootCerts, String> {
-    let Some(file) = variables::of_spans_or_all("CERTIFICATE") else { return Ok(RootCerts::WebPki) };
+    let Some(file) = variables::otlp_variable_text("CERTIFICATE") else { return Ok(RootCerts::WebPki) };
     let unread = |why: &str| format!("{file}, which OTEL_EXPORTER_OTLP_CERTIFICATE names, {why}");
     let pem = fs::read(&file).map_err(|error| unread(&format!("cannot be read: {error}")))?;
     let roots: Vec<_> = parse_pem(&pem)
@@ -56,7 +56,7 @@ impl HttpClient for CollectorClient {
         let (head, body) = request.into_parts();
         let sent = self.agent.run(Request::from_parts(head, &body[..]));
         let (head, mut body) = sent.map_err(|error| self.note_error(error))?.into_parts();
-        let body = body.with_config().limit(LARGEST_ANSWER).read_to_vec().map_err(|error| self.note_error(error))?;
+        let body = body.with_config().limit(MAX_ANSWER_BYTES).read_to_vec().map_err(|error| self.note_error(error))?;
         Ok(Response::from_parts(head, body.into()))
     }
 }
@@ -64,7 +64,7 @@ impl HttpClient for CollectorClient {
 impl CollectorClient {
     /// Keeps the reason of a failure, which the exporter does not pass on.
     fn note_error(&self, error: Error) -> HttpError {
-        self.teller.note_reason(error_words(&error));
+        self.reporter.note_reason(error_words(&error));
         error.into()
     }
 }

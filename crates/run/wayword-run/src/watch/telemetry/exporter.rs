@@ -28,18 +28,18 @@ pub(super) struct FailureReporter {
 
 impl FailureReporter {
     pub(super) fn new(output: CommandOutput) -> Self {
-        Self { output, is_told: AtomicBool::new(false), noted: Mutex::default() }
+        Self { output, has_warned: AtomicBool::new(false), last_reason: Mutex::default() }
     }
 
     /// Keeps the reason of a failure until [`Self::report_once`].
     pub(super) fn note_reason(&self, reason: String) {
-        *self.noted.lock().unwrap_or_else(PoisonError::into_inner) = reason;
+        *self.last_reason.lock().unwrap_or_else(PoisonError::into_inner) = reason;
     }
 
     /// Prints the warning, with the reason that was noted last, or else with this one.
     pub(super) fn report_once(&self, reason: &str) {
-        let noted = mem::take(&mut *self.noted.lock().unwrap_or_else(PoisonError::into_inner));
-        if self.is_told.swap(true, Ordering::Relaxed) {
+        let noted = mem::take(&mut *self.last_reason.lock().unwrap_or_else(PoisonError::into_inner));
+        if self.has_warned.swap(true, Ordering::Relaxed) {
             return;
         }
         let reason = if noted.is_empty() { reason } else { &noted };
@@ -57,8 +57,8 @@ pub(super) struct ReportingExporter {
 }
 
 impl ReportingExporter {
-    pub(super) fn new(inner: opentelemetry_otlp::SpanExporter, teller: Arc<FailureReporter>) -> Self {
-        Self { inner, teller }
+    pub(super) fn new(inner: opentelemetry_otlp::SpanExporter, reporter: Arc<FailureReporter>) -> Self {
+        Self { inner, reporter }
     }
 }
 
@@ -67,8 +67,8 @@ impl SpanExporter for ReportingExporter {
         let sent = self.inner.export(batch).await;
         match &sent {
             // Another try may have succeeded after a failure that was noted.
-            Ok(()) => self.teller.note_reason(String::new()),
-            Err(error) => self.teller.report_once(&error.to_string()),
+            Ok(()) => self.reporter.note_reason(String::new()),
+            Err(error) => self.reporter.report_once(&error.to_string()),
         }
         sent
     }

@@ -36,17 +36,17 @@ impl SpanTelemetry {
         if !variables::is_asked() {
             return None;
         }
-        let teller = Arc::new(FailureReporter::new(output.clone()));
-        let exporter = match make_exporter(&teller) {
+        let reporter = Arc::new(FailureReporter::new(output.clone()));
+        let exporter = match make_exporter(&reporter) {
             Ok(exporter) => exporter,
             Err(reason) => {
-                teller.report_once(&reason);
+                reporter.report_once(&reason);
                 return None;
             }
         };
         let provider =
             SdkTracerProvider::builder().with_resource(worker_resource(worker)).with_batch_exporter(exporter).build();
-        Some(Self { provider, teller })
+        Some(Self { provider, reporter })
     }
 
     /// The layer of `tracing` that takes the program's spans.
@@ -64,13 +64,13 @@ impl SpanTelemetry {
     /// Sends the last spans, and gives up after a few seconds.
     pub(super) fn send_rest(self) {
         if let Err(error) = self.provider.shutdown_with_timeout(LAST_WAIT) {
-            self.teller.report_once(&error.to_string());
+            self.reporter.report_once(&error.to_string());
         }
     }
 }
 
-fn make_exporter(teller: &Arc<FailureReporter>) -> Result<ReportingExporter, String> {
-    let client = CollectorClient::new(Arc::clone(teller))?;
+fn make_exporter(reporter: &Arc<FailureReporter>) -> Result<ReportingExporter, String> {
+    let client = CollectorClient::new(Arc::clone(reporter))?;
     // The address may hold a password, so the error that quotes it is not passed on.
     let exporter = SpanExporter::builder()
         .with_http()
@@ -78,7 +78,7 @@ fn make_exporter(teller: &Arc<FailureReporter>) -> Result<ReportingExporter, Str
         .with_http_client(client)
         .build()
         .map_err(|_| format!("{} is no address, or another variable of its is wrong", variables::ENDPOINT_VARIABLE))?;
-    Ok(ReportingExporter::new(exporter, Arc::clone(teller)))
+    Ok(ReportingExporter::new(exporter, Arc::clone(reporter)))
 }
 
 /// The resource attributes of this worker. Names that the user sets in the environment win.

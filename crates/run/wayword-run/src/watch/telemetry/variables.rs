@@ -34,6 +34,6 @@ pub(super) fn is_asked() -> bool {
 
 /// How long a request may take.
 pub(super) fn request_timeout() -> Duration {
-    let asked = of_spans_or_all("TIMEOUT").and_then(|text| text.trim().parse().ok());
+    let asked = otlp_variable_text("TIMEOUT").and_then(|text| text.trim().parse().ok());
     asked.map_or(DEFAULT_TIMEOUT, Duration::from_millis)
 }
