@@ -42,10 +42,10 @@ mod tests {
 
     #[test]
     fn ambiguity_counts_ends_and_objects() {
-        let told = |ends, objects| TextAmbiguity { ends, objects, ..TextAmbiguity::default() }.to_sentence();
-        assert!(told(Some(3), 1).unwrap().contains("3 places"));
-        assert!(told(Some(1), 2).unwrap().contains("2 objects"));
-        assert!(told(None, 2).is_some());
-        assert_eq!((told(Some(1), 1), told(None, 0)), (None, None));
+        let sentence = |ends, objects| TextAmbiguity { ends, objects, ..TextAmbiguity::default() }.to_sentence();
+        assert!(sentence(Some(3), 1).unwrap().contains("3 places"));
+        assert!(sentence(Some(1), 2).unwrap().contains("2 objects"));
+        assert!(sentence(None, 2).is_some());
+        assert_eq!((sentence(Some(1), 1), sentence(None, 0)), (None, None));
     }
 }

@@ -23,6 +23,7 @@ fn validate_id(kind: &'static str, text: String) -> Result<String, InvalidId> {
     let reason = if text.is_empty() {
         "is empty"
     } else if text.len() > MAX_ID_BYTES {
+        // A test compares this number with `MAX_ID_BYTES`.
         "is longer than 128 bytes"
     } else if text.contains(['/', '\\']) || text == "." || text == ".." {
         "could name another folder: path separators are not allowed in an id"
@@ -101,9 +102,11 @@ mod tests {
 
     #[test]
     fn ids_that_could_leave_a_folder_are_refused() {
-        for bad in ["", "..", ".", "a/b", "..\\x", "line\nbreak", &"x".repeat(129)] {
+        for bad in ["", "..", ".", "a/b", "..\\x", "line\nbreak", &"x".repeat(MAX_ID_BYTES + 1)] {
             assert!(SceneId::new(bad).is_err(), "{bad:?} was accepted");
         }
+        let too_long = SceneId::new("x".repeat(MAX_ID_BYTES + 1)).unwrap_err().to_string();
+        assert!(too_long.contains(&format!("{MAX_ID_BYTES} bytes")), "{too_long}");
         assert_eq!(SceneId::new("a-scan_7").unwrap().as_str(), "a-scan_7");
     }
 

@@ -1,11 +1,11 @@
-//! The item that every format's reader returns: a path and its instructions. Fields that were read keep their
-//! spelling, so that an unchanged item is written as it was.
+//! The episode that every format's reader returns: a path and its instructions. Fields that were read keep their
+//! spelling, so that an unchanged episode is written as it was.
 
 use crate::item;
 use serde_json::{Map, Value};
 use wayword_core::{DVec3, Heading, ObjectId, Path, SceneId, ViewpointId};
 
-/// An item of a dataset, whatever its format.
+/// An episode of a dataset, whatever its format.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Episode {
     /// Its name, unique in its file: REVERIE's `id`, R2R's `path_id`, RxR's `instruction_id`, VLN-CE's `episode_id`.
@@ -33,7 +33,7 @@ pub struct Episode {
     /// episodes come from RxR). Empty where the file tags none.
     pub languages: Vec<String>,
     /// The ids of each instruction's tokens, for agents that load them: written as `instr_encodings` (RxR:
-    /// `instr_encoding`). Empty where there are none; a file's own ids are kept as unknown fields are.
+    /// `instr_encoding`). Empty where there are none; ids that were read from a file are in [`Self::extra`].
     pub encodings: Vec<Vec<u32>>,
     /// Fields that the format does not name, in the order of the file. Written back where the loaders accept them (R2R,
     /// REVERIE, RxR).
@@ -55,7 +55,7 @@ pub struct InHabitat {
 }
 
 impl Episode {
-    /// An item without a path.
+    /// An episode without a path.
     #[must_use]
     pub fn new(id: impl Into<String>, path_id: impl Into<String>, scene: SceneId) -> Self {
         Self {
@@ -76,7 +76,7 @@ impl Episode {
         }
     }
 
-    /// The item of a path, with the path's name. It has viewpoints where each frame has one. Where the motion is
+    /// The episode of a path, with the path's name. It has viewpoints where each frame has one. Where the motion is
     /// unknown, it has neither viewpoints (the frames' names are those of pictures) nor a heading.
     #[must_use]
     pub fn from_path(path: &Path, instructions: Vec<String>) -> Self {

@@ -104,6 +104,7 @@ impl<'a> TokenisedText<'a> {
         let is_in = |list: &[&str], token: &TextToken| list.contains(&&*token.word);
         let last = near.iter().rposition(|token| is_in(&PREPOSITIONS, token) || is_in(&WAY_VERBS, token))?;
         if is_in(&WAY_VERBS, &near[last]) {
+            // Such a verb ("leave") has no preposition, so the new words need another verb.
             return Some(WayWords { span: near[last].span, verb: "walk ".into() });
         }
         let first = near[..last].iter().rposition(|token| !is_in(&PREPOSITIONS, token)).map_or(0, |at| at + 1);
@@ -118,8 +119,8 @@ impl<'a> TokenisedText<'a> {
     #[must_use]
     pub fn is_bare(&self, name: [usize; 2]) -> bool {
         let before = self.tokens[..self.tokens.partition_point(|token| token.span[1] <= name[0])].last();
-        let is_of_name = |token: &TextToken| token.is_word() && !BEFORE_NAME.contains(&&*token.word);
-        !before.is_some_and(is_of_name)
+        let describes_thing = |token: &TextToken| token.is_word() && !BEFORE_NAME.contains(&&*token.word);
+        !before.is_some_and(describes_thing)
     }
 
     /// A name together with the article "a" or "an" right before it, because the article depends on the name.
@@ -191,23 +192,26 @@ mod tests {
             ("the door to your left", "left", "to your left", "to your right"),
             ("geh LEFT", "LEFT", "LEFT", "RIGHT"),
         ] {
-            let spelt = TokenisedText::from_text(text);
-            let span = spelt.turn_words([0, text.len()], range(text, side));
-            assert_eq!((spelt.words_of(span), spelt.other_side(span).as_deref()), (told, Some(other)));
+            let tokenised = TokenisedText::from_text(text);
+            let span = tokenised.turn_words([0, text.len()], range(text, side));
+            assert_eq!((tokenised.words_of(span), tokenised.other_side(span).as_deref()), (told, Some(other)));
         }
     }
 
     #[test]
     fn a_side_and_a_climb_are_found_in_their_step() {
         let text = "Walk down the hall and up the stairs, the door is on your left";
-        let spelt = TokenisedText::from_text(text);
+        let tokenised = TokenisedText::from_text(text);
         let step = [0, text.len()];
-        assert_eq!(spelt.words_of(spelt.side_words(step).unwrap()), "on your left");
-        let (span, other) = spelt.climb_word(step, true).unwrap();
-        assert_eq!((spelt.words_of(span), &*other), ("up", "down"));
-        assert_eq!(spelt.climb_word([0, 10], true), None);
-        assert_eq!(spelt.words_of(spelt.step_words(range(text, "and up the stairs, ")).unwrap()), "up the stairs");
-        assert_eq!(spelt.step_words(range(text, "and ")), None);
+        assert_eq!(tokenised.words_of(tokenised.side_words(step).unwrap()), "on your left");
+        let (span, other) = tokenised.climb_word(step, true).unwrap();
+        assert_eq!((tokenised.words_of(span), &*other), ("up", "down"));
+        assert_eq!(tokenised.climb_word([0, 10], true), None);
+        assert_eq!(
+            tokenised.words_of(tokenised.step_words(range(text, "and up the stairs, ")).unwrap()),
+            "up the stairs"
+        );
+        assert_eq!(tokenised.step_words(range(text, "and ")), None);
     }
 
     #[test]
@@ -218,9 +222,9 @@ mod tests {
             ("Leave the sofa", "Leave", "walk "),
             ("down to the sofa", "down to", ""),
         ] {
-            let spelt = TokenisedText::from_text(text);
-            let way = spelt.way_words([0, text.len()], range(text, "sofa")).unwrap();
-            assert_eq!((spelt.words_of(way.span), &*way.verb), (words, verb));
+            let tokenised = TokenisedText::from_text(text);
+            let way = tokenised.way_words([0, text.len()], range(text, "sofa")).unwrap();
+            assert_eq!((tokenised.words_of(way.span), &*way.verb), (words, verb));
         }
         assert_eq!(TokenisedText::from_text("the sofa").way_words([0, 8], [4, 8]), None);
     }
@@ -234,17 +238,17 @@ mod tests {
 
     #[test]
     fn with_its_article_includes_a_or_an() {
-        let (text, spelt) = ("by an oven", TokenisedText::from_text("by an oven"));
-        assert_eq!(spelt.words_of(spelt.with_its_article(range(text, "oven"))), "an oven");
-        assert_eq!(spelt.with_its_article([3, 5]), [3, 5]);
+        let (text, tokenised) = ("by an oven", TokenisedText::from_text("by an oven"));
+        assert_eq!(tokenised.words_of(tokenised.with_its_article(range(text, "oven"))), "an oven");
+        assert_eq!(tokenised.with_its_article([3, 5]), [3, 5]);
     }
 
     #[test]
     fn ranges_that_do_not_fit_have_no_words() {
-        let spelt = TokenisedText::from_text("門 left 🪑");
+        let tokenised = TokenisedText::from_text("門 left 🪑");
         for span in [[1, 2], [9, 3], [usize::MAX, usize::MAX]] {
-            assert_eq!(spelt.words_of(span), "");
-            assert_eq!((spelt.side_words(span), spelt.step_words(span)), (None, None));
+            assert_eq!(tokenised.words_of(span), "");
+            assert_eq!((tokenised.side_words(span), tokenised.step_words(span)), (None, None));
         }
     }
 }

@@ -60,7 +60,7 @@ pub fn write_building(data: &Path) -> io::Result<()> {
 /// # Errors
 /// When a file cannot be written.
 pub fn write_skyboxes(data: &Path) -> io::Result<()> {
-    write_skyboxes_marked(data, |_| 0)
+    write_shaded_skyboxes(data, |_| 0)
 }
 
 /// Adds photographs as [`write_skyboxes`] does, but shaded differently at each viewpoint, for tests that distinguish
@@ -69,14 +69,18 @@ pub fn write_skyboxes(data: &Path) -> io::Result<()> {
 /// # Errors
 /// When a file cannot be written.
 pub fn write_distinct_skyboxes(data: &Path) -> io::Result<()> {
-    write_skyboxes_marked(data, |index| u8::try_from(4 * (index + 1)).unwrap_or(u8::MAX))
+    write_shaded_skyboxes(data, |index| u8::try_from(4 * (index + 1)).unwrap_or(u8::MAX))
 }
 
-/// Writes the skyboxes. `mark` gives the shade of each viewpoint, by the viewpoint's index.
-fn write_skyboxes_marked(data: &Path, mark: impl Fn(usize) -> u8) -> io::Result<()> {
+/// Writes the skyboxes. `shade_of_viewpoint` gives the shade of each viewpoint, by its index.
+fn write_shaded_skyboxes(data: &Path, shade_of_viewpoint: impl Fn(usize) -> u8) -> io::Result<()> {
     let folder = data.join(format!("matterport/v1/scans/{SCAN}/matterport_skybox_images"));
     for (index, _) in test_house::VIEWPOINTS.iter().enumerate() {
-        write_file(&folder, &format!("{}_skybox_small.jpg", viewpoint_id(index)), skyboxes::skybox_jpeg(mark(index))?)?;
+        write_file(
+            &folder,
+            &format!("{}_skybox_small.jpg", viewpoint_id(index)),
+            skyboxes::skybox_jpeg(shade_of_viewpoint(index))?,
+        )?;
     }
     Ok(())
 }
@@ -105,14 +109,14 @@ fn connectivity_file() -> Value {
 
 /// One viewpoint of the connectivity file, which has `count` viewpoints in all.
 fn connectivity_item(index: usize, [x, y, z]: [f64; 3], included: bool, count: usize) -> Value {
-    let open: Vec<bool> = (0..count).map(|other| test_house::are_joined(index, other)).collect();
+    let is_joined_to: Vec<bool> = (0..count).map(|other| test_house::are_joined(index, other)).collect();
     json!({
         "image_id": viewpoint_id(index),
         // The skybox's axes: x east, y down, z north.
         "pose": [1.0, 0.0, 0.0, x, 0.0, 0.0, 1.0, y, 0.0, -1.0, 0.0, z, 0.0, 0.0, 0.0, 1.0],
         "included": included,
-        "visible": open,
-        "unobstructed": open,
+        "visible": is_joined_to,
+        "unobstructed": is_joined_to,
         "height": test_house::CAMERA_HEIGHT_M,
     })
 }

@@ -30,7 +30,7 @@ impl McNemar {
 
 /// The probability of at most `most` heads of `coins` fair coins, for `most` up to half of them.
 ///
-/// The greatest term, that of `most` heads, is computed by logarithms: as a number it would vanish beyond 1,074 coins,
+/// The greatest term, that of `most` heads, is computed by logarithms: as an `f64` it would be 0 beyond 1,074 coins,
 /// and the count of its cases would overflow beyond 1,029. The other terms are shares of it.
 fn lower_tail(coins: usize, most: usize) -> f64 {
     let greatest_ln: f64 = (0..most).map(|heads| ((coins - heads) as f64 / (heads + 1) as f64).ln()).sum::<f64>()

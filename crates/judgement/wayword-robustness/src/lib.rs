@@ -8,10 +8,12 @@
 //! Architecture invariant: this crate reads no files, runs no models, and knows platforms only by the trait.
 //!
 //! # Where things are
-//! - `change/`: which changes there are, with names, units and doses; `refusal.rs`: where they mean nothing.
+//! - `change/`: which changes there are, with names, units and doses; `refusal.rs`: on which platforms a
+//!   change makes no sense, and is refused.
 //! - `worlds/`: one file for each kind of change, over `altered_platform.rs`; `edits.rs` chooses the thing that is removed, added or recoloured.
 //! - `worlds/eye.rs`: the scripted eye.
-//! - `facts`, `agreement`: what a text states, and how far two texts agree.
+//! - `facts.rs`, `agreement.rs`: what a text states, and how far two texts agree.
+//! - `ratio.rs`: how much a change matters to many texts; `sets.rs`: how sets of texts differ.
 
 mod agreement;
 mod change;

@@ -60,23 +60,25 @@ impl Study {
     /// Closes the study: it accepts no more answers, and the participants' ids at the recruiter are deleted.
     ///
     /// # Errors
-    /// When people are still answering and `even_if_live` is not set, or the database cannot be written.
+    /// When participants are live, which means answering now, and `even_if_live` is not set, or the database cannot be written.
     pub fn close(&self, even_if_live: bool) -> Result<(), StudyError> {
         let live = self.run_transaction(|transaction| transaction.close_study(even_if_live))?;
         if live > 0 && !even_if_live {
             let problem = format!("{live} participants are in the middle of it, and could not go on");
             return Err(StudyError::refused_request(problem, "wait until they are done, or give --even-if-live"));
         }
+        // Deleted data must not stay in the database's log.
         StudyStore::open(&self.database_file())?.empty_log();
         Ok(())
     }
 
-    /// Deletes all data of a participant; with `is_dry` it only counts them. `participant` is our id or the recruiter's.
+    /// Deletes all data of a participant; with `is_dry_run` it only counts them. `participant` is our id or the recruiter's.
     ///
     /// # Errors
     /// When the participant does not exist, or the database cannot be written.
-    pub fn forget_participant(&self, participant: &str, is_dry: bool) -> Result<ErasureReport, StudyError> {
-        let report = self.run_transaction(|transaction| transaction.forget_participant(participant, is_dry))?;
+    pub fn forget_participant(&self, participant: &str, is_dry_run: bool) -> Result<ErasureReport, StudyError> {
+        let report = self.run_transaction(|transaction| transaction.forget_participant(participant, is_dry_run))?;
+        // Deleted data must not stay in the database's log.
         StudyStore::open(&self.database_file())?.empty_log();
         Ok(report)
     }

@@ -61,10 +61,10 @@ impl PooledConnection {
 pub struct ConnectionPool {
     database: PostgresDatabase,
     /// How many connections may be open at once. A thread waits while all are in use.
-    most: usize,
+    max_connections: usize,
     state: Mutex<PoolState>,
     /// Wakes a waiting thread when a connection was put back.
-    back: Condvar,
+    connection_returned: Condvar,
 }
 
 /// The connections of a pool at this moment.
@@ -72,14 +72,19 @@ pub struct ConnectionPool {
 struct PoolState {
     idle: Vec<PooledConnection>,
     /// How many connections are in use.
-    out: usize,
+    in_use_count: usize,
 }
 
 impl ConnectionPool {
-    /// A pool of at most `most` connections. It connects only when work needs it.
+    /// A pool of at most `max_connections` connections. It connects only when work needs it.
     #[must_use]
-    pub fn new(database: PostgresDatabase, most: usize) -> Self {
-        Self { database, most: most.max(1), state: Mutex::default(), back: Condvar::new() }
+    pub fn new(database: PostgresDatabase, max_connections: usize) -> Self {
+        Self {
+            database,
+            max_connections: max_connections.max(1),
+            state: Mutex::default(),
+            connection_returned: Condvar::new(),
+        }
     }
 
     /// The database.
@@ -123,7 +128,7 @@ impl ConnectionPool {
         // If the work panics, the place of this connection stays taken; the program ends in that case.
         let done = work(&mut connection);
         let mut state = self.lock_state();
-        state.out -= 1;
+        state.in_use_count -= 1;
         if connection.client.is_closed() || done.as_ref().is_err_and(is_lost) {
             // The idle connections were lost too.
             state.idle.clear();
@@ -131,17 +136,17 @@ impl ConnectionPool {
             state.idle.push(connection);
         }
         drop(state);
-        self.back.notify_one();
+        self.connection_returned.notify_one();
         done.map_err(|error| DatabaseError::from_server(self.database.shown_name(), doing, &error))
     }
 
     /// An idle connection or a new one. Waits while as many as allowed are in use.
     fn take_connection(&self) -> Result<PooledConnection, DatabaseError> {
         let mut state = self.lock_state();
-        while state.out >= self.most {
-            state = self.back.wait(state).unwrap_or_else(PoisonError::into_inner);
+        while state.in_use_count >= self.max_connections {
+            state = self.connection_returned.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
-        state.out += 1;
+        state.in_use_count += 1;
         let idle = state.idle.pop();
         drop(state);
         let connection = match idle {
@@ -151,8 +156,8 @@ impl ConnectionPool {
         match connection {
             Ok(connection) => Ok(connection),
             Err(error) => {
-                self.lock_state().out -= 1;
-                self.back.notify_one();
+                self.lock_state().in_use_count -= 1;
+                self.connection_returned.notify_one();
                 Err(error)
             }
         }
@@ -165,6 +170,9 @@ impl ConnectionPool {
 
 impl fmt::Debug for ConnectionPool {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Pool").field("database", &self.database).field("most", &self.most).finish_non_exhaustive()
+        f.debug_struct("Pool")
+            .field("database", &self.database)
+            .field("most", &self.max_connections)
+            .finish_non_exhaustive()
     }
 }

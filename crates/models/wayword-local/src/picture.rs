@@ -64,8 +64,8 @@ impl PictureProcessor {
             return Err(picture_error(format!("{empty:?} has no pixels")));
         }
         let mut numbers = vec![0.0; images.len() * 3 * self.height_px * self.width_px];
-        let each = numbers.par_chunks_mut(3 * self.height_px * self.width_px);
-        each.zip(images).for_each(|(numbers, image)| self.fill_picture(image, numbers));
+        let pictures = numbers.par_chunks_mut(3 * self.height_px * self.width_px);
+        pictures.zip(images).for_each(|(numbers, image)| self.fill_picture(image, numbers));
         let shape = (images.len(), 3, self.height_px, self.width_px);
         Tensor::from_vec(numbers, shape, &device.0).map_err(|error| picture_error(error.to_string()))
     }

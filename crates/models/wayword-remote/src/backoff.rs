@@ -25,8 +25,8 @@ pub(crate) fn wait_after(asked: Duration, key: &str, attempt: u32) -> Duration {
 
 /// A number in [0, 1), always the same for a key and an attempt.
 fn wait_fraction(key: &str, attempt: u32) -> f64 {
-    // The seed is a hash (FNV), in which the low bits vary most; the upper half of a product with an odd constant
-    // spreads them.
+    // The seed is a hash (FNV), in which the low bits vary most; multiplying by an odd constant carries them into the
+    // high bits, which are used here.
     let spread = seed::derive_seed(u64::from(attempt), &["backoff", key]).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     (spread >> 11) as f64 / (1_u64 << 53) as f64
 }

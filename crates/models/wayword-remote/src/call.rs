@@ -95,7 +95,7 @@ enum AttemptOutcome {
     /// The run was stopped, or the endpoint closed, before anything was sent.
     NotSent,
     /// The ledger, which limits the rate of all workers together, could not be used. No request was sent.
-    NoTurn(LedgerError),
+    RateLimitUnavailable(LedgerError),
 }
 
 impl RequestSize {
@@ -123,7 +123,7 @@ impl PreparedCall<'_> {
         let most_usd = self
             .price
             .map(|price| price.cost_usd(self.size.max_tokens_in(price.tokens_per_picture), self.size.max_tokens));
-        let mut empty = 0;
+        let mut empty_answers = 0;
         let mut attempt = 0;
         loop {
             attempt += 1;
@@ -136,7 +136,8 @@ impl PreparedCall<'_> {
                         return Ok(self.ledger_answer(&reply, text, latency, attempt));
                     }
                     Err(fault) => {
-                        empty += u32::from(matches!(fault, RemoteFault::Retry(_)));
+                        // Of the faults of a reply, only an empty answer is worth another try.
+                        empty_answers += u32::from(matches!(fault, RemoteFault::Retry(_)));
                         fault
                     }
                 },
@@ -146,17 +147,17 @@ impl PreparedCall<'_> {
                     self.check_open()?;
                     return Err(CallError::Refused(RequestRefusedError::Stopped));
                 }
-                AttemptOutcome::NoTurn(error) => {
+                AttemptOutcome::RateLimitUnavailable(error) => {
                     attempts.mark_cancelled();
                     return Err(CallError::Refused(error.into()));
                 }
             };
             let retry = self.record_fault(fault, attempts)?;
-            if attempt >= self.attempts || empty > MAX_EMPTY_ANSWER_RETRIES {
+            if attempt >= self.attempts || empty_answers > MAX_EMPTY_ANSWER_RETRIES {
                 let times = if attempt == 1 { "1 attempt".to_owned() } else { format!("{attempt} attempts") };
                 let reason = format!("{} ({times})", retry.reason);
                 // A service that gives empty answers is there, so the call is not lost.
-                return Err(if empty > MAX_EMPTY_ANSWER_RETRIES {
+                return Err(if empty_answers > MAX_EMPTY_ANSWER_RETRIES {
                     CallError::Failed(reason)
                 } else {
                     CallError::Lost(reason)
@@ -215,9 +216,10 @@ impl PreparedCall<'_> {
         if self.run.shares_rates() {
             let (name, rates) = endpoint.shared_rates();
             match self.run.wait_turn(&name, rates, tokens, stopped) {
+                // It is our turn. The wait for it does not count as latency.
                 Ok(true) => permit.note_late_start(),
                 Ok(false) => return AttemptOutcome::NotSent,
-                Err(error) => return AttemptOutcome::NoTurn(error),
+                Err(error) => return AttemptOutcome::RateLimitUnavailable(error),
             }
         }
         let received = endpoint.post_request(self.wire, body);

@@ -15,7 +15,7 @@ pub struct ModelPrice {
     pub usd_per_million_in: f64,
     /// US dollars per million tokens of the reply.
     pub usd_per_million_out: f64,
-    /// The day on which the price was last checked; empty if the model is free.
+    /// The day on which the price was last checked; empty only for [`ModelPrice::free_of_charge`].
     pub as_of: String,
     /// The most tokens that a picture counts as.
     #[serde(default = "tokens_per_picture")]
@@ -80,6 +80,7 @@ impl PriceTable {
 
     /// The price of a model: by its name, or by the longest listed name that it is a dated snapshot of.
     pub(crate) fn for_model(&self, name: &str) -> Option<ModelPrice> {
+        // In reverse order a longer name comes before its beginnings.
         let snapshot = || self.0.iter().rev().find(|(base, _)| is_snapshot(name, base)).map(|(_, price)| price);
         self.0.get(name).or_else(snapshot).cloned()
     }

@@ -6,7 +6,8 @@ use wayword_formats::Episode;
 use wayword_metrics::{DistanceAtlas, EpisodeDemand, SceneDistances};
 use wayword_run::error::CommandError;
 
-/// Goals nearer to each other than this count as one goal, metres: R2R counts an agent there as arrived.
+/// Goals nearer to each other than this count as one goal, metres: R2R counts an agent there as arrived. The choices of other
+/// paths for comparisons, studies and robustness use it.
 pub(crate) const SAME_GOAL_M: f64 = 3.0;
 
 /// Makes the demands of a platform's episodes. It computes the distances of each scene once.

@@ -36,6 +36,7 @@ pub struct RoleTeam {
     mode: DialogueMode,
     /// The hash of the prompts, for provenance; `None` if no model takes part.
     prompts_hash: Option<String>,
+    /// A detector that looks along the paths.
     lookout: Option<DetectorLookout>,
     /// The name of the lookout's detector with the meaning of its scores, for provenance.
     detector: Option<String>,
@@ -79,7 +80,7 @@ impl RoleTeam {
             }
         };
         let prompts_hash = (!roles.model_names().is_empty()).then(|| prompts.hash().to_owned());
-        let prompts = || Arc::clone(&prompts);
+        let shared_prompts = || Arc::clone(&prompts);
         let seeing_model = model(&roles.see, "see")?;
         let sees_labels = seeing_model.is_none();
         // Without a dialogue there is no asker and no summariser.
@@ -89,13 +90,13 @@ impl RoleTeam {
         let has_finisher = writing_model.is_some() && roles.finish == FailureFinish::Rules;
         Ok(Self {
             asker: match in_dialogue(&roles.ask, "ask")? {
-                Some(model) => Box::new(ModelAsker::new(model, prompts())),
+                Some(model) => Box::new(ModelAsker::new(model, shared_prompts())),
                 // The rules ask labels and models in different ways.
                 None if sees_labels => Box::new(RulesAsker::default()),
                 None => Box::new(RulesAsker::for_models()),
             },
             summariser: match in_dialogue(&roles.summarise, "summarise")? {
-                Some(model) => Box::new(ModelSummariser::new(model, prompts())),
+                Some(model) => Box::new(ModelSummariser::new(model, shared_prompts())),
                 None => Box::new(RulesSummariser),
             },
             answerer: match seeing_model {
@@ -108,13 +109,13 @@ impl RoleTeam {
                             "give --perception dialogue or single",
                         ));
                     }
-                    Box::new(ModelAnswerer::new(model, prompts(), manner))
+                    Box::new(ModelAnswerer::new(model, shared_prompts(), manner))
                 }
                 None => Box::new(labels),
             },
             sees_labels,
             writer: match writing_model {
-                Some(model) => Box::new(ModelWriter::new(model, prompts())),
+                Some(model) => Box::new(ModelWriter::new(model, shared_prompts())),
                 None => Box::new(RulesWriter),
             },
             finisher: has_finisher.then_some(RulesWriter),

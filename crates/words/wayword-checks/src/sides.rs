@@ -6,7 +6,7 @@ use wayword_core::Side;
 use wayword_language::{lexicon::names_agree, reading::PlaceMention};
 
 /// Whether a direction from the heading (radians, positive right) is on a side, as people use the word: roughly, and
-/// not straight ahead.
+/// not straight ahead. A direction can be on two sides.
 pub(super) fn lies_on(side: Side, turn_rad: f64) -> bool {
     let deg = turn_rad.to_degrees();
     match side {

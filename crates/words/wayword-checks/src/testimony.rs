@@ -103,7 +103,7 @@ mod tests {
     use crate::{CheckWorld, tests::to_the_bedroom};
 
     /// The verdict on a failed statement of a text after the other texts were heard.
-    fn after(check: CheckKind, text: &str, words: &str, others: &[&str]) -> Verdict {
+    fn verdict_after(check: CheckKind, text: &str, words: &str, others: &[&str]) -> Verdict {
         let evidence = to_the_bedroom();
         let from = text.find(words).unwrap();
         let span = Some([from, from + words.len()]);
@@ -122,30 +122,33 @@ mod tests {
 
     #[test]
     fn a_place_is_confirmed_by_a_place_of_its_name() {
-        let place = |other: &str| after(CheckKind::Landmarks, "Walk past the couch.", "couch", &[other]);
+        let place = |other: &str| verdict_after(CheckKind::Landmarks, "Walk past the couch.", "couch", &[other]);
         assert_eq!(place("Stop at the sofa."), Verdict::Unverified);
         assert_eq!(place("Stop at the lamp."), Verdict::Fail);
         assert_eq!(place("Do not stop at the sofa."), Verdict::Fail, "it is denied there");
-        let room = |other: &str| after(CheckKind::Landmarks, "Walk into the den.", "den", &[other]);
+        let room = |other: &str| verdict_after(CheckKind::Landmarks, "Walk into the den.", "den", &[other]);
         assert_eq!(
             (room("Stop in the family room."), room("Stop in the kitchen.")),
             (Verdict::Unverified, Verdict::Fail)
         );
         let text = "Walk past the couch. Walk past the lamp.";
-        assert_eq!(after(CheckKind::Landmarks, text, "lamp", &["Stop at the sofa."]), Verdict::Fail);
+        assert_eq!(verdict_after(CheckKind::Landmarks, text, "lamp", &["Stop at the sofa."]), Verdict::Fail);
         assert_eq!(
-            after(CheckKind::Landmarks, text, "lamp", &["Turn left.", "Stop at the lamp."]),
+            verdict_after(CheckKind::Landmarks, text, "lamp", &["Turn left.", "Stop at the lamp."]),
             Verdict::Unverified
         );
         // A finding of another check is not about the place.
-        assert_eq!(after(CheckKind::Order, "Walk past the couch.", "couch", &["Stop at the sofa."]), Verdict::Fail);
+        assert_eq!(
+            verdict_after(CheckKind::Order, "Walk past the couch.", "couch", &["Stop at the sofa."]),
+            Verdict::Fail
+        );
     }
 
     #[test]
     fn a_climb_is_confirmed_by_any_climb_in_its_direction() {
         for text in ["Go up the stairs.", "Go upstairs.", "Walk up two steps.", "Stop at the lamp upstairs."] {
             let word = ["upstairs", "up"].into_iter().find(|word| text.contains(word)).unwrap();
-            let climb = |other: &str| after(CheckKind::Floors, text, word, &[other]);
+            let climb = |other: &str| verdict_after(CheckKind::Floors, text, word, &[other]);
             for other in ["Climb the stairs now.", "Now walk up a few steps.", "The bedroom upstairs is yours."] {
                 assert_eq!(climb(other), Verdict::Unverified, "{text} {other}");
             }
@@ -156,7 +159,7 @@ mod tests {
     #[test]
     fn a_storey_is_confirmed_by_its_number() {
         let text = "Go to the bedroom on the second floor.";
-        let storey = |other: &str| after(CheckKind::Floors, text, "second floor", &[other]);
+        let storey = |other: &str| verdict_after(CheckKind::Floors, text, "second floor", &[other]);
         assert_eq!(storey("Stop on the second floor."), Verdict::Unverified);
         assert_eq!((storey("Stop on the third floor."), storey("Turn left.")), (Verdict::Fail, Verdict::Fail));
     }
@@ -164,18 +167,18 @@ mod tests {
     #[test]
     fn a_turn_is_confirmed_at_the_same_place_among_the_turns() {
         let text = "Turn left. Turn right.";
-        let second = |other: &str| after(CheckKind::Turns, text, "right", &[other]);
+        let second = |other: &str| verdict_after(CheckKind::Turns, text, "right", &[other]);
         assert_eq!(second("Turn left, then turn right and stop."), Verdict::Unverified);
         assert_eq!(second("Turn right, then turn left and stop."), Verdict::Fail);
         assert_eq!(second("Now turn right."), Verdict::Fail, "it is the first turn there");
-        assert_eq!(after(CheckKind::Turns, text, "left", &["Now turn left."]), Verdict::Unverified);
+        assert_eq!(verdict_after(CheckKind::Turns, text, "left", &["Now turn left."]), Verdict::Unverified);
     }
 
     #[test]
     fn a_copy_is_no_witness_and_a_finding_without_words_is_not_lifted() {
         let text = "Walk past the couch.";
-        assert_eq!(after(CheckKind::Landmarks, text, "couch", &["walk past  the COUCH!"]), Verdict::Fail);
-        assert_eq!(after(CheckKind::Landmarks, text, "Walk past", &["Stop at the sofa."]), Verdict::Fail);
+        assert_eq!(verdict_after(CheckKind::Landmarks, text, "couch", &["walk past  the COUCH!"]), Verdict::Fail);
+        assert_eq!(verdict_after(CheckKind::Landmarks, text, "Walk past", &["Stop at the sofa."]), Verdict::Fail);
         let evidence = to_the_bedroom();
         let own = Testimony::from_text(text, &evidence);
         let finding =

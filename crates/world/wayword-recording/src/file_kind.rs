@@ -71,6 +71,7 @@ impl RecordedFileKind {
         if begins(0, b"BM") && is_bitmap(head) {
             return Some(Self::recording_kind("a BMP picture", CONVERT_PICTURE_HINT));
         }
+        // See `KNOWN_STARTS`: at 4 is the type of an MP4 box, and at 8 that of a RIFF file.
         let start_fits = |at: usize| match at {
             4 => is_box(head),
             8 => begins(0, b"RIFF"),
@@ -177,17 +178,17 @@ pub(crate) struct UnreadRecordings {
     pub(crate) hint: &'static str,
 }
 
-/// Finds the recordings of known kinds at a path where nothing could be read: a file, or the files of a folder and of its
-/// subfolders `within`. `None` where there are none.
+/// Finds the recordings of known kinds at a path where nothing could be read: a file, or the files of a folder and of some of
+/// its `subfolders`. `None` where there are none.
 ///
 /// # Errors
 /// When a folder cannot be read.
-pub(crate) fn find_unread(path: &Path, within: &[&str]) -> Result<Option<UnreadRecordings>, PlatformError> {
+pub(crate) fn find_unread(path: &Path, subfolders: &[&str]) -> Result<Option<UnreadRecordings>, PlatformError> {
     if !path.is_dir() {
         let kind = RecordedFileKind::from_file(path).filter(|kind| kind.is_recording);
         return Ok(kind.map(|kind| UnreadRecordings { what: kind.name.to_owned(), hint: kind.hint }));
     }
-    let folders = std::iter::once(path.to_owned()).chain(within.iter().map(|name| path.join(name)));
+    let folders = std::iter::once(path.to_owned()).chain(subfolders.iter().map(|name| path.join(name)));
     // For each kind: the number of its files, the name of the first of them, and the hint.
     let mut counts: BTreeMap<&str, (usize, String, &'static str)> = BTreeMap::new();
     for folder in folders.filter(|folder| folder.is_dir()) {

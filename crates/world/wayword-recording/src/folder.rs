@@ -139,6 +139,7 @@ impl PictureReel for FolderReel {
             let bytes = files::bytes_if_there(file, MAX_PICTURE_BYTES, PICTURE_HINT)?;
             let bytes = bytes.ok_or_else(|| wrong("there is no such file".to_owned()))?;
             let picture = files::decode_picture(&bytes);
+            // The error for a file of another kind names that kind.
             take(*number, picture.map_err(|reason| unfit_picture(file).unwrap_or_else(|| wrong(reason)))?)?;
         }
         Ok(())

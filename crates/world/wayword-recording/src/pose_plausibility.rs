@@ -1,5 +1,5 @@
-//! Checks whether poses are plausible with the axes by which they are read. People and robots move on a level plane with
-//! their cameras upright.
+//! Checks whether poses are plausible with the axes by which they are read: those of the world and those of the body that
+//! carries the camera. People and robots move on a level plane with their cameras upright.
 //!
 //! Stairs climb at 35 degrees. If a path goes straight up again and again and hardly leaves a vertical plane, it was read
 //! in the wrong axes, or it is the path of a drone or a lift. Whether the cameras are upright decides between the two. The
@@ -115,7 +115,7 @@ fn find_plane_doubt(walk: &RecordedWalk, axes: PoseAxes, described: &RecordingDe
     )))
 }
 
-/// Other axes with which the cameras are upright and the path is level. Those that differ least from the present axes come
+/// Other axes with which the cameras are upright and the path does not climb. Those that differ least from the present axes come
 /// first, then those with which the camera looks in the direction of movement.
 fn likely_axes(walk: &RecordedWalk, axes: PoseAxes, described: &RecordingDescription) -> Option<PoseAxes> {
     let worlds = [WorldUpAxis::ZUp, WorldUpAxis::YUp, WorldUpAxis::YDown].into_iter();
@@ -168,7 +168,7 @@ impl RecordedWalk {
     fn up_components(&self, axes: PoseAxes) -> impl Iterator<Item = f64> {
         self.recorded_from_body
             .iter()
-            .map(move |held| axes.wayword_from_recorded(recorded_direction(held, axes.body_up())).z)
+            .map(move |columns| axes.wayword_from_recorded(recorded_direction(columns, axes.body_up())).z)
     }
 
     /// The mean of [`RecordedWalk::up_components`].
@@ -188,7 +188,7 @@ impl RecordedWalk {
     fn distance_ahead(&self, axes: PoseAxes) -> f64 {
         self.steps()
             .zip(&self.recorded_from_body)
-            .map(|(step, held)| recorded_direction(held, axes.body_ahead()).dot(step))
+            .map(|(step, columns)| recorded_direction(columns, axes.body_ahead()).dot(step))
             .sum()
     }
 

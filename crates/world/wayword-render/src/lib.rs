@@ -37,6 +37,9 @@
 //! - `panorama`, `storey`, `top_down`: panoramas, and maps from above.
 //! - `mipmap`, `texture`: how textures are looked up.
 //! - `cubemap`, `cube_row`: views out of photographs.
+//! - `camera`, `mesh`: the input of the renderer; `picture`: its result and its errors.
+//! - `render`: the entry that carries out the steps; `background`: the colour where no triangle is; `bilinear`: colours between the
+//!   centres of pixels.
 
 mod background;
 mod bilinear;

@@ -43,7 +43,7 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
     }
 
     /// Writes a column of texts.
-    fn put_words<'r>(
+    fn put_texts<'r>(
         &mut self,
         rows: &[ParquetRow<'r>],
         cell: impl Fn(&ParquetRow<'r>) -> &'r str,
@@ -52,7 +52,7 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
     }
 
     /// Writes a column of texts, with null where a row has none.
-    fn put_optional_words<'r>(
+    fn put_optional_texts<'r>(
         &mut self,
         rows: &[ParquetRow<'r>],
         cell: impl Fn(&ParquetRow<'r>) -> Option<&'r str>,
@@ -61,17 +61,17 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
     }
 
     fn write_text(&mut self, rows: &[ParquetRow<'_>]) -> Result<(), ParquetError> {
-        self.put_words(rows, |row| &row.record.platform)?;
-        self.put_words(rows, |row| row.record.path.scene.as_str())?;
+        self.put_texts(rows, |row| &row.record.platform)?;
+        self.put_texts(rows, |row| row.record.path.scene.as_str())?;
         self.put_column::<ByteArrayType>(&required_column(rows, |row| {
             ByteArray::from(row.record.path_id().into_bytes())
         }))?;
-        self.put_words(rows, |row| &row.record.path.id)?;
-        self.put_words(rows, |row| row.split)?;
-        self.put_words(rows, |row| &row.record.instruction.style)?;
-        self.put_words(rows, |row| &row.record.instruction.text)?;
-        self.put_words(rows, |_| TEXT_LANGUAGE_TAG)?;
-        self.put_words(rows, |row| verdict_name(row.record.instruction.verdict))
+        self.put_texts(rows, |row| &row.record.path.id)?;
+        self.put_texts(rows, |row| row.split)?;
+        self.put_texts(rows, |row| &row.record.instruction.style)?;
+        self.put_texts(rows, |row| &row.record.instruction.text)?;
+        self.put_texts(rows, |_| TEXT_LANGUAGE_TAG)?;
+        self.put_texts(rows, |row| verdict_name(row.record.instruction.verdict))
     }
 
     fn write_path(&mut self, rows: &[ParquetRow<'_>]) -> Result<(), ParquetError> {
@@ -79,8 +79,8 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
         self.put_column::<DoubleType>(&optional_points(rows, frame_positions))?;
         self.put_column::<DoubleType>(&optional_list(rows, frame_headings))?;
         self.put_column::<DoubleType>(&optional_column(rows, |row| row.record.path.length_m()))?;
-        self.put_optional_words(rows, |row| path_target(row).map(|target| target.object.as_str()))?;
-        self.put_optional_words(rows, |row| path_target(row).map(|target| target.name.as_str()))
+        self.put_optional_texts(rows, |row| path_target(row).map(|target| target.object.as_str()))?;
+        self.put_optional_texts(rows, |row| path_target(row).map(|target| target.name.as_str()))
     }
 
     fn write_ambiguity(&mut self, rows: &[ParquetRow<'_>]) -> Result<(), ParquetError> {
@@ -95,13 +95,13 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
     }
 
     fn write_provenance(&mut self, rows: &[ParquetRow<'_>]) -> Result<(), ParquetError> {
-        self.put_words(rows, |row| &row.record.instruction.provenance.asker)?;
-        self.put_words(rows, |row| &row.record.instruction.provenance.answerer)?;
-        self.put_optional_words(rows, |row| row.record.instruction.provenance.detector.as_deref())?;
-        self.put_words(rows, |row| &row.record.instruction.provenance.summariser)?;
-        self.put_words(rows, |row| &row.record.instruction.provenance.writer)?;
-        self.put_optional_words(rows, |row| row.record.instruction.provenance.finished_for.as_deref())?;
-        self.put_words(rows, |row| &row.record.instruction.provenance.checked_against)?;
+        self.put_texts(rows, |row| &row.record.instruction.provenance.asker)?;
+        self.put_texts(rows, |row| &row.record.instruction.provenance.answerer)?;
+        self.put_optional_texts(rows, |row| row.record.instruction.provenance.detector.as_deref())?;
+        self.put_texts(rows, |row| &row.record.instruction.provenance.summariser)?;
+        self.put_texts(rows, |row| &row.record.instruction.provenance.writer)?;
+        self.put_optional_texts(rows, |row| row.record.instruction.provenance.finished_for.as_deref())?;
+        self.put_texts(rows, |row| &row.record.instruction.provenance.checked_against)?;
         // The schema declares this column unsigned; the same bits are passed as a signed number.
         self.put_column::<Int64Type>(&required_column(rows, |row| {
             row.record.instruction.provenance.seed.cast_signed()
@@ -109,9 +109,9 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
         self.put_column::<Int64Type>(&required_column(rows, |row| {
             i64::from(row.record.instruction.provenance.repairs)
         }))?;
-        self.put_words(rows, |row| &row.record.instruction.provenance.style_hash)?;
-        self.put_optional_words(rows, |row| row.record.instruction.provenance.prompts_hash.as_deref())?;
-        self.put_words(rows, |row| &row.record.instruction.provenance.wayword)
+        self.put_texts(rows, |row| &row.record.instruction.provenance.style_hash)?;
+        self.put_optional_texts(rows, |row| row.record.instruction.provenance.prompts_hash.as_deref())?;
+        self.put_texts(rows, |row| &row.record.instruction.provenance.wayword)
     }
 
     fn write_checks(&mut self, rows: &[ParquetRow<'_>]) -> Result<(), ParquetError> {

@@ -51,7 +51,7 @@ impl<'a> TokenSlice<'a> {
         self.0.partition_point(|token| token.span[0] < byte)
     }
 
-    /// For each token, the first of the words right before it that may be skipped; the token itself where there are
+    /// For each token, where the unbroken run of skippable words right before it begins; its own index where there is
     /// none.
     pub(super) fn runs_before(self, can_skip: impl Fn(&str) -> bool) -> Vec<usize> {
         let mut from = 0;

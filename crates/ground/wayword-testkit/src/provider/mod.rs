@@ -30,7 +30,7 @@ pub use retry_after::RetryAfter;
 
 /// Threads that serve. They are named `provider`, so that a measurement can leave out their work.
 const SERVER_THREAD_COUNT: usize = 2;
-/// The longest time that dropping a provider takes. Requests in work then are cut off.
+/// The longest time that dropping a provider takes. Requests that are still being answered then are cut off.
 const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// A running provider. It stops when it is dropped, and every connection to it breaks.

@@ -16,13 +16,13 @@ pub(super) struct PathDistances {
 }
 
 impl PathDistances {
-    /// The distances between the places `taken` by a trajectory and those of the annotated path.
-    pub(super) fn new(distances: &SceneDistances, taken: &[usize], reference: &[usize]) -> Self {
-        let mut metres = Vec::with_capacity(taken.len() * reference.len());
-        for place in taken {
-            metres.extend(reference.iter().map(|other| distances.metres_between_places(*place, *other)));
+    /// The distances between the places of a trajectory and those of the annotated path, which has at least one.
+    pub(super) fn new(distances: &SceneDistances, trajectory_places: &[usize], path_places: &[usize]) -> Self {
+        let mut metres = Vec::with_capacity(trajectory_places.len() * path_places.len());
+        for place in trajectory_places {
+            metres.extend(path_places.iter().map(|other| distances.metres_between_places(*place, *other)));
         }
-        Self { metres, path_viewpoint_count: reference.len() }
+        Self { metres, path_viewpoint_count: path_places.len() }
     }
 
     /// The row of each viewpoint of the trajectory.
@@ -61,6 +61,7 @@ impl PathDistances {
         let coverage = covered / self.path_viewpoint_count as f64;
         let expected_m = coverage * path_m;
         let off_m = (expected_m - length_m).abs();
+        // Without a way along the path, no length can be expected.
         if expected_m.is_infinite() {
             0.0
         } else if expected_m + off_m == 0.0 {

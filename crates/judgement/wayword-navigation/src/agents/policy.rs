@@ -17,9 +17,9 @@ use wayword_core::{CompassPoint, Heading, ViewpointId};
 pub(crate) struct PhrasePolicy<'p> {
     parameters: &'p PhraseWalkParameters,
     /// Number of key phrases; the activity comes after them.
-    phrases: usize,
+    phrase_count: usize,
     /// The current key phrase, from 0.
-    phrase: usize,
+    current_phrase: usize,
     /// How often the agent has been at each node.
     visits: BTreeMap<ViewpointId, usize>,
     /// The nodes on the way here, without those that the agent left again by going back.
@@ -42,13 +42,20 @@ pub(crate) enum PhraseDecision {
 }
 
 impl<'p> PhrasePolicy<'p> {
-    pub(crate) fn new(parameters: &'p PhraseWalkParameters, phrases: usize) -> Self {
-        Self { parameters, phrases, phrase: 0, visits: BTreeMap::new(), trail: Vec::new(), recent: Vec::new() }
+    pub(crate) fn new(parameters: &'p PhraseWalkParameters, phrase_count: usize) -> Self {
+        Self {
+            parameters,
+            phrase_count,
+            current_phrase: 0,
+            visits: BTreeMap::new(),
+            trail: Vec::new(),
+            recent: Vec::new(),
+        }
     }
 
     /// The current key phrase, from 0; the number of phrases when only the activity is left.
     pub(crate) fn current_phrase(&self) -> usize {
-        self.phrase
+        self.current_phrase
     }
 
     /// Decides at a node that was entered along `heading`.
@@ -56,14 +63,15 @@ impl<'p> PhrasePolicy<'p> {
         *self.visits.entry(here.clone()).or_default() += 1;
         self.trail.push(here.clone());
         let best = |phrase: usize| sight.views.iter().map(|view| view.scores[phrase]).fold(f32::NEG_INFINITY, f32::max);
-        let may_stop = self.phrases - self.phrase <= self.parameters.stop_with_phrases_left;
-        if may_stop && best(self.phrases) >= self.parameters.stop_threshold {
+        let may_stop = self.phrase_count - self.current_phrase <= self.parameters.stop_with_phrases_left;
+        // The score after those of the phrases is the activity's.
+        if may_stop && best(self.phrase_count) >= self.parameters.stop_threshold {
             return PhraseDecision::Stop;
         }
-        let current = self.phrase;
+        let current = self.current_phrase;
         let fit = best(current);
-        if current < self.phrases && fit >= self.parameters.phrase_threshold {
-            self.phrase += 1;
+        if current < self.phrase_count && fit >= self.parameters.phrase_threshold {
+            self.current_phrase += 1;
         }
         self.decide_back(fit).unwrap_or_else(|| self.decide_onward(heading, sight, current))
     }
@@ -93,6 +101,7 @@ impl<'p> PhrasePolicy<'p> {
         let fewest = neighbours().map(visits).min().unwrap_or_default();
         let is_open = |id: &&ViewpointId| !self.parameters.shun_visited || visits(id) == fewest;
         let off_rad = |view: usize| heading.turn_to(CompassPoint::ALL[view].to_heading()).abs();
+        // `onward` is sorted, nearest first.
         let candidate = |(at, view): (usize, &SightView)| {
             Some((at, view.scores[phrase], view.onward.iter().find(is_open)?.clone()))
         };

@@ -67,7 +67,7 @@ enum MeasureSource {
     AtLeast(usize, u8),
     /// Whether the level of the question with this index is at most the second number.
     AtMost(usize, u8),
-    /// Whether the text was preferred to another: 1, a half or 0.
+    /// How far the text was preferred to the other: 1, a half or 0.
     Gain,
     /// Whether both texts of a comparison were bad.
     BothBad,
@@ -103,8 +103,8 @@ impl WalkFigure {
 impl StudyMeasure {
     /// All figures of a study in which participants have this task, in the order of the tables.
     #[must_use]
-    pub fn for_mode(mode: StudyTask) -> &'static [Self] {
-        match mode {
+    pub fn for_mode(task: StudyTask) -> &'static [Self] {
+        match task {
             StudyTask::Follow => &FOLLOW_MEASURES,
             StudyTask::Rate => &RATE_MEASURES,
             StudyTask::Pair => &PAIR_MEASURES,
@@ -163,23 +163,23 @@ const fn new_measure(
     kind: MeasureKind,
     unit: MeasureUnit,
     meaning: &'static str,
-    of: MeasureSource,
+    source: MeasureSource,
 ) -> StudyMeasure {
     let range = match unit {
         MeasureUnit::PerCent => [Some(0.0), Some(1.0)],
         MeasureUnit::Level => [Some(1.0), Some(5.0)],
         MeasureUnit::Metres | MeasureUnit::Seconds | MeasureUnit::Count => [Some(0.0), None],
     };
-    StudyMeasure { name, label, kind, unit, meaning, range, source: of }
+    StudyMeasure { name, label, kind, unit, meaning, range, source }
 }
 
 const fn share_measure(
     name: &'static str,
     label: &'static str,
     meaning: &'static str,
-    of: MeasureSource,
+    source: MeasureSource,
 ) -> StudyMeasure {
-    new_measure(name, label, MeasureKind::Share, MeasureUnit::PerCent, meaning, of)
+    new_measure(name, label, MeasureKind::Share, MeasureUnit::PerCent, meaning, source)
 }
 
 const fn mean_measure(
@@ -187,9 +187,9 @@ const fn mean_measure(
     label: &'static str,
     unit: MeasureUnit,
     meaning: &'static str,
-    of: MeasureSource,
+    source: MeasureSource,
 ) -> StudyMeasure {
-    new_measure(name, label, MeasureKind::Mean, unit, meaning, of)
+    new_measure(name, label, MeasureKind::Mean, unit, meaning, source)
 }
 
 /// The mean level of the question with index `at`.

@@ -57,8 +57,8 @@ impl Study {
         self.write_lines(ITEMS_FILE, &self.items)?;
         self.write_lines(ROUTES_FILE, &self.routes)?;
         self.write_lines(SCENES_FILE, &self.scenes)?;
-        let settings =
-            toml::to_string_pretty(&self.settings).map_err(|error| self.wrong_file(SETTINGS_FILE, &error))?;
+        let settings = toml::to_string_pretty(&self.settings)
+            .map_err(|error| wrong_file_error(&self.folder, SETTINGS_FILE, &error))?;
         self.write_file(SETTINGS_FILE, settings.as_bytes())
     }
 
@@ -67,7 +67,7 @@ impl Study {
     /// # Errors
     /// When it cannot be written.
     pub(crate) fn write_plan(&self) -> Result<(), StudyError> {
-        let plan = self.plan.to_file().map_err(|error| self.wrong_file(PLAN_FILE, &error))?;
+        let plan = self.plan.to_file().map_err(|error| wrong_file_error(&self.folder, PLAN_FILE, &error))?;
         self.write_file(PLAN_FILE, &plan)
     }
 
@@ -147,7 +147,7 @@ impl Study {
     fn write_lines<T: Serialize>(&self, name: &str, records: &[T]) -> Result<(), StudyError> {
         let mut text = Vec::new();
         for record in records {
-            serde_json::to_writer(&mut text, record).map_err(|error| self.wrong_file(name, &error))?;
+            serde_json::to_writer(&mut text, record).map_err(|error| wrong_file_error(&self.folder, name, &error))?;
             text.push(b'\n');
         }
         self.write_file(name, &text)
@@ -163,10 +163,6 @@ impl Study {
             fs::rename(&temporary, &place)
         });
         written.map_err(StudyError::io_error(place, "write"))
-    }
-
-    fn wrong_file(&self, name: &str, problem: &dyn std::fmt::Display) -> StudyError {
-        wrong_file_error(&self.folder, name, problem)
     }
 }
 

@@ -26,7 +26,7 @@ pub struct ClipModel {
     visual_projection: LinearLayer,
     text_projection: LinearLayer,
     /// The most tokens of a text.
-    longest: usize,
+    max_text_tokens: usize,
     device: ModelDevice,
 }
 
@@ -57,18 +57,18 @@ impl ClipModel {
         }
         let tokenizer = TextTokenizer::load(folder)?;
         let weights = CheckpointWeights::open(folder, device, precision)?;
-        let all = weights.scope_under("");
+        let root = weights.scope_under("");
         let (vision, text, size) = (&config.vision, &config.text, config.projection_dim);
         Ok(Self {
             name: name.to_owned(),
             processor,
             tokenizer,
-            // The checkpoints have this misspelling.
+            // `pre_layrnorm` is misspelt in the checkpoints.
             vision: VisionTower::from_weights(&weights.scope_under("vision_model"), vision, "pre_layrnorm")?,
             text: TextTower::from_weights(&weights.scope_under("text_model"), text)?,
-            visual_projection: all.read_linear("visual_projection", vision.layers.hidden_size, size)?,
-            text_projection: all.read_linear("text_projection", text.layers.hidden_size, size)?,
-            longest: text.max_position_embeddings,
+            visual_projection: root.read_linear("visual_projection", vision.layers.hidden_size, size)?,
+            text_projection: root.read_linear("text_projection", text.layers.hidden_size, size)?,
+            max_text_tokens: text.max_position_embeddings,
             device: device.clone(),
         })
     }
@@ -102,7 +102,7 @@ impl ClipModel {
     /// # Errors
     /// When the computation fails.
     pub fn text_features(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, LocalError> {
-        let ids = texts.iter().map(|text| self.tokenizer.text_ids(text, self.longest));
+        let ids = texts.iter().map(|text| self.tokenizer.text_ids(text, self.max_text_tokens));
         let ids: Vec<Vec<u32>> = ids.collect::<Result<_, _>>()?;
         let mut order: Vec<usize> = (0..texts.len()).collect();
         order.sort_by_key(|&at| ids[at].len());
@@ -123,7 +123,7 @@ impl ClipModel {
     /// # Errors
     /// When the text cannot be made into tokens.
     pub fn reads_whole_text(&self, text: &str) -> Result<bool, LocalError> {
-        Ok(self.tokenizer.text_ids(text, usize::MAX)?.len() <= self.longest)
+        Ok(self.tokenizer.text_ids(text, usize::MAX)?.len() <= self.max_text_tokens)
     }
 
     fn compute_error(&self, error: &candle_core::Error) -> LocalError {

@@ -31,16 +31,18 @@ impl TextTower {
         })
     }
 
-    /// Computes the states of a prompt's tokens.
+    /// Computes all that the layers need of a prompt: the states of its tokens, their places in their phrases, and the mask.
     pub(super) fn encode_prompt(&self, prompt: &DinoPrompt, device: &Device) -> Result<PromptStates> {
         let count = prompt.ids.len();
         let ids = Tensor::from_slice(&prompt.ids, (1, count), device)?;
-        let places = prompt.token_places();
+        let token_places = prompt.token_places();
         let mask = prompt.attention_mask(device)?.reshape((1, 1, count, count))?;
-        let at = Tensor::from_slice(&places, count, device)?;
-        let states = self.projection.apply_to(&self.bert.encode_tokens_at(&ids, &at, Some(&mask))?)?;
-        let places = Tensor::from_vec(position::token_positions(&places, self.size), (1, count, self.size), device)?;
-        let places = if device.is_cpu() { places.to_dtype(DType::F32)? } else { places.to_dtype(states.dtype())? };
+        let place_tensor = Tensor::from_slice(&token_places, count, device)?;
+        let states = self.projection.apply_to(&self.bert.encode_tokens_at(&ids, &place_tensor, Some(&mask))?)?;
+        let encoded =
+            Tensor::from_vec(position::token_positions(&token_places, self.size), (1, count, self.size), device)?;
+        // On the CPU the layers compute in 32 bits, whatever type the weights have; elsewhere in the type of the weights.
+        let places = if device.is_cpu() { encoded.to_dtype(DType::F32)? } else { encoded.to_dtype(states.dtype())? };
         Ok(PromptStates { states, places, mask })
     }
 }

@@ -1,4 +1,5 @@
-//! Activation functions. On the CPU this crate computes them in parallel; candle computes the rest.
+//! Activation functions. On the CPU this crate computes them in parallel. Tensors on other devices or of other types
+//! are left to candle.
 
 use super::kernels::{PIECE_NUMBERS, contiguous_slice, is_cpu_f32};
 use candle_core::{CpuStorage, CustomOp1, Layout, Result, Shape, Tensor};

@@ -9,7 +9,7 @@ mod machine;
 use machine::PickleMachine;
 use std::{collections::BTreeMap, rc::Rc};
 
-/// A value of a pickle. A table is referred to by its number, because a pickle fills it after it has put it on the
+/// A value of a pickle. A table (Python's `dict`) is referred to by its number, because a pickle fills it after it has put it on the
 /// stack.
 #[derive(Debug, Clone)]
 pub(super) enum PickleValue {

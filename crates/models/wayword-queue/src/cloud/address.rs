@@ -103,7 +103,8 @@ fn parse_address(text: &str) -> Result<Url, CloudError> {
 fn open_folder(url: &Url, shown: String) -> Result<OpenedStore, CloudError> {
     let path = url.to_file_path().map_err(|()| address_error("is no folder of this machine", ADDRESS_HINT))?;
     fs::create_dir_all(&path).map_err(CloudError::for_local_file(&path, "make this folder"))?;
-    let store = LocalFileSystem::new_with_prefix(&path).map_err(|error| store_errors::from_settings_error(&shown, &error))?;
+    let store =
+        LocalFileSystem::new_with_prefix(&path).map_err(|error| store_errors::from_settings_error(&shown, &error))?;
     Ok(OpenedStore { store: Arc::new(store.with_fsync(true)), prefix: Path::default(), shown })
 }
 

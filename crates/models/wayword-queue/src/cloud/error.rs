@@ -135,7 +135,7 @@ impl CloudError {
         move |source| Self::Local { path, doing, source }
     }
 
-    /// Whether the network or the store failed, so that the same command may work later.
+    /// Whether the network, the store or a full disk is the cause, so that the same command may work later.
     #[must_use]
     pub fn is_lost(&self) -> bool {
         match self {
@@ -147,7 +147,7 @@ impl CloudError {
         }
     }
 
-    /// Whether the store does not know the credentials, or no longer.
+    /// Whether the credentials are missing, unknown or not allowed to do this.
     #[must_use]
     pub fn is_refused(&self) -> bool {
         matches!(self, Self::Credentials { .. } | Self::Permission { .. })

@@ -8,7 +8,7 @@ use super::{CloudBucket, CloudError};
 use crate::{
     ChunkBoard, ChunkClaim, ChunkPlan, ChunkRecord, PLAN, QueueError, RemainingChunks, chunk_folder,
     folder::remove_if_there,
-    marks::{CHUNKS_FOLDER, read_done_mark, done_path, to_bytes},
+    marks::{CHUNKS_FOLDER, done_path, read_done_mark, to_bytes},
     put_whole,
 };
 use std::{

@@ -1,7 +1,7 @@
 //! The texts that start workers elsewhere: a script for Slurm, and a manifest for Kubernetes.
 //!
-//! Both start the same command `workers` times. If its arguments name neither a queue nor a part, each worker gets the part of
-//! its number. Comments in the texts explain each of their lines, because the people who run a cluster read them first.
+//! Both start the same command `workers` times. If its arguments name neither a queue nor a shard, each worker gets the shard
+//! of its number. Comments in the texts explain each of their lines, because the people who run a cluster read them first.
 //!
 //! Invariants for all values of a user:
 //! - Each value is quoted: single quotes for bash, JSON strings for YAML. A template that prints a text without one of the two is an
@@ -22,5 +22,5 @@ mod worker;
 pub use error::LaunchError;
 pub use worker::LaunchWorker;
 
-/// Most workers of one launch. Above this number Kubernetes has other rules; Slurm's arrays end long before.
+/// Most workers of one launch. Above this number Kubernetes limits the failed indexes of a Job to 10,000; Slurm's arrays end long before.
 pub const MAX_WORKERS: u32 = 100_000;

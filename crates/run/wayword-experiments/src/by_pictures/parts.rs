@@ -38,7 +38,12 @@ fn cut_between_clauses<'a, E>(
     let (mut from, mut to) = (0, 0);
     for end in starts.into_iter().skip(1).chain([sentence.len()]) {
         let longer = text_of_tokens(text, &sentence[from..end]);
-        if to > from && longer.map_or(Ok(false), |longer| Ok(!fits_model(longer)?))? {
+        let is_too_long = to > from
+            && match longer {
+                Some(longer) => !fits_model(longer)?,
+                None => false,
+            };
+        if is_too_long {
             pieces.extend(text_of_tokens(text, &sentence[from..to]));
             from = to;
         }

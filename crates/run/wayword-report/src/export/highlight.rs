@@ -35,7 +35,7 @@ struct DoubtCounts {
     texts: usize,
     /// Texts with a doubt.
     doubted: usize,
-    /// Texts that could not be followed, so that no other words are known.
+    /// Texts that could not be followed, so no alternatives are known.
     unfollowed: usize,
     words: usize,
     /// Words that are likely wrong, and words that are uncertain.

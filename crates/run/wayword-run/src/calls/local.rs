@@ -68,13 +68,13 @@ impl LocalCalls {
     }
 
     /// Loads a model and tries it out.
-    pub(super) fn check_model(&self, name: &str, is_to_see: bool) -> Vec<ServiceFinding> {
+    pub(super) fn check_model(&self, name: &str, plays_see: bool) -> Vec<ServiceFinding> {
         let model = match self.models.get_model(name) {
             Ok(model) => model,
             Err(error) => return vec![ServiceFinding::from_error_text(&error.to_string())],
         };
         let mut findings = vec![ServiceFinding::ok(format!("{name} is loaded, {}", model.origin()))];
-        if !is_to_see {
+        if !plays_see {
             findings.push(ServiceFinding::from_error_text(&format!(
                 "{name} answers about pictures and writes no texts\nhint: use it with --see"
             )));

@@ -11,7 +11,7 @@ use wayword_queue::{ChunkBoard, ChunkPlan, PLAN, QueueError, WORKERS_FILE, worke
 /// The place of a run.
 pub struct RunPlace {
     /// The folder or address that the user gave.
-    named_path: PathBuf,
+    shown_path: PathBuf,
     /// The folder in which this process works. For a run in an object store this is a folder of this process alone.
     folder: PathBuf,
     /// The run in its object store; `None` for a run in a folder.
@@ -26,12 +26,13 @@ impl RunPlace {
     /// When the address cannot be used, or this build cannot reach object stores.
     pub fn open_named(named: &Path) -> Result<Self, CommandError> {
         let Some(address) = store_address(named) else {
-            return Ok(Self { named_path: named.to_owned(), folder: named.to_owned(), cloud_run: None });
+            return Ok(Self { shown_path: named.to_owned(), folder: named.to_owned(), cloud_run: None });
         };
         let folder = std::env::temp_dir().join(format!("wayword-{}", worker_name()));
         make_private_folder(&folder).map_err(CommandError::io(&folder, "make a folder for temporary files"))?;
         let stored = CloudRun::open(address, &folder)?;
-        let place = Self { named_path: named.to_owned(), folder, cloud_run: Some(stored) };
+        let place = Self { shown_path: named.to_owned(), folder, cloud_run: Some(stored) };
+        // A worker that joins a run has to use the plan that is there already.
         place.with_store(|stored| {
             stored.fetch_file(PLAN)?;
             stored.fetch_file(WORKERS_FILE)
@@ -72,7 +73,7 @@ impl RunPlace {
 
     /// The place as the user named it, for messages.
     pub fn shown_path(&self) -> &Path {
-        &self.named_path
+        &self.shown_path
     }
 
     /// Whether the run is in an object store.

@@ -14,7 +14,7 @@ pub(super) struct AnswerJson {
     pub(super) is_cut: bool,
 }
 
-/// The first object of an answer, or an array of objects.
+/// The first object in an answer. Of an array, this is its first element.
 ///
 /// # Errors
 /// When there is none, or the answer is too long; the message is meant for the model.
@@ -127,6 +127,7 @@ fn read_string(text: &str, quote: char) -> Option<(String, usize)> {
         match next {
             '\\' => match characters.next()?.1 {
                 'n' | 't' | 'r' => content.push(' '),
+                // Other escapes only lose their backslash.
                 other => content.push(other),
             },
             next if next == end => return Some((content, at + next.len_utf8())),

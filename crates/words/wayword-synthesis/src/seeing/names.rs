@@ -92,8 +92,8 @@ impl NameReading {
 /// The words before a phrase of place: "television on the wall" is a television. "Chest of drawers" stays whole.
 fn before_the_place<'a, 'b>(words: &'a [&'b str]) -> &'a [&'b str] {
     let ends = |at: &usize| {
-        let of_bunch = words[*at] == "of" && *at > 0 && BUNCHES.contains(&words[at - 1]);
-        BREAKERS.contains(&words[*at]) && *at > 0 && !of_bunch && !is_quality(words[*at])
+        let of_bunch = words[*at] == "of" && BUNCHES.contains(&words[at - 1]);
+        BREAKERS.contains(&words[*at]) && !of_bunch && !is_quality(words[*at])
     };
     let end = (1..words.len()).find(ends).unwrap_or(words.len());
     let longer = (end..=words.len()).rev().find(|end| is_thing(&normalise_name(&words[..*end].join(" "))));
@@ -116,6 +116,7 @@ fn is_name(name: &str) -> bool {
     let fits = name.len() <= MAX_NAME_BYTES
         && name.split(' ').count() <= MAX_NAME_WORDS
         && name.chars().filter(|c| c.is_alphabetic()).count() >= 2;
+    // The lexicon takes "image" for a picture on a wall, but a model means the view.
     let in_lexicon = is_thing(&normalise_name(name))
         && find_thing(name).is_some_and(|thing| thing.name != "picture" || head != "image");
     fits && (in_lexicon || !(is_nothing(head) || colour_at(&[head]).is_some()))
@@ -129,8 +130,8 @@ pub(crate) fn read_rooms(said: &str) -> (Vec<String>, bool) {
     let is_guess = said.contains('?') || words.iter().any(|word| GUESSING.contains(word));
     let mut names: Vec<String> = Vec::new();
     for alternative in words.split(|word| *word == "or") {
-        let tells = |word: &&str| !GUESSING.contains(word) && !matches!(*word, "a" | "an" | "the");
-        let room_words: Vec<&str> = alternative.iter().copied().filter(tells).collect();
+        let is_content_word = |word: &&str| !GUESSING.contains(word) && !matches!(*word, "a" | "an" | "the");
+        let room_words: Vec<&str> = alternative.iter().copied().filter(is_content_word).collect();
         if let Some(name) = read_room(&room_words).filter(|name| !names.contains(name))
             && names.len() < MAX_NAMES
         {
@@ -140,11 +141,15 @@ pub(crate) fn read_rooms(said: &str) -> (Vec<String>, bool) {
     (names, is_guess)
 }
 
-/// The longest known room at the end of words, or the words themselves where they are few.
+/// The longest known room among the words, the last one if there are several; or else up to three words that end in "room".
 fn read_room(words: &[&str]) -> Option<String> {
+    // "n" is the rest of "n/a".
     const NO_ROOM_WORDS: [&str; 12] =
         ["unknown", "unclear", "none", "n", "null", "not", "cannot", "no", "nowhere", "room", "another", "indoors"];
-    if words.iter().any(|word| NO_ROOM_WORDS.contains(word)) && words.last() != Some(&"room") || words == ["room"] {
+    // A text that ends in "room" may name one in spite of such a word.
+    let is_denied = words.iter().any(|word| NO_ROOM_WORDS.contains(word)) && words.last() != Some(&"room");
+    let is_bare_room = words == ["room"];
+    if is_denied || is_bare_room {
         return None;
     }
     let known = |from: usize, to: usize| is_room(&normalise_name(&words[from..to].join(" ")));

@@ -54,8 +54,10 @@ impl NavMeshGround {
 /// Where the line from `start` to `to` leaves a polygon: the share of the line's length, the corner at which the crossed
 /// edge begins, and the share of that edge's length. `None` if the line ends in the polygon.
 fn polygon_exit(polygon: &GroundPolygon, start: DVec3, to: DVec3) -> Option<(f64, &PolygonCorner, f64)> {
+    // Polygons are convex, so the line leaves through the first edge that it crosses outwards.
     let crossed = polygon.edges().filter_map(|(a, b)| {
         let (before, after) = (side_of_line(a.place, b.place, start), side_of_line(a.place, b.place, to));
+        // `side_of_line` is positive inside, because the corners go counter-clockwise.
         // A start on the edge itself, or just outside because of rounding, leaves at once.
         let share = if after >= 0.0 { return None } else { (before / (before - after)).clamp(0.0, 1.0) };
         let at = nearest_on_edge(a.place, b.place, start.lerp(to, share));
@@ -66,7 +68,8 @@ fn polygon_exit(polygon: &GroundPolygon, start: DVec3, to: DVec3) -> Option<(f64
     crossed.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// The polygon behind an edge, at a share of the edge's length from its corner.
+/// The polygon behind an edge at a share of the edge's length from its corner: the one that shares the whole edge, or the one
+/// with a portal (its stretch of the edge) that holds the share.
 fn polygon_behind(corner: &PolygonCorner, share: f64) -> Option<usize> {
     let portal = || corner.portals.iter().find(|portal| (portal.from..=portal.to).contains(&share));
     corner.neighbour.or_else(|| portal().map(|portal| portal.polygon))

@@ -6,6 +6,12 @@ use super::{cursor::NavMeshCursor, error::NavMeshError, header::TileHeader};
 pub(crate) const MAX_CORNERS: usize = 6;
 /// This bit is set if an edge leads into another tile.
 const PORTAL_BIT: u16 = 0x8000;
+/// Offset of the corners within a polygon, bytes.
+const CORNERS_OFFSET: usize = 4;
+/// Offset of the neighbours within a polygon, bytes.
+const NEIGHBOURS_OFFSET: usize = 16;
+/// Offset of the number of corners within a polygon, bytes.
+const CORNER_COUNT_OFFSET: usize = 30;
 
 /// The neighbour behind an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +31,7 @@ pub(crate) struct TilePolygon {
     pub(crate) first_link: u32,
     /// Indices of its vertices in the tile; `vert_count` of them count.
     pub(crate) verts: [u16; MAX_CORNERS],
-    /// The neighbour behind the edge from corner i to the next, as in the file.
+    /// The neighbour behind the edge from corner i to the next, as in the file: 1-based, and 0 is none.
     pub(crate) neis: [u16; MAX_CORNERS],
     pub(crate) flags: u16,
     pub(crate) vert_count: u8,
@@ -56,7 +62,7 @@ impl TilePolygon {
         if !(least..=MAX_CORNERS).contains(&usize::from(self.vert_count)) {
             let expected = format!("{least} to {MAX_CORNERS}");
             return Err(NavMeshError::bad_value(
-                start + 30,
+                start + CORNER_COUNT_OFFSET,
                 "a polygon's number of corners",
                 self.vert_count,
                 expected,
@@ -65,12 +71,22 @@ impl TilePolygon {
         for (edge, (vert, found)) in self.corners().iter().zip(&self.neis).enumerate() {
             if u32::from(*vert) >= header.verts {
                 let expected = format!("below {}", header.verts);
-                return Err(NavMeshError::bad_value(start + 4 + 2 * edge, "a polygon's corner", vert, expected));
+                return Err(NavMeshError::bad_value(
+                    start + CORNERS_OFFSET + 2 * edge,
+                    "a polygon's corner",
+                    vert,
+                    expected,
+                ));
             }
             let behind = self.neighbour_behind(edge);
             if matches!(behind, EdgeNeighbour::Polygon(other) if other as u64 >= u64::from(header.polys)) {
                 let expected = format!("at most {}", header.polys);
-                return Err(NavMeshError::bad_value(start + 16 + 2 * edge, "a polygon's neighbour", found, expected));
+                return Err(NavMeshError::bad_value(
+                    start + NEIGHBOURS_OFFSET + 2 * edge,
+                    "a polygon's neighbour",
+                    found,
+                    expected,
+                ));
             }
         }
         Ok(())

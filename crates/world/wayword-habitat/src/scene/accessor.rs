@@ -90,15 +90,16 @@ impl<'a> AccessorEntries<'a> {
     }
 
     fn float_at(&self, entry: usize, component: usize) -> f32 {
-        let (value, most) = match self.kind {
+        let (value, max_value) = match self.kind {
             ComponentType::F32 => return f32::from_le_bytes(self.component_bytes(entry, component)),
             ComponentType::U8 => (f32::from(u8::from_le_bytes(self.component_bytes(entry, component))), 255.0),
             ComponentType::I8 => (f32::from(i8::from_le_bytes(self.component_bytes(entry, component))), 127.0),
             ComponentType::U16 => (f32::from(u16::from_le_bytes(self.component_bytes(entry, component))), 65_535.0),
             ComponentType::I16 => (f32::from(i16::from_le_bytes(self.component_bytes(entry, component))), 32_767.0),
+            // glTF does not normalise these.
             ComponentType::U32 => (u32::from_le_bytes(self.component_bytes(entry, component)) as f32, 1.0),
         };
-        if self.is_normalised { (value / most).max(-1.0) } else { value }
+        if self.is_normalised { (value / max_value).max(-1.0) } else { value }
     }
 
     fn index_at(&self, entry: usize) -> u32 {

@@ -80,7 +80,7 @@ impl SceneModel {
     }
 }
 
-/// Lights a mesh without a material, face by face.
+/// Gives a mesh without a material colours as if it were lit in a studio, one for each face. Its faces no longer share corners.
 ///
 /// # Errors
 /// If the faces have more corners than a mesh may have.
@@ -170,10 +170,10 @@ impl<'a> SceneModelBuilder<'a> {
             return Ok(*known);
         }
         self.model.textures.push(pictures::read_texture(self.asset, number)?);
-        let (index, texels) =
-            (self.model.textures.len() - 1, self.model.textures.iter().map(|texture| texture.texels.len() as u64));
+        let index = self.model.textures.len() - 1;
+        let texels: u64 = self.model.textures.iter().map(|texture| texture.texels.len() as u64).sum();
         let most = pictures::max_total_texels(self.asset.total_bytes());
-        if texels.sum::<u64>() > most {
+        if texels > most {
             return Err(format!("texture {number}: the pictures have more than {most} texels together"));
         }
         self.textures.insert(number, index);

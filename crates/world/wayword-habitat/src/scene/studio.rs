@@ -2,18 +2,21 @@
 //!
 //! Habitat gives them a white material of metalness 0.3 and roughness 0.3 (`ResourceManager.cpp`,
 //! `buildDefaultMaterial`) and lights it with the image of a photo studio, `brown_photostudio_02_1k.hdr`
-//! (`PbrIBLHelper.cpp`, `pbrLighting.glsl`). Everything else in a scene without lights is drawn with its stored
-//! colours. So a third of such a surface's colour is the mirror image of the studio, only slightly blurred. That image
-//! is not available here. Frames that Habitat drew show only the mean colour of the light on surfaces that look up,
-//! east and south. The mirror image changes it by up to 13 of 255, which is left out here.
+//! (`PbrIBLHelper.cpp`, `pbrLighting.glsl`). So a third of such a surface's colour is the mirror image of the studio,
+//! only slightly blurred. That image is not available here. So the mean colours were measured from frames that Habitat
+//! drew, in which such surfaces look up, east and south. The mirror image changes them by up to 13 of 255, which is left
+//! out here. Everything else in a scene without lights is drawn with its stored colours.
 
 use glam::Vec3;
 
 /// Colour of the light on surfaces that look east and west, north and south, up and down, 0..=255. Only east, south and up
 /// were measured: west and down are assumed to equal south, and north to equal east.
 const LIGHT_BY_DIRECTION: [[[f32; 3]; 2]; 3] = [
+    // East, west.
     [[142.0, 132.0, 104.0], [109.0, 95.0, 79.0]],
+    // North, south.
     [[142.0, 132.0, 104.0], [109.0, 95.0, 79.0]],
+    // Up, down.
     [[141.0, 124.0, 85.0], [109.0, 95.0, 79.0]],
 ];
 

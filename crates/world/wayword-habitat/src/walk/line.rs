@@ -6,7 +6,7 @@ use wayword_core::DVec3;
 const SAME_M: f64 = 1e-6;
 /// A place farther above or below the line than this is on another storey, metres. On stairs the two differ a little, because the
 /// line runs straight from point to point.
-const HEIGHT_M: f64 = 1.2;
+const STOREY_TOLERANCE_M: f64 = 1.2;
 
 /// A line of straight pieces on the ground.
 #[derive(Debug, Clone, Default)]
@@ -52,11 +52,12 @@ impl GroundLine {
             let ((a, from), (b, to)) = (pair[0], pair[1]);
             let flat = (b - a).truncate();
             let share = (place - a).truncate().dot(flat) / flat.length_squared();
+            // The range is never empty: this piece begins at or before `to_m` and ends behind `from_m`.
             let along = (from + share * (to - from)).clamp(from.max(from_m), to.min(to_m));
             let on = a.lerp(b, (along - from) / (to - from));
             (along, (on - place).truncate().length(), (on.z - place.z).abs())
         });
-        let near = near.filter(|(_, _, height_m)| *height_m <= HEIGHT_M);
+        let near = near.filter(|(_, _, height_m)| *height_m <= STOREY_TOLERANCE_M);
         // Of two points at the same distance, the one farther along wins.
         near.min_by(|a, b| a.1.total_cmp(&b.1).then(b.0.total_cmp(&a.0))).map(|(along, off, _)| (along, off))
     }

@@ -1,6 +1,9 @@
 //! Paints the views out of windows. Each picture repeats sideways, because every window of a side shows its own part.
 //!
-//! The horizon is at eye level. From upstairs (`above`) the ground and all things on it lie lower.
+//! The horizon is at eye level. From upstairs the ground and all things on it lie lower.
+//!
+//! The last argument of each noise is its own number, so that no two things share a pattern; the one before it is how many
+//! cells the noise has.
 
 use super::{
     super::outlook::WindowOutlook,
@@ -12,9 +15,9 @@ use super::{
 const HORIZON_SHARE: f32 = 0.43;
 
 /// The colour at a place of the view: `u` runs to the right and `v` down, each from 0 to 1 over the picture.
-pub(super) fn outlook_texel(outlook: WindowOutlook, above: bool, u: f32, v: f32) -> TextureRgb {
+pub(super) fn outlook_texel(outlook: WindowOutlook, from_upstairs: bool, u: f32, v: f32) -> TextureRgb {
     // How much lower near things lie.
-    let drop = if above { 0.2 } else { 0.0 };
+    let drop = if from_upstairs { 0.2 } else { 0.0 };
     match outlook {
         WindowOutlook::Street => street_texel(u, v, drop),
         WindowOutlook::Garden => garden_texel(u, v, drop),
@@ -134,6 +137,7 @@ fn parked_car_texel(du: f32, dv: f32) -> Option<TextureRgb> {
     cabin.then(|| if du.abs() < 0.008 || dv < -0.062 { [60.0, 104.0, 176.0] } else { [56.0, 70.0, 84.0] })
 }
 
+/// A shed with a door and a roof before a wooden fence, and a tree behind it.
 fn yard_texel(u: f32, v: f32, drop: f32) -> TextureRgb {
     let (lawn, x) = (0.64 + drop, offset_around(u, 0.34));
     if x.abs() < 0.17 && (0.3 + drop..0.72 + drop).contains(&v) {
@@ -208,12 +212,14 @@ fn hills_texel(u: f32, v: f32, drop: f32) -> TextureRgb {
 
 fn sea_texel(u: f32, v: f32, drop: f32) -> TextureRgb {
     let x = offset_around(u, 0.58);
+    // The gap in it is the mast.
     let sail = (HORIZON_SHARE - 0.16..HORIZON_SHARE - 0.01).contains(&v)
         && x.abs() < (v - HORIZON_SHARE + 0.17) * 0.5
         && (x + 0.01).abs() > 0.006;
     if sail {
         return [250.0, 248.0, 240.0];
     }
+    // The boat's hull.
     if (HORIZON_SHARE..HORIZON_SHARE + 0.03).contains(&v) && x.abs() < 0.08 - (v - HORIZON_SHARE) {
         return [150.0, 60.0, 48.0];
     }

@@ -117,6 +117,7 @@ impl FloorRaster {
                 }
             }
         }
+        // Of equally large parts the first one wins.
         let largest = (1..sizes.len()).rev().max_by_key(|part_number| sizes[*part_number]).unwrap_or(0);
         self.free.iter_mut().zip(part).for_each(|(free, part_number)| *free = *free && part_number == largest);
     }
@@ -125,10 +126,11 @@ impl FloorRaster {
     fn cell_clearances(&self) -> Vec<u32> {
         let mut steps = vec![u32::MAX; self.free.len()];
         let mut open = VecDeque::new();
-        for (cell, step) in steps.iter_mut().enumerate() {
+        for (cell, clearance) in steps.iter_mut().enumerate() {
             let at_edge = STRAIGHT_STEPS.into_iter().any(|step| self.neighbour_cell(cell, step).is_none());
             if !self.free[cell] || at_edge {
-                *step = u32::from(self.free[cell]);
+                // 0 where it is occupied, 1 for a free cell at the edge.
+                *clearance = u32::from(self.free[cell]);
                 open.push_back(cell);
             }
         }
@@ -158,7 +160,7 @@ impl FloorRaster {
     }
 
     /// Whether one can walk straight from one point to another.
-    pub(crate) fn is_straight(&self, from: [f64; 2], to: [f64; 2]) -> bool {
+    pub(crate) fn can_walk_straight(&self, from: [f64; 2], to: [f64; 2]) -> bool {
         let count = (floor_distance(from, to) / self.cell_m * 4.0).ceil().max(1.0) as usize;
         (0..=count).all(|step| {
             let share = step as f64 / count as f64;
@@ -184,7 +186,7 @@ impl FloorRaster {
         // The way begins and ends at the points that were asked for, and not in the middles of their cells.
         let middles = cells.into_iter().map(|cell| self.cell_middle(cell));
         let points: Vec<[f64; 2]> = [from].into_iter().chain(middles).chain([to]).collect();
-        Some(pull_taut(&points, |a, b| self.is_straight(a, b)))
+        Some(pull_taut(&points, |a, b| self.can_walk_straight(a, b)))
     }
 
     /// A viewpoint graph over eye positions above this floor. Its edges are straight, free walks. Where parts of it are
@@ -195,7 +197,7 @@ impl FloorRaster {
         for eye in eyes {
             self.add_viewpoint(&mut graph, &mut nodes, *eye)?;
         }
-        // Each round joins two parts, or stops because no way joins them.
+        // Each round joins the first part to the nearest other one, or stops because there is no way to it.
         for _ in 0..eyes.len() {
             if graph.count_components() < 2 || !self.join_parts(&mut graph, &mut nodes)? {
                 break;
@@ -215,7 +217,7 @@ impl FloorRaster {
         let Ok(id) = ViewpointId::new(format!("v{}", nodes.len())) else { return Ok(()) };
         graph.add_viewpoint(id.clone(), eye, None)?;
         for (other, place) in nodes.iter() {
-            if place.distance(eye) <= MAX_EDGE_M && self.is_straight(floor_point(eye), floor_point(*place)) {
+            if place.distance(eye) <= MAX_EDGE_M && self.can_walk_straight(floor_point(eye), floor_point(*place)) {
                 graph.join_viewpoints(&id, other)?;
             }
         }

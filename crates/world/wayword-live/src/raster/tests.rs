@@ -19,8 +19,8 @@ fn shortest_leads_through_the_door_and_no_wall() {
     let way = raster.shortest_way([0.0, 0.0], [3.5, 0.0]).unwrap();
     assert_eq!((way[0], way[way.len() - 1]), ([0.0, 0.0], [3.5, 0.0]));
     assert!(way.iter().any(|corner| (corner[1] - 2.0).abs() < 0.3), "{way:?} misses the door");
-    assert!(way.windows(2).all(|leg| raster.is_straight(leg[0], leg[1])));
-    assert!(!raster.is_straight([0.0, 0.0], [3.5, 0.0]));
+    assert!(way.windows(2).all(|leg| raster.can_walk_straight(leg[0], leg[1])));
+    assert!(!raster.can_walk_straight([0.0, 0.0], [3.5, 0.0]));
     assert_eq!(raster.shortest_way([0.0, 0.0], [2.0, 0.0]), None, "a goal inside a wall has no way");
 }
 

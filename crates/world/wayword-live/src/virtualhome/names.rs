@@ -15,8 +15,8 @@ static CLASS_WORDS: LazyLock<BTreeMap<&str, &str>> = LazyLock::new(|| {
     lines.flat_map(named).collect()
 });
 
-/// First words of names that are not in the list: names of classes that users add, and the stand-in's. The rest of the
-/// name must have at least three letters, so that it can be a word.
+/// First words of names that are not in the list: classes that users add, and those of the stand-in. The rest of the name
+/// must have at least three letters, so that it can be a word.
 const FIRST_WORDS: [&str; 35] = [
     "bathroom",
     "bath",

@@ -26,7 +26,7 @@ const ANSWERS_PER_RESTART: u32 = 200;
 pub(crate) struct ChildKeeper {
     options: ProcessOptions,
     /// Receives the lines of the child's error output.
-    hear: OutputListener,
+    error_listener: OutputListener,
     /// The first greeting; later children must send the same.
     world: WorldProgram,
     state: Mutex<ChildState>,
@@ -48,7 +48,7 @@ struct ChildState {
 
 impl ChildKeeper {
     /// Starts the child and reads its greeting.
-    pub(crate) fn start(options: ProcessOptions, hear: OutputListener) -> Result<Self, PlatformError> {
+    pub(crate) fn start(options: ProcessOptions, error_listener: OutputListener) -> Result<Self, PlatformError> {
         let mut state = ChildState {
             running: None,
             images: None,
@@ -57,9 +57,9 @@ impl ChildKeeper {
             restarts_left: options.restarts,
             last_fault: String::new(),
         };
-        // No request was lost if the first child does not start: the user has to correct the cause.
-        let world = state.launch_child(&options, &hear).map_err(|failed| failed.into_file_error(&options))?;
-        Ok(Self { options, hear, world, state: Mutex::new(state) })
+        // A first child that does not start is an error of its file, and not `Lost`: no request was lost.
+        let world = state.launch_child(&options, &error_listener).map_err(|failed| failed.into_file_error(&options))?;
+        Ok(Self { options, error_listener, world, state: Mutex::new(state) })
     }
 
     pub(crate) fn options(&self) -> &ProcessOptions {
@@ -126,7 +126,9 @@ impl ChildKeeper {
             return Err(failed(ChildFault::GaveUp(state.last_fault.clone())));
         }
         state.restarts_left -= 1;
-        let world = state.launch_child(&self.options, &self.hear).map_err(|failed| failed.into_error(&self.options))?;
+        let world = state
+            .launch_child(&self.options, &self.error_listener)
+            .map_err(|failed| failed.into_error(&self.options))?;
         if world != self.world {
             state.running = None;
             state.last_fault = ChildFault::Changed.to_string();
@@ -138,8 +140,12 @@ impl ChildKeeper {
 
 impl ChildState {
     /// Starts a child and reads its greeting.
-    fn launch_child(&mut self, options: &ProcessOptions, hear: &OutputListener) -> Result<WorldProgram, FailedRequest> {
-        let started = RunningChild::start(options, hear).map_err(|fault| {
+    fn launch_child(
+        &mut self,
+        options: &ProcessOptions,
+        error_listener: &OutputListener,
+    ) -> Result<WorldProgram, FailedRequest> {
+        let started = RunningChild::start(options, error_listener).map_err(|fault| {
             self.last_fault = fault.to_string();
             FailedRequest::without_request(fault, "hello")
         })?;

@@ -29,7 +29,7 @@ impl Av1Decoder {
     fn drain_pictures(&mut self, out: &mut TakePlanes<'_>) -> Result<(), String> {
         loop {
             match self.decoder.get_picture() {
-                Ok(picture) => hand_out(&picture, self.colour, out)?,
+                Ok(picture) => hand_out_picture(&picture, self.colour, out)?,
                 Err(Error::Again) => return Ok(()),
                 Err(error) => return Err(format!("cannot be decoded: {error}")),
             }
@@ -58,7 +58,7 @@ impl SampleDecoder for Av1Decoder {
 }
 
 /// Hands out a decoded picture with the number of its sample.
-fn hand_out(picture: &Picture, container: StreamColour, out: &mut TakePlanes<'_>) -> Result<(), String> {
+fn hand_out_picture(picture: &Picture, container_colour: StreamColour, out: &mut TakePlanes<'_>) -> Result<(), String> {
     let sample = picture
         .timestamp()
         .and_then(|sample| usize::try_from(sample).ok())
@@ -87,7 +87,8 @@ fn hand_out(picture: &Picture, container: StreamColour, out: &mut TakePlanes<'_>
         bits,
         brightness: PicturePlane { bytes: brightness.as_ref(), stride: stride(Y) },
         chroma,
-        colour: stream_colour(picture).or(container),
+        // What the stream gives counts before what the container gives.
+        colour: stream_colour(picture).or(container_colour),
     };
     out(sample, &planes)
 }

@@ -42,23 +42,27 @@ impl ListenerText {
         starts.iter().copied().zip(ends).map(|(from, to)| [from, to]).collect()
     }
 
-    /// Whether a clause may begin with a word after "and", "then" or "to".
+    /// Whether a clause may begin with a word after "and", "then" or "to", which means that the word is a verb: it is in no list of other
+    /// words and in no name, or an article or particle follows. After "to", "the" or "me" must also follow, and neither the word
+    /// itself nor the one before "to" may be a verb of motion.
     pub(super) fn is_verb(&self, at: usize, before: Option<&str>) -> bool {
         let word = self.words[at].as_str();
         let in_name = self.names.iter().any(|name| (name.start..name.end).contains(&at));
-        let is_free = !NO_VERBS.contains(&word) && !in_name && !LOOK_WORDS.contains(&word) && word != "then";
-        let is_known = is_free || self.has_object(at);
+        let may_be_verb = !NO_VERBS.contains(&word) && !in_name && !LOOK_WORDS.contains(&word) && word != "then";
+        let is_verb_by_list_or_follower = may_be_verb || self.has_object_or_particle(at);
         // "Go to the kitchen to clean the sink" begins a task; "go to the kitchen" does not.
-        let has_object = || self.words.get(at + 1).is_some_and(|next| next == "the" || next == "me");
+        let precedes_the_or_me = || self.words.get(at + 1).is_some_and(|next| next == "the" || next == "me");
+        // The word before "to" is the last of these.
         let follows_move = || self.words[..at - 1].last().is_some_and(|word| MOVE_VERBS.contains(&word.as_str()));
-        is_known && (before != Some("to") || (has_object() && !MOVE_VERBS.contains(&word) && !follows_move()))
+        is_verb_by_list_or_follower
+            && (before != Some("to") || (precedes_the_or_me() && !MOVE_VERBS.contains(&word) && !follows_move()))
     }
 
     /// Whether a word is a verb by the word after it: "switch on", "water the".
-    pub(super) fn has_object(&self, at: usize) -> bool {
+    pub(super) fn has_object_or_particle(&self, at: usize) -> bool {
         let next = self.words.get(at + 1).map_or("", String::as_str);
-        let is_small = NO_VERBS.contains(&self.words[at].as_str());
-        !is_small && matches!(next, "the" | "a" | "an" | "on" | "off" | "me" | "up" | "down" | "out")
+        let is_never_verb = NO_VERBS.contains(&self.words[at].as_str());
+        !is_never_verb && matches!(next, "the" | "a" | "an" | "on" | "off" | "me" | "up" | "down" | "out")
     }
 
     /// Whether a clause gives a task. Its first word that is no filler decides.
@@ -72,8 +76,7 @@ impl ListenerText {
             "turn" => has_thing && !is_way(&["left", "right", "around", "back", "to"]),
             "take" | "make" => has_thing && !is_way(&["left", "right", "your"]) && !self.names_stairs(at, to),
             "get" => next != "to" && has_thing,
-            "the" | "a" | "an" | "it" | "that" | "which" | "is" | "where" => false,
-            "there" => false,
+            "the" | "a" | "an" | "it" | "that" | "which" | "is" | "where" | "there" => false,
             word => {
                 !MOVE_VERBS.contains(&word)
                     && !NON_TASK_OPENERS.contains(&word)

@@ -53,7 +53,7 @@ impl ListenerResult {
     }
 
     /// Whether only another object fits, or the target's geometry contradicts the description.
-    fn is_false(&self) -> bool {
+    fn is_falsely_pinned(&self) -> bool {
         self.denied.is_some() || self.pins_another()
     }
 
@@ -126,6 +126,7 @@ fn hear_text(scene: &ListenerScene, arrival: ListenerArrival, target: usize, tex
     heard.fitting = fitting.len();
     heard.fits_target = fitting.contains(&target);
     heard.denied = listener.denied_part(target);
+    // Words that the listener had to leave out cannot be judged by labels either.
     heard.has_look = description.has_look || matches.left_out > 0;
     heard.has_distinction = heard.has_look
         || !description.relations.is_empty()
@@ -147,7 +148,7 @@ pub(super) fn listener_rows(heard: &[ListenerResult]) -> Vec<TextFigureRow> {
         of_all("pinned down, or with a word that labels cannot judge", &|heard| {
             heard.is_pinned() || heard.has_look && heard.fits_target && heard.denied.is_none()
         }),
-        of_all("falsely pinned", &ListenerResult::is_false),
+        of_all("falsely pinned", &ListenerResult::is_falsely_pinned),
         of_all("  the geometry denies what is said of it", &|heard| heard.denied.is_some()),
         of_all("  another object alone fits", &|heard| heard.denied.is_none() && heard.pins_another()),
         of_all("a namesake in view at the end", &|heard| heard.has_namesake),

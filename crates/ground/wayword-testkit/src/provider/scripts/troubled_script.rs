@@ -48,10 +48,10 @@ mod tests {
 
     #[test]
     fn a_share_of_answers_is_spoilt_in_all_four_ways() {
-        let eye = TroubledScript::new(|_: &ScriptRequest| "A lamp.".to_owned(), 0.4, 1);
+        let troubled = TroubledScript::new(|_: &ScriptRequest| "A lamp.".to_owned(), 0.4, 1);
         let answer = |at: usize| {
             let text = format!("Look.\nQuestion: What is at {at}?\nAnswer:");
-            eye.reply(&ScriptRequest { messages: vec![(MessageRole::User, text)], ..ScriptRequest::default() })
+            troubled.reply(&ScriptRequest { messages: vec![(MessageRole::User, text)], ..ScriptRequest::default() })
         };
         let answers: Vec<String> = (0..1000).map(answer).collect();
         assert_eq!(answers, (0..1000).map(answer).collect::<Vec<_>>());

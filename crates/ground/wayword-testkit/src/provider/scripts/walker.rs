@@ -18,7 +18,8 @@ pub enum WalkerGait {
     Broken,
 }
 
-/// Largest error of a place on the map of a prompt, metres: the map rounds to 0.1 m.
+/// Largest error of a place on the map of a prompt, metres: the map rounds each of three axes to 0.1 m, so
+/// a place is off by less than this.
 const ROUNDED_M: f64 = 0.2;
 
 /// A scripted model that chooses an agent's steps.
@@ -180,7 +181,10 @@ fn number_after(text: &str, words: &str) -> Option<f64> {
 
 /// A place of the map, as in "place 2: right 1.0, ahead 2.0, up 0.0; hallway; ways to 1".
 fn parse_place(line: &str) -> Option<(usize, DVec3)> {
-    let number = number_after(line.strip_prefix("place ").map(|_| line)?, "place ")? as usize;
+    if !line.starts_with("place ") {
+        return None;
+    }
+    let number = number_after(line, "place ")? as usize;
     Some((
         number,
         DVec3::new(number_after(line, ": right ")?, number_after(line, ", ahead ")?, number_after(line, ", up ")?),

@@ -23,6 +23,7 @@ pub(super) fn guess_sides(
     let width_px = other.image.as_ref().map(|image| f64::from(image.width_px()));
     let right_by_draw = |label: &ObjectLabel| draws.draw_for_label("side", label) < 0.5;
     let kept = listed_labels(known).filter(|label| axis.is_right(label.heading) == right_by_draw(label)).cloned();
+    // A thing of the mirrored view appears in this one if its drawn side is wrong.
     let moved = listed_labels(&other).filter(|label| axis.is_right(label.heading) != right_by_draw(label));
     Ok(kept.chain(moved.map(|label| axis.mirrored_label(label, width_px))).collect())
 }
@@ -53,9 +54,9 @@ impl MirrorPlane {
     fn mirrored_label(&self, label: &ObjectLabel, width_px: Option<f64>) -> ObjectLabel {
         let heading = self.mirrored_heading(label.heading);
         let moved = |position: DVec3| {
-            let level_m = (position - self.eye).truncate().length();
-            let level = self.eye + heading.unit_vector() * level_m;
-            level.with_z(position.z)
+            let flat_m = (position - self.eye).truncate().length();
+            let mirrored = self.eye + heading.unit_vector() * flat_m;
+            mirrored.with_z(position.z)
         };
         let box_px = label.box_px.zip(width_px).map(|([x, y, width, height], all)| [all - x - width, y, width, height]);
         ObjectLabel { heading, position: label.position.map(moved), box_px, ..label.clone() }

@@ -99,6 +99,7 @@ impl ChunkStoreState {
         self.others.values().chain([&self.tally])
     }
 
+    /// The part of a run's budget that is spent or reserved.
     fn spent_by_run(&self, run: &str) -> SpentBudget {
         self.all_tallies().map(|tally| tally.spent_by_run(run)).fold(SpentBudget::default(), |sum, file| SpentBudget {
             usd: sum.usd + file.usd,
@@ -107,6 +108,7 @@ impl ChunkStoreState {
         })
     }
 
+    /// The requests and costs of a run, or of all runs, for reports.
     fn spending_by_run(&self, run: Option<&str>) -> RunSpending {
         self.all_tallies().map(|tally| tally.spending_by_run(run)).fold(RunSpending::default(), RunSpending::plus)
     }
@@ -119,14 +121,14 @@ impl OpenChunk {
             fs::create_dir_all(folder).map_err(LedgerError::io_error(folder, "make the folder"))?;
         }
         let (mut tally, memory) = (ChunkTally::default(), SqliteStore::in_memory()?);
-        let sound = read::read_entries(path, |entry| {
+        let intact_bytes = read::read_entries(path, |entry| {
             tally.count_entry(&entry);
             if let ChunkEntry::Answered { row, .. } = entry {
                 memory.add_recorded_answer(*row);
             }
         })?;
         memory.flush()?;
-        let file = ChunkAppender::start(path, sound)?;
+        let file = ChunkAppender::start(path, intact_bytes)?;
         Ok((Self { path: path.to_owned(), file, memory }, tally))
     }
 }
@@ -209,6 +211,7 @@ impl CallStore for ChunkStore {
 
     fn write_end(&self, sent: &SentRequest, end: RequestEnd, reason: &str) {
         let entry = ChunkEntry::Ended { number: sent.number, outcome: end, reason: reason.to_owned() };
+        // A request was sent, so there is a current chunk.
         if let Ok(chunk) = self.current_chunk() {
             self.lock_state().tally.count_entry(&entry);
             chunk.file.queue_line(&entry);

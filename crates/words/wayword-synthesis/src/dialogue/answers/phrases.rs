@@ -134,29 +134,30 @@ pub(crate) struct QuestionThing {
     pub(crate) place: Option<ViewThird>,
 }
 
-/// The things that these words ask for, separated by "or", "and" or commas, and whether one of the joints is an "or".
+/// The things that these words ask for, separated by "or", "and" or commas, and whether one of the separators is an "or".
 pub(super) fn all_wanted(words: &[&str]) -> Option<(Vec<QuestionThing>, bool)> {
     let place = place_phrases(words).first().map(|phrase| phrase.place);
     let mut found: Vec<QuestionThing> = Vec::new();
     let mut at = 0;
-    let mut or = false;
+    let mut has_or = false;
     loop {
         let name = noun_phrase(words, &mut at)?;
         found.push(question_thing(&name, place)?);
         match words.get(at) {
-            Some(&"or") => or = true,
+            Some(&"or") => has_or = true,
             Some(&"and") => {}
             Some(&",") if words[at..].iter().any(|word| matches!(*word, "or" | "and")) => {
                 at += usize::from(matches!(words.get(at + 1), Some(&"or" | &"and")));
-                or |= words[at] == "or";
+                has_or |= words[at] == "or";
             }
-            _ => return Some((found, or)),
+            _ => return Some((found, has_or)),
         }
         at += 1;
+        // Looks ahead: the words behind the separator must name a thing too.
         if found.len() == MAX_QUESTION_THINGS
             || noun_phrase(words, &mut at.clone()).and_then(|name| question_thing(&name, None)).is_none()
         {
-            return Some((found, or));
+            return Some((found, has_or));
         }
     }
 }
@@ -186,7 +187,7 @@ pub(super) fn noun_phrase<'a>(words: &[&'a str], at: &mut usize) -> Option<Vec<&
         *at += 1;
     }
     let found = words[start..*at].to_vec();
-    // "The lamp you mentioned": behind the name, up to the next joint.
+    // "The lamp you mentioned": behind the name, up to the next separator.
     while words.get(*at).is_some_and(|word| !matches!(*word, "or" | "and" | ",")) {
         *at += 1;
     }

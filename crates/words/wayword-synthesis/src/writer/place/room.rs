@@ -19,7 +19,7 @@ pub(super) struct GoalRoom<'a> {
     /// Which way the last stairs of the path go.
     climb: Option<ClimbDirection>,
     /// Probability that the storey is named although it is not needed.
-    names_level: f64,
+    level_probability: f64,
     /// How many storeys the building has; 0 where that is not known.
     storeys: usize,
 }
@@ -27,6 +27,10 @@ pub(super) struct GoalRoom<'a> {
 /// How often a text names the storey, relative to the style's average: where the storey changes along the path, where
 /// the building has several storeys, and where it has one.
 const STOREY_SHARE_FACTORS: [f64; 3] = [1.5, 0.75, 0.2];
+/// The greatest probability that the storey is named although it is not needed.
+const MAX_LEVEL_PROBABILITY: f64 = 0.97;
+/// How often the storey comes behind the other properties of the room, where it can.
+const LEVEL_LAST_SHARE: f64 = 0.35;
 
 impl<'a> GoalRoom<'a> {
     pub(super) fn new(brief: &WritingBrief<'a>, room: &'a str) -> Self {
@@ -40,14 +44,14 @@ impl<'a> GoalRoom<'a> {
             _ => STOREY_SHARE_FACTORS[1],
         };
         let wording = &brief.profile.wording;
-        let names_level = (wording.share_of_texts("level") * need).clamp(0.0, 0.97);
+        let level_probability = (wording.share_of_texts("level") * need).clamp(0.0, MAX_LEVEL_PROBABILITY);
         let level = path.frames.last().and_then(|frame| frame.level);
-        Self { wording, room, level, climb: last_climb(brief.walk), names_level, storeys }
+        Self { wording, room, level, climb: last_climb(brief.walk), level_probability, storeys }
     }
 
     /// Draws whether the storey is named although it is not needed.
     pub(super) fn names_level(&self, rng: &mut ChaCha8Rng) -> bool {
-        rng.random_bool(self.names_level)
+        rng.random_bool(self.level_probability)
     }
 
     /// Whether the building is known to have another storey.
@@ -60,12 +64,14 @@ impl<'a> GoalRoom<'a> {
         let fits = |opener: &str| {
             let holds = |word: &str| opener.split(' ').any(|part| part == word);
             match self.climb {
+                // "Into the stairs" is no English.
                 _ if holds("into") || holds("enter") => room_name(self.room) != Some("stairs"),
                 Some(ClimbDirection::Up) => !holds("down") && !holds("downstairs"),
                 Some(ClimbDirection::Down) => !holds("up") && !holds("upstairs"),
                 _ => !["up", "down", "upstairs", "downstairs"].iter().any(|word| holds(word)),
             }
         };
+        // A sharp draw prefers frequent openers even more than people do.
         self.wording.draw_sharply("opener", rng, fits).unwrap_or("go to")
     }
 
@@ -79,14 +85,20 @@ impl<'a> GoalRoom<'a> {
         }
     }
 
-    /// The room with its article and the properties in `by` that are about rooms.
-    pub(super) fn room_phrase(&self, by: &[&ObjectDistinction], names_level: bool, rng: &mut ChaCha8Rng) -> String {
-        let must = by.iter().any(|by| matches!(by, ObjectDistinction::Level { .. }));
+    /// The room with its article and the `distinctions` that are about rooms.
+    pub(super) fn room_phrase(
+        &self,
+        distinctions: &[&ObjectDistinction],
+        names_level: bool,
+        rng: &mut ChaCha8Rng,
+    ) -> String {
+        let must = distinctions.iter().any(|by| matches!(by, ObjectDistinction::Level { .. }));
         let level = self.level.filter(|_| must || names_level);
         let room = self.wording.draw_name(self.room, rng);
         // "The kitchen by the corridor with the stove" reads as if the corridor had it.
         let has_with = |by: &ObjectDistinction| matches!(by, ObjectDistinction::RoomWith { .. });
-        let (with, beside): (Vec<&ObjectDistinction>, Vec<&ObjectDistinction>) = by.iter().partition(|by| has_with(by));
+        let (with, beside): (Vec<&ObjectDistinction>, Vec<&ObjectDistinction>) =
+            distinctions.iter().partition(|by| has_with(by));
         let qualifiers: Vec<String> =
             with.into_iter().chain(beside).filter_map(|by| self.room_qualifier(by, rng)).collect();
         let Some(level) = level else { return join_words(&[format!("the {room}")], &qualifiers) };
@@ -94,7 +106,7 @@ impl<'a> GoalRoom<'a> {
         let way = self.wording.draw("level", rng, has_ordinal).unwrap_or("the {r} on level {n}");
         let filled = way.replace("{n}", &level.to_string()).replace("{th}", storey_ordinal(level).unwrap_or_default());
         // "The bathroom next to the hall on level 2": the storey may also come last.
-        let is_last = filled.starts_with("the {r} ") && rng.random_bool(0.35);
+        let is_last = filled.starts_with("the {r} ") && rng.random_bool(LEVEL_LAST_SHARE);
         if is_last && !qualifiers.is_empty() {
             let level = filled.trim_start_matches("the {r} ").to_owned();
             return join_words(&[format!("the {room}")], &[qualifiers, vec![level]].concat());

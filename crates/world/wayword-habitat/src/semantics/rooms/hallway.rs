@@ -20,9 +20,10 @@ const MIN_ADJACENT_ROOMS: usize = 3;
 const DOOR_M: std::ops::RangeInclusive<f64> = 0.4..=1.8;
 /// Two floors that touch along more than this are parts of one open room, metres, although each part has its own number.
 const MAX_OPENING_M: f64 = 2.6;
-/// Most rooms that are examined; the others are no hallways. With more than this many triangles near one place, no room of the
-/// scene is one. Real scenes have fewer of both, and more would take long.
+/// Most rooms that are examined; the others are no hallways. Real scenes have fewer, and more would take long.
 const MAX_EXAMINED_ROOMS: usize = 64;
+/// With more triangles than this near one place, no room of the scene is a hallway. Real scenes have fewer, and more would take
+/// long.
 const MAX_TRIANGLES_PER_CELL: usize = 1000;
 /// Distance of the places at which floors are looked up, metres: less than the thickness of a wall.
 const STEP_M: f64 = 0.05;
@@ -46,9 +47,9 @@ impl NumberedRooms {
         };
         let (Some((low, high)), Some(_)) = (bounds(ShellPart::Floor), bounds(ShellPart::Ceiling)) else { return false };
         let size = high - low;
-        let (broad_m, long_m) = (size.x.min(size.y), size.x.max(size.y));
-        let is_long = (MIN_LENGTH_M..=MAX_LENGTH_M).contains(&long_m) && long_m >= MIN_LENGTH_FACTOR * broad_m;
-        broad_m <= MAX_WIDTH_M && is_long && size.z <= LEVEL_M && self.leads_on(room, low, high)
+        let (width_m, length_m) = (size.x.min(size.y), size.x.max(size.y));
+        let is_long = (MIN_LENGTH_M..=MAX_LENGTH_M).contains(&length_m) && length_m >= MIN_LENGTH_FACTOR * width_m;
+        width_m <= MAX_WIDTH_M && is_long && size.z <= LEVEL_M && self.leads_on(room, low, high)
     }
 
     /// Whether a room has doors to enough other rooms, one of which is certainly indoors, and is not a part of an open room.
@@ -66,9 +67,11 @@ impl NumberedRooms {
     /// Along how many metres the floors of other rooms touch a room's floor. Floors are looked up on a grid that reaches a little
     /// beyond the room, and wherever two neighbouring places lie in different rooms, these touch along one step.
     fn touching_m(&self, room: u32, low: DVec3, high: DVec3) -> BTreeMap<u32, f64> {
+        // Two places more on each side, so that the rooms behind the border are looked up too.
         let count = |from: f64, to: f64| ((to - from) / STEP_M) as usize + 4;
         let room_at = |column: usize, row: usize| {
             let place = DVec3::new(low.x + (column as f64 - 1.5) * STEP_M, low.y + (row as f64 - 1.5) * STEP_M, 0.0);
+            // Looks down from a little above the floor to a little below it.
             self.floor_below(place.with_z(high.z + LEVEL_M / 2.0), LEVEL_M + (high.z - low.z))
                 .map(|surface| surface.room)
         };

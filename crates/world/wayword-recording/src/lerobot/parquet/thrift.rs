@@ -66,7 +66,8 @@ impl<'a> ThriftReader<'a> {
         self.take_bytes(length)
     }
 
-    /// The beginning of a list: the number of its elements, and their kind. Each element takes at least a byte.
+    /// The beginning of a list: the number of its elements, and their kind. Each element takes at least a
+    /// byte, so a count above the remaining bytes is refused.
     pub(super) fn read_list(&mut self) -> Result<(u64, u8), String> {
         let header = self.read_byte()?;
         let count = if header >> 4 == 15 { self.read_varint()? } else { u64::from(header >> 4) };
