@@ -4,7 +4,7 @@
 
 use clap::{Parser, Subcommand};
 use std::{path::PathBuf, process::ExitCode};
-use wayword_fit::{fit_evidence, fit_follower};
+use wayword_fit::{fit_alignment, fit_evidence, fit_follower};
 use wayword_quality::{
     budget, checked_texts, claims, corrupt_people, corruption_findings, corruptions, coverage, critics, detector,
     doubts, eye, house_views, people, reader_figures, reuse, sample, skeleton, stage, steps, study_coverage, sweep,
@@ -47,6 +47,10 @@ enum Measurement {
     },
     /// Fit the weights of the follower to people's texts, and print how it does on the buildings that were left out.
     FitFollower(fit_follower::FitFollowerArgs),
+    /// Fit the weights of the alignment to stretches of walks that people gave to parts of texts.
+    FitAlignment(fit_alignment::FitAlignmentArgs),
+    /// Measure the alignment by such stretches, next to what word counts alone give.
+    Align(fit_alignment::MeasureAlignmentArgs),
     /// Count the words and clauses of datasets' texts that the reader understands, and show those that it does not.
     Coverage(coverage::CoverageArgs),
     /// Correlate critics of texts (words, BLEU-4, ROUGE-L, CIDEr-D, agreement with pictures) with the success of agents that walked by
@@ -164,6 +168,7 @@ fn main() -> ExitCode {
         Measurement::Houses(flags) => flags.json,
         Measurement::HouseViews(flags) => flags.json,
         Measurement::StudyCoverage(flags) => flags.json,
+        Measurement::Align(flags) => flags.json,
         _ => false,
     };
     let output = CommandOutput::new(is_json, false);
@@ -182,6 +187,8 @@ fn run_measurement(what: Measurement, output: &CommandOutput) -> Result<(), Comm
             corruptions::measure_corruptions(&runs, count, seed, show, output)
         }
         Measurement::StudyCoverage(flags) => study_coverage::measure_study_coverage(&flags, output),
+        Measurement::FitAlignment(flags) => fit_alignment::fit_alignment_weights(&flags, output),
+        Measurement::Align(flags) => fit_alignment::measure_alignment(&flags, output),
         Measurement::FitFollower(flags) => fit_follower::fit_follower_weights(&flags, output),
         Measurement::Coverage(flags) => coverage::measure_coverage(&flags, output),
         Measurement::Walker(flags) => walker::measure_walker(*flags, output),

@@ -13,6 +13,7 @@ use wayword_core::{
 };
 use wayword_follower::{
     FeatureWeights, Guide, KnownBuilding, PathPlace, WalkPrior,
+    alignment::{AlignmentCase, AlignmentWeights, PartReading, PartedText, WalkAlignment},
     route::{GainThresholds, KnownWalk, RouteVerdict, UnfollowedReason, goal_probability, judge_route, judge_steps},
 };
 use wayword_language::{
@@ -165,6 +166,18 @@ impl<'a> FollowedPath<'a> {
             followed.turn_gain = judged.turn_gain;
         }
         followed
+    }
+
+    /// Aligns a text with the path: its parts, each with the places of the path (numbers of frames from 0) that it describes.
+    ///
+    /// # Errors
+    /// With the reason, where the text cannot be followed.
+    pub(crate) fn align_text(&self, text: &str, tag: Option<&str>) -> Result<WalkAlignment, &'static str> {
+        let (_, reading) = read_followable(text, tag)?;
+        let parted = PartedText::from_reading(text, &reading);
+        let known = self.known_path();
+        let case = AlignmentCase::new(&parted, known.building, known.walk, known.heading_rad, FeatureWeights::fitted());
+        Ok(case.align_parts(AlignmentWeights::fitted(PartReading::Words)))
     }
 
     /// Only judges where a text leads, without its single turns.

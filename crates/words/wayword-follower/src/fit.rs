@@ -29,13 +29,24 @@ impl WalkFit {
     /// Fits an instruction to all walks of a tree.
     #[must_use]
     pub fn new(trial: &GuideTrial<'_>, tree: &WalkTree, weights: &FeatureWeights) -> Self {
+        let mut starts = vec![f64::NEG_INFINITY; tree.len()];
+        starts[0] = 0.0;
+        if trial.guide.is_empty() {
+            // A text without steps fits every walk: only the endings count.
+            starts.fill(0.0);
+        }
+        Self::with_starts(trial, tree, weights, starts)
+    }
+
+    /// The same for an instruction whose first step may begin at any node.
+    pub(crate) fn from_anywhere(trial: &GuideTrial<'_>, tree: &WalkTree, weights: &FeatureWeights) -> Self {
+        Self::with_starts(trial, tree, weights, vec![0.0; tree.len()])
+    }
+
+    fn with_starts(trial: &GuideTrial<'_>, tree: &WalkTree, weights: &FeatureWeights, starts: Vec<f64>) -> Self {
         let (nodes, steps) = (tree.len(), trial.guide.len());
         let mut sums = vec![vec![f64::NEG_INFINITY; nodes]; steps + 1];
-        sums[0][0] = 0.0;
-        if steps == 0 {
-            // A text without steps fits every walk: only the endings count.
-            sums[0].fill(0.0);
-        }
+        sums[0] = starts;
         let mut stretches = vec![f64::NEG_INFINITY; steps * nodes * (MAX_STEP_HOPS + 1)];
         let mut found = Vec::new();
         for step in 0..steps {
@@ -76,6 +87,12 @@ impl WalkFit {
     /// The log of the sum over all ways in which the first `steps` steps lead to a node.
     pub(crate) fn sum_after(&self, steps: usize, node: usize) -> f64 {
         self.sums[steps][node]
+    }
+
+    /// The weight of a step over the stretch of `hops` hops that ends at a node of a tree with `nodes` nodes; minus infinity if no way
+    /// to follow the text takes it.
+    pub(crate) fn stretch_weight(&self, nodes: usize, step: usize, end: usize, hops: usize) -> f64 {
+        if hops > MAX_STEP_HOPS { f64::NEG_INFINITY } else { self.stretches[stretch_index(nodes, step, end, hops)] }
     }
 
     /// Adds the gradient of the goal by each weight to `slope`. `by_score` is, for each node, the derivative of the

@@ -178,6 +178,25 @@ impl Guide {
         Self { steps, rooms, is_goal }
     }
 
+    /// Appends the steps of a piece of the text that begins at a byte of it.
+    pub(crate) fn append_steps(&mut self, piece: Self, from: usize) {
+        let shifted = |span: [usize; 2]| span.map(|at| at + from);
+        self.rooms.extend(piece.rooms);
+        self.steps.extend(piece.steps.into_iter().map(|mut step| {
+            step.step.span = shifted(step.step.span);
+            step.step.turn_span = step.step.turn_span.map(shifted);
+            step.mentions.iter_mut().for_each(|mention| mention.span = mention.span.map(shifted));
+            step
+        }));
+    }
+
+    /// The same guide, read as a piece of a way even if the piece names only a place to go to.
+    pub(crate) fn as_way(mut self) -> Self {
+        self.is_goal = false;
+        self.steps.iter_mut().for_each(|step| step.kind = GuideStepKind::for_step(&step.step));
+        self
+    }
+
     /// Number of steps.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -4,7 +4,12 @@
 //! gradient; the result is the mean of the weights over the last round.
 
 use crate::{
-    features::tables, fit::WalkFit, guide::GuideTrial, posterior::walk_shares, tree::WalkTree, weights::FeatureWeights,
+    features::tables::{self, FeatureTable},
+    fit::WalkFit,
+    guide::GuideTrial,
+    posterior::walk_shares,
+    tree::WalkTree,
+    weights::FeatureWeights,
 };
 
 /// The settings of a fit.
@@ -114,7 +119,7 @@ impl WeightLearner {
     /// Begins with weights.
     #[must_use]
     pub fn new(plan: FitPlan, start: &FeatureWeights) -> Self {
-        Self { descent: AdamDescent::new(plan, start.values().to_vec(), hold_strengths(plan)) }
+        Self { descent: AdamDescent::new(plan, start.values().to_vec(), hold_strengths(plan, tables::ALL)) }
     }
 
     /// The weights as they are.
@@ -135,13 +140,10 @@ impl WeightLearner {
     }
 }
 
-/// For each weight, the strength of the pull towards its start value.
-pub(crate) fn hold_strengths(plan: FitPlan) -> Vec<f64> {
-    let mut holds = vec![plan.hold; tables::COUNT];
-    for table in tables::ALL.iter().filter(|table| table.is_fine) {
-        holds[table.from..table.from + table.size].fill(plan.hold * plan.hold_fine);
-    }
-    holds
+/// For each weight of the tables, the strength of the pull towards its start value.
+pub(crate) fn hold_strengths(plan: FitPlan, tables: &[FeatureTable]) -> Vec<f64> {
+    let strength = |table: &FeatureTable| if table.is_fine { plan.hold * plan.hold_fine } else { plan.hold };
+    tables.iter().flat_map(|table| std::iter::repeat_n(strength(table), table.size)).collect()
 }
 
 /// The Adam optimiser with its state.

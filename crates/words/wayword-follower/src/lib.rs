@@ -8,6 +8,7 @@
 //! Architecture invariant: no module here knows an agent, a writer or a file.
 //!
 //! # Where things are
+//! - [`alignment`]: the parts of a text, each with its stretch of a known walk.
 //! - [`change`], [`swap`]: wrong turns and swapped places. [`route`] has the gains from which they count, and texts that lead elsewhere.
 //! - [`doubt`]: `mod.rs`, `ways.rs` and `other_places.rs` find words to doubt and others for them; `bounds.rs` has the gains, `from_checks.rs` the
 //!   doubts that come from checks and ambiguity.
@@ -15,6 +16,7 @@
 //! - [`online`]: the same without a map, and going on to the unknown.
 //! - `weights/fitted.json`, `online/fitted.json`: the weights, fitted by [`learn`] and `wayword-measure fit-follower`.
 
+pub mod alignment;
 mod building;
 mod building_parts;
 pub mod change;

@@ -29,6 +29,7 @@ impl<'a> OneWalk<'a> {
 
     /// The score of a text on this walk; only differences between scores are meaningful.
     pub(crate) fn score(&self, guide: &Guide) -> f64 {
+        // The tree is a chain; its last node is the end of the walk.
         WalkFit::new(&GuideTrial::new(guide, self.building), &self.tree, self.weights).score(self.tree.len() - 1)
     }
 }

@@ -1,5 +1,5 @@
-//! Prints how much single changes of people's texts would improve the fit to their walks. The thresholds of `check` are chosen by this
-//! table, so that only a small share of true texts fails.
+//! Prints how much the best single change to a person's text would improve its fit to the walk. The thresholds of `check` are chosen
+//! by this table, so that only a small share of true texts fails.
 
 use super::texts::{FollowerScene, WalkedText};
 use rayon::prelude::*;

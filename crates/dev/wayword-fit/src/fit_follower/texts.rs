@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
     sync::Arc,
 };
-use wayword_core::{ObjectId, SceneId, SurveyedViewpoint, ViewpointGraph, ViewpointSurvey};
+use wayword_core::{ObjectId, Platform, SceneId, SurveyedViewpoint, ViewpointGraph, ViewpointId, ViewpointSurvey};
 use wayword_follower::{Guide, KnownBuilding};
 use wayword_formats::Episode;
 use wayword_run::{
@@ -59,22 +59,11 @@ pub const SUCCESS_M: f64 = 3.0;
 /// # Errors
 /// When the data or a file cannot be read.
 pub fn read_texts(data: &Path, files: &[PathBuf]) -> Result<(Vec<FollowerScene>, Vec<Vec<WalkedText>>), CommandError> {
-    let matterport =
-        AskedPlatform { platform: Some("matterport".into()), data: Some(data.to_owned()), ..AskedPlatform::default() };
-    let platform = platforms::open_platform(&AskedSettings::from(matterport).resolve()?)?;
+    let platform = open_matterport(data)?;
     let platform = platform.as_ref();
     let episodes = files.iter().map(|file| read_episodes(platform, file)).collect::<Result<Vec<_>, CommandError>>()?;
     let names: BTreeSet<&SceneId> = episodes.iter().flatten().map(|episode| &episode.scene).collect();
-    let scene = |name: &SceneId| {
-        let survey = survey_scene(platform, name)?;
-        Ok(FollowerScene {
-            name: name.clone(),
-            building: KnownBuilding::from_survey(&survey),
-            survey,
-            graph: platform.graph_for_scene(name)?,
-        })
-    };
-    let scenes = names.into_par_iter().map(scene).collect::<Result<Vec<FollowerScene>, CommandError>>()?;
+    let scenes = survey_scenes(platform, &names)?;
     let numbers: BTreeMap<&SceneId, usize> = scenes.iter().map(|scene| &scene.name).zip(0..).collect();
     let texts_of_episode = |episode: &Episode| {
         let number = numbers[&episode.scene];
@@ -94,7 +83,39 @@ pub fn read_texts(data: &Path, files: &[PathBuf]) -> Result<(Vec<FollowerScene>,
     Ok((scenes, texts))
 }
 
+/// Surveys buildings.
+///
+/// # Errors
+/// When the data of a building cannot be read.
+pub(crate) fn read_scenes(data: &Path, names: &BTreeSet<&SceneId>) -> Result<Vec<FollowerScene>, CommandError> {
+    survey_scenes(open_matterport(data)?.as_ref(), names)
+}
+
+fn open_matterport(data: &Path) -> Result<Box<dyn Platform>, CommandError> {
+    let matterport =
+        AskedPlatform { platform: Some("matterport".into()), data: Some(data.to_owned()), ..AskedPlatform::default() };
+    platforms::open_platform(&AskedSettings::from(matterport).resolve()?)
+}
+
+fn survey_scenes(platform: &dyn Platform, names: &BTreeSet<&SceneId>) -> Result<Vec<FollowerScene>, CommandError> {
+    let scene = |name: &&SceneId| {
+        let survey = survey_scene(platform, name)?;
+        Ok(FollowerScene {
+            name: (*name).clone(),
+            building: KnownBuilding::from_survey(&survey),
+            survey,
+            graph: platform.graph_for_scene(name)?,
+        })
+    };
+    names.par_iter().map(scene).collect()
+}
+
 impl FollowerScene {
+    /// The number of a viewpoint in the building; `None` if the building lacks it.
+    pub(crate) fn viewpoint_number(&self, id: &ViewpointId) -> Option<usize> {
+        self.survey.viewpoint_index(id)
+    }
+
     /// The texts of an episode; none if its walk has no hop or a viewpoint is unknown. `number` is the index of this scene.
     fn episode_texts(
         &self,

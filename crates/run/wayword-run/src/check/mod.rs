@@ -3,7 +3,7 @@
 
 pub mod args;
 mod detecting;
-mod path_texts;
+pub(crate) mod path_texts;
 mod report;
 mod run_texts;
 mod styles;

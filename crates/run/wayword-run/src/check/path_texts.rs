@@ -10,25 +10,25 @@ use wayword_formats::{
 use wayword_world::path_for_episode;
 
 /// A path with every text about it, so that the views along the path are looked up once for all of them.
-pub(super) struct PathTexts {
-    pub(super) path: Path,
-    pub(super) texts: Vec<FileText>,
+pub(crate) struct PathTexts {
+    pub(crate) path: Path,
+    pub(crate) texts: Vec<FileText>,
 }
 
 /// A text of the file.
-pub(super) struct FileText {
+pub(crate) struct FileText {
     /// Its place among the texts of the file, from 0.
-    pub(super) at: usize,
+    pub(crate) at: usize,
     /// The name of its path.
-    pub(super) path: String,
+    pub(crate) path: String,
     /// Its words.
     pub words: String,
     /// The style that it was written in, if the file names it.
-    pub(super) style: Option<StyleReference>,
+    pub(crate) style: Option<StyleReference>,
     /// The tag of its language, where the file gives one.
-    pub(super) tag: Option<String>,
+    pub(crate) tag: Option<String>,
     /// Its platform and provenance, if the file has them.
-    pub(super) origin: Option<(String, TextProvenance)>,
+    pub(crate) origin: Option<(String, TextProvenance)>,
 }
 
 impl FileText {
@@ -39,13 +39,13 @@ impl FileText {
 }
 
 /// A style, as a record names it.
-pub(super) struct StyleReference {
-    pub(super) name: String,
-    pub(super) hash: String,
+pub(crate) struct StyleReference {
+    pub(crate) name: String,
+    pub(crate) hash: String,
 }
 
 /// The paths of a file with their texts, in the order of the file.
-pub(super) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Result<Vec<PathTexts>, CommandError> {
+pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Result<Vec<PathTexts>, CommandError> {
     let mut walks = PathTextIndex::default();
     if wayword_formats::detect_format(file)? == DatasetFormat::Wayword {
         for InstructionRecord { path, instruction, platform: made_on, .. } in jsonl::read_records(file)? {
@@ -85,7 +85,7 @@ pub(super) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
 
 /// Texts about paths, gathered by their paths.
 #[cfg(feature = "study")]
-pub(super) fn gather_by_path(texts: Vec<(Path, String)>) -> Vec<PathTexts> {
+pub(crate) fn gather_by_path(texts: Vec<(Path, String)>) -> Vec<PathTexts> {
     let mut walks = PathTextIndex::default();
     for (path, words) in texts {
         let text = FileText::from_dataset(&path, words, None);

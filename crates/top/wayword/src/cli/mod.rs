@@ -10,7 +10,7 @@ use wayword_experiments::{
     robustness::args::RobustnessArgs, similarity::args::SimilarityArgs, study_args::StudyArgs,
 };
 use wayword_report::{export::args::ExportArgs, view::args::ViewArgs};
-use wayword_run::{calibrate::CalibrateArgs, check::args::CheckArgs, generate::args::GenerateArgs};
+use wayword_run::{align::AlignArgs, calibrate::CalibrateArgs, check::args::CheckArgs, generate::args::GenerateArgs};
 
 /// Writes and checks wayfinding instructions, as a person would give them to a robot, for any simulator.
 #[derive(Debug, Parser)]
@@ -63,6 +63,8 @@ pub enum WaywordCommand {
     Generate(Box<GenerateArgs>),
     /// Check anyone's instructions against what their paths show.
     Check(CheckArgs),
+    /// Find for each part of anyone's instructions the frames of its path that it describes.
+    Align(AlignArgs),
     /// Learn from people's texts how far labels agree with single names of objects and rooms.
     Calibrate(CalibrateArgs),
     /// Write a run as one file, in the format of R2R, REVERIE, RxR, VLN-CE or Wayword.

@@ -10,7 +10,7 @@ use wayword_experiments::study;
 use wayword_experiments::{compare, evaluate, perceive, robustness, similarity};
 use wayword_report::{export, view};
 use wayword_run::{
-    calibrate, check,
+    align, calibrate, check,
     error::{CommandError, Exit},
     generate,
     output::CommandOutput,
@@ -25,6 +25,7 @@ pub fn run_command(command: WaywordCommand, output: &CommandOutput) -> Result<Ex
         WaywordCommand::Demo(args) => demo::run_demo(&args, output),
         WaywordCommand::Generate(args) => generate::run_generate(&args, output),
         WaywordCommand::Check(args) => check::run_check(&args, output),
+        WaywordCommand::Align(args) => align::run_align(&args, output),
         WaywordCommand::Calibrate(args) => calibrate::run_calibrate(&args, output),
         WaywordCommand::Export(args) => export::run_export(&args, output),
         WaywordCommand::Report(args) => report_command::run_report(&args, output),

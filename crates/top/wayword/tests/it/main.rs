@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod align;
 mod check;
 mod check_edited;
 mod children;

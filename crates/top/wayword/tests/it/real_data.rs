@@ -9,7 +9,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-fn data() -> Option<PathBuf> {
+pub(crate) fn data() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
     let data = std::env::var_os("WAYWORD_DATA").map_or_else(beside, PathBuf::from);
     let is_there = data.join("reverie/REVERIE_val_seen.json").is_file();

@@ -38,7 +38,7 @@ fn angle_class(rad: f64) -> usize {
 }
 
 /// Which class a value falls into: the number of limits that it reaches.
-fn limit_class(value: f64, limits: &[f64]) -> usize {
+pub(crate) fn limit_class(value: f64, limits: &[f64]) -> usize {
     limits.iter().filter(|limit| value >= **limit).count()
 }
 

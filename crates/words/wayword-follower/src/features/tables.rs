@@ -31,16 +31,16 @@ impl FeatureTable {
 }
 
 /// Defines a constant for each line `NAME fine|coarse SIZE;`. The tables follow each other without gaps.
-macro_rules! tables {
+macro_rules! feature_tables {
     ($($name:ident $kind:ident $size:expr;)*) => {
-        tables!(@ 0; $($name $kind $size;)*);
+        feature_tables!(@ 0; $($name $kind $size;)*);
         /// All tables, in the order of their numbers.
         pub(crate) const ALL: &[FeatureTable] = &[$($name),*];
     };
     (@ $from:expr; $name:ident $kind:ident $size:expr; $($rest:tt)*) => {
         pub(crate) const $name: FeatureTable =
-            FeatureTable { name: stringify!($name), from: $from, size: $size, is_fine: tables!(= $kind) };
-        tables!(@ $from + $size; $($rest)*);
+            FeatureTable { name: stringify!($name), from: $from, size: $size, is_fine: feature_tables!(= $kind) };
+        feature_tables!(@ $from + $size; $($rest)*);
     };
     (@ $from:expr;) => {
         /// Number of features.
@@ -49,6 +49,7 @@ macro_rules! tables {
     (= fine) => { true };
     (= coarse) => { false };
 }
+pub(crate) use feature_tables;
 
 /// Number of kinds of steps.
 const KINDS: usize = GuideStepKind::COUNT;
@@ -69,7 +70,7 @@ pub(crate) const MARKS: usize = 90;
 
 // Each comment lists the dimensions in their order. "Kind" is the kind of the step, "last" whether it is the last of its text, and
 // "hops" the number of hops of the stretch.
-tables! {
+feature_tables! {
     // The stretch itself: how long, how it bends, how it climbs.
 
     // Kind, last, hops.

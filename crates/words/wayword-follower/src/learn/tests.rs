@@ -154,7 +154,7 @@ fn finish_before_the_last_round_gives_the_values_as_they_are() {
 #[test]
 fn hold_strengths_are_higher_for_fine_tables() {
     let plan = FitPlan { hold: 0.5, hold_fine: 4.0, ..FitPlan::default() };
-    let holds = hold_strengths(plan);
+    let holds = hold_strengths(plan, tables::ALL);
     assert_eq!(holds.len(), tables::COUNT);
     for table in tables::ALL {
         let expected = if table.is_fine { 2.0 } else { 0.5 };

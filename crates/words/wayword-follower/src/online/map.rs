@@ -114,6 +114,7 @@ impl WalkerMap {
         let viewpoint = &mut self.building.viewpoints[self.here];
         viewpoint.room.clone_from(&sighting.room);
         viewpoint.is_known = true;
+        // Distances that were computed for the smaller map no longer hold.
         self.building.forget_nearness();
     }
 

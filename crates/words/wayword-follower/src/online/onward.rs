@@ -82,9 +82,12 @@ impl OnwardLearner {
     /// Begins with weights.
     #[must_use]
     pub fn new(plan: FitPlan, start: &OnwardWeights) -> Self {
-        let holds =
-            [hold_strengths(plan), hold_strengths(plan), vec![plan.hold; STEPS_LEFT_CLASSES + 2 * HOPS_AWAY_CLASSES]]
-                .concat();
+        let holds = [
+            hold_strengths(plan, tables::ALL),
+            hold_strengths(plan, tables::ALL),
+            vec![plan.hold; STEPS_LEFT_CLASSES + 2 * HOPS_AWAY_CLASSES],
+        ]
+        .concat();
         Self { descent: AdamDescent::new(plan, start.values(), holds) }
     }
 

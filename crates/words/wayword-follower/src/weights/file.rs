@@ -115,27 +115,38 @@ fn round_weight(weight: &f64) -> f64 {
     (weight * 1000.0).round() / 1000.0
 }
 
-/// The weights as lists, by the names of their tables.
-fn tables_from_weights(weights: &FeatureWeights) -> BTreeMap<String, Vec<f64>> {
+/// Weights of a set of tables, rounded, by the names of the tables.
+pub(crate) fn lists_by_table(tables: &[FeatureTable], weights: &[f64]) -> BTreeMap<String, Vec<f64>> {
     let rounded =
-        |table: &FeatureTable| weights.0[table.from..table.from + table.size].iter().map(round_weight).collect();
-    ALL.iter().map(|table| (table.name.to_owned(), rounded(table))).collect()
+        |table: &FeatureTable| weights[table.from..table.from + table.size].iter().map(round_weight).collect();
+    tables.iter().map(|table| (table.name.to_owned(), rounded(table))).collect()
 }
 
-/// The weights from lists by the names of their tables.
-fn weights_from_tables(tables: &BTreeMap<String, Vec<f64>>) -> Result<FeatureWeights, WeightsError> {
-    let mut weights = FeatureWeights::all_zero();
-    for table in ALL {
-        let found = tables.get(table.name).map_or(&[][..], Vec::as_slice);
+/// The weights of a set of tables, in the order of the features' numbers, from lists by the names of the tables.
+pub(crate) fn weights_by_table(
+    tables: &[FeatureTable],
+    lists: &BTreeMap<String, Vec<f64>>,
+) -> Result<Vec<f64>, WeightsError> {
+    let mut weights = Vec::new();
+    for table in tables {
+        let found = lists.get(table.name).map_or(&[][..], Vec::as_slice);
         if found.len() != table.size {
             return Err(WeightsError::Table { table: table.name, found: found.len(), needed: table.size });
         }
         if !found.iter().all(|weight| weight.is_finite()) {
             return Err(WeightsError::NotFinite(table.name));
         }
-        weights.0[table.from..table.from + table.size].copy_from_slice(found);
+        weights.extend_from_slice(found);
     }
     Ok(weights)
+}
+
+fn tables_from_weights(weights: &FeatureWeights) -> BTreeMap<String, Vec<f64>> {
+    lists_by_table(ALL, weights.values())
+}
+
+fn weights_from_tables(tables: &BTreeMap<String, Vec<f64>>) -> Result<FeatureWeights, WeightsError> {
+    Ok(FeatureWeights(weights_by_table(ALL, tables)?))
 }
 
 #[cfg(test)]

@@ -1,0 +1,157 @@
+//! `wayword align`: finds for each part of a text the frames of its path that it describes.
+
+use crate::{
+    check::path_texts::{FileText, PathTexts, read_path_texts},
+    error::{CommandError, Exit},
+    follow::{FollowedPath, KnownScenes},
+    interrupt,
+    output::CommandOutput,
+    pipeline::path_panoramas,
+    platforms::{self, RememberingPlatform},
+    settings::{AskedPlatform, AskedSettings},
+};
+use clap::Args;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::{fmt, path::PathBuf};
+use wayword_checks::Evidence;
+use wayword_core::Platform;
+use wayword_follower::alignment::WalkAlignment;
+
+/// `wayword align`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  wayword align R2R_val_seen.json --platform matterport --data DATA
+  wayword align runs/houses/instructions.jsonl --platform house --json
+
+A part is one or a few steps of the text, such as \"go past the sofa\". Its frames are those of the path in the file: the first is
+frame 1, and the next part begins where it ends. The confidence is the probability that it takes exactly these frames; it was
+fitted to people's texts on viewpoint graphs (docs/RESULTS.md).")]
+pub struct AlignArgs {
+    /// File of instructions: R2R, REVERIE, RxR or Wayword.
+    pub file: PathBuf,
+    /// The platform.
+    #[command(flatten)]
+    pub platform: AskedPlatform,
+}
+
+/// The result of `wayword align`, which `--json` prints.
+#[derive(Debug, Serialize)]
+pub struct AlignReport {
+    /// Texts with an alignment.
+    pub aligned: usize,
+    /// Every text, in the order of the file.
+    pub texts: Vec<AlignedText>,
+}
+
+/// A text with its parts.
+#[derive(Debug, Serialize)]
+pub struct AlignedText {
+    /// The id of its path.
+    pub path: String,
+    /// Its words.
+    pub text: String,
+    /// Its parts in order; none if it could not be aligned.
+    pub parts: Vec<TextPartFrames>,
+    /// Why it could not be aligned.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unaligned: Option<&'static str>,
+}
+
+/// A part of a text, with the frames that it describes.
+#[derive(Debug, Serialize)]
+pub struct TextPartFrames {
+    /// Its byte range in the text.
+    pub span: [usize; 2],
+    /// The frames where it begins and ends, the first frame of the path being 1.
+    pub frames: [usize; 2],
+    /// The probability of exactly these frames, from 0 to 1.
+    pub confidence: f64,
+}
+
+/// Runs `wayword align`, and prints the parts.
+///
+/// # Errors
+/// When the file or the platform's data cannot be read, or a path does not fit the data.
+pub fn run_align(args: &AlignArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
+    let report = align_file(args, output)?;
+    output.print_result(&report, AlignReportText(&report));
+    Ok(Exit::Done)
+}
+
+/// Aligns every text of a file with its path.
+///
+/// # Errors
+/// As [`run_align`].
+pub fn align_file(args: &AlignArgs, output: &CommandOutput) -> Result<AlignReport, CommandError> {
+    let settings = AskedSettings::from(args.platform.clone()).resolve()?;
+    let platform = platforms::open_platform(&settings)?;
+    let walks = read_path_texts(&args.file, platform.as_ref())?;
+    let scenes = KnownScenes::new();
+    let bar = output.progress_bar(walks.len(), "paths");
+    let align = |walk: &PathTexts| {
+        interrupt::check_interrupt()?;
+        let texts = align_walk(walk, platform.as_ref(), &scenes)?;
+        bar.inc(1);
+        Ok(texts)
+    };
+    let aligned = walks.par_iter().map(align).collect::<Result<Vec<_>, CommandError>>()?;
+    bar.finish_and_clear();
+    let mut texts: Vec<(usize, AlignedText)> = aligned.into_iter().flatten().collect();
+    texts.sort_by_key(|(at, _)| *at);
+    let texts: Vec<AlignedText> = texts.into_iter().map(|(_, text)| text).collect();
+    Ok(AlignReport { aligned: texts.iter().filter(|text| text.unaligned.is_none()).count(), texts })
+}
+
+/// Aligns the texts of one path, each with its place in the file.
+fn align_walk(
+    walk: &PathTexts,
+    platform: &dyn Platform,
+    scenes: &KnownScenes,
+) -> Result<Vec<(usize, AlignedText)>, CommandError> {
+    let views = path_panoramas(&RememberingPlatform::new(platform), &walk.path)?;
+    let evidence = Evidence::from_labels(&walk.path, &views).unwrap_or_else(|| Evidence::for_path_alone(&walk.path));
+    let scene = scenes.get_or_survey(platform, &walk.path.scene)?;
+    let followed = FollowedPath::new(Some(&scene), &walk.path, &evidence);
+    let align = |text: &FileText| {
+        let aligned = followed.as_ref().map_err(|why| *why);
+        let aligned = aligned.and_then(|followed| followed.align_text(&text.words, text.tag.as_deref()));
+        (text.at, AlignedText::new(text, aligned))
+    };
+    Ok(walk.texts.iter().map(align).collect())
+}
+
+impl AlignedText {
+    fn new(text: &FileText, aligned: Result<WalkAlignment, &'static str>) -> Self {
+        let (parts, unaligned) = match aligned {
+            Ok(alignment) => (alignment.parts, None),
+            Err(why) => (Vec::new(), Some(why)),
+        };
+        let parts = parts.into_iter().map(|part| TextPartFrames {
+            span: part.span,
+            frames: part.stretch.map(|place| place + 1),
+            confidence: part.confidence,
+        });
+        Self { path: text.path.clone(), text: text.words.clone(), parts: parts.collect(), unaligned }
+    }
+}
+
+/// The report for a terminal: each text with a line for each part.
+struct AlignReportText<'a>(&'a AlignReport);
+
+impl fmt::Display for AlignReportText<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for text in &self.0.texts {
+            writeln!(out, "{}", text.path)?;
+            if let Some(why) = text.unaligned {
+                writeln!(out, "  not aligned: {why}: {:?}", text.text)?;
+            }
+            for TextPartFrames { span: [from, to], frames: [first, last], confidence } in &text.parts {
+                let words = text.text.get(*from..*to).unwrap_or_default();
+                writeln!(out, "  frames {first:>2} to {last:>2} ({:>3.0} %)  {words}", 100.0 * confidence)?;
+            }
+        }
+        write!(out, "{} of {} texts aligned", self.0.aligned, self.0.texts.len())
+    }
+}
