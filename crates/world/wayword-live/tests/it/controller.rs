@@ -85,7 +85,7 @@ fn a_lost_build_is_replaced_by_the_next() {
 
 #[test]
 fn communicate_times_out_on_a_silent_build() {
-    let options = ControllerOptions { step_timeout: Duration::from_millis(300), ..options() };
+    let options = ControllerOptions { step_timeout: Duration::from_secs(2), ..options() };
     let mut controller = TdwController::bind(options).unwrap();
     let _build = TdwStandIn::start(controller.address(), StandInOptions { hangs_after: Some(1), ..canned() });
     controller.connect().unwrap();
