@@ -54,6 +54,20 @@ def test_pandas_and_datasets_have_a_row_for_each_text(houses):
     assert len(dataset) == 4 and dataset[0]["text"] == houses[0].text and len(dataset[0]["positions"][0]) == 3
 
 
+def test_the_parts_of_each_text_cover_its_path(houses):
+    aligned = wayword.align(houses)
+    assert [text.text for text in aligned] == [one.text for one in houses.instructions]
+    ways = [(text, one) for text, one in zip(aligned, houses.instructions, strict=True) if text.parts]
+    assert ways, "no text was aligned"
+    for text, one in ways:
+        frames = [part.frames for part in text.parts]
+        assert frames[0][0] == 1 and frames[-1][1] == len(one.path.frames)
+        assert all(before[1] == after[0] for before, after in zip(frames, frames[1:], strict=False))
+        assert all(0 < part.confidence <= 1 + 1e-9 for part in text.parts)
+        first = text.parts[0].span
+        assert text.text.encode()[first[0] : first[1]].decode().strip()
+
+
 def test_a_missing_package_is_named_with_the_way_to_get_it(houses, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "pandas", None)
     with pytest.raises(errors.MissingExtraError, match=r"pip install 'wayword\[pandas\]'"):

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from . import errors as errors
     from ._call import command as command
     from ._wayword import __version__ as __version__
+    from .aligning import AlignedText as AlignedText
+    from .aligning import align as align
     from .checking import Checks as Checks
     from .checking import check as check
     from .checking import similarity as similarity
@@ -42,6 +44,7 @@ if TYPE_CHECKING:
 
 # Loaded when first used: a world that runs as a child needs neither NumPy nor the extension module.
 _WHERE = {
+    "AlignedText": "aligning",
     "Checks": "checking",
     "Evaluation": "scoring",
     "Evaluator": "scoring",
@@ -51,6 +54,7 @@ _WHERE = {
     "Run": "run",
     "WaywordError": "errors",
     "__version__": "_wayword",
+    "align": "aligning",
     "cards": "notebook",
     "check": "checking",
     "command": "_call",
@@ -63,6 +67,7 @@ _WHERE = {
 }
 
 __all__ = [
+    "AlignedText",
     "Checks",
     "Evaluation",
     "Evaluator",
@@ -72,6 +77,7 @@ __all__ = [
     "Run",
     "WaywordError",
     "__version__",
+    "align",
     "cards",
     "check",
     "command",

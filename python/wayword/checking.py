@@ -78,7 +78,7 @@ def check(
         elif data is None and at is None and island is None and connectivity is None:
             data, at, island, connectivity = (own.get(key) for key in ("data", "at", "island", "connectivity"))
     with contextlib.ExitStack() as stack:
-        file = stack.enter_context(_as_file(texts))
+        file = stack.enter_context(as_file(texts))
         where: Mapping[str, Any] = {"run": run}
         if run is None:
             where = stack.enter_context(opened(platform, data, at, island, connectivity, is_kept=True))
@@ -126,14 +126,14 @@ def similarity(
     Returns:
         The figures, as `wayword similarity --json` prints them.
     """
-    with _as_file(a, style) as left, _as_file(b, style) as right:
+    with as_file(a, style) as left, as_file(b, style) as right:
         given = flags(by=by, encoder=encoder, metrics=metrics, **settings)
         result: Mapping[str, Any] = command("similarity", left, right, *given, progress=progress)
     return result
 
 
 @contextlib.contextmanager
-def _as_file(texts: Texts, style: str | None = None) -> Iterator[str]:
+def as_file(texts: Texts, style: str | None = None) -> Iterator[str]:
     """The file of texts. Items are written to one for as long as the context lasts."""
     mark = f"#{style}" if style else ""
     if isinstance(texts, Run):
