@@ -6,6 +6,7 @@ use std::{
 };
 use wayword_core::{FailureKind, ModelError, PlatformError, platform::is_lost_disk};
 use wayword_formats::FormatError;
+#[cfg(feature = "experiments")]
 use wayword_navigation::WalkError;
 use wayword_queue::QueueError;
 use wayword_synthesis::{observe::ObserveError, prompts::PromptError, style::StyleError};
@@ -82,6 +83,7 @@ pub enum CommandError {
     #[error(transparent)]
     Local(#[from] wayword_local::LocalError),
     /// An agent could not walk.
+    #[cfg(feature = "experiments")]
     #[error(transparent)]
     Walk(#[from] WalkError),
     /// A path could not be observed.
@@ -156,27 +158,25 @@ impl CommandError {
 
     /// How the failure of one item is handled; `None` if the error concerns the whole run.
     pub fn item_failure(&self) -> Option<FailureKind> {
+        if let Some(error) = self.model_error() {
+            return (!error.ends_run()).then(|| error.failure_kind());
+        }
+        if let Some(error) = self.platform_error() {
+            return Some(error.failure_kind());
+        }
         match self {
-            Self::Model(error) | Self::Observe(ObserveError::Model(error)) | Self::Walk(WalkError::Model(error)) => {
-                (!error.ends_run()).then(|| error.failure_kind())
-            }
-            Self::Platform(error)
-            | Self::Observe(ObserveError::Platform(error))
-            | Self::Walk(WalkError::Platform(error)) => Some(error.failure_kind()),
-            Self::Walk(_) | Self::Format(_) | Self::Style(_) | Self::Prompt(_) | Self::Usage { .. } => {
-                Some(FailureKind::Broken)
-            }
+            #[cfg(feature = "experiments")]
+            Self::Walk(_) => Some(FailureKind::Broken),
+            Self::Format(_) | Self::Style(_) | Self::Prompt(_) | Self::Usage { .. } => Some(FailureKind::Broken),
             _ => None,
         }
     }
 
     /// Which part failed an item, as one word of a fixed list: `model`, `platform` or `other`.
     pub(crate) fn failed_part(&self) -> &'static str {
-        match self {
-            Self::Model(_) | Self::Observe(ObserveError::Model(_)) | Self::Walk(WalkError::Model(_)) => "model",
-            Self::Platform(_) | Self::Observe(ObserveError::Platform(_)) | Self::Walk(WalkError::Platform(_)) => {
-                "platform"
-            }
+        match (self.model_error(), self.platform_error()) {
+            (Some(_), _) => "model",
+            (_, Some(_)) => "platform",
             _ => "other",
         }
     }
@@ -206,11 +206,21 @@ impl CommandError {
     }
 
     /// The error of a model, if it is one.
-    fn model_error(&self) -> Option<&ModelError> {
+    pub(crate) fn model_error(&self) -> Option<&ModelError> {
         match self {
-            Self::Model(error) | Self::Observe(ObserveError::Model(error)) | Self::Walk(WalkError::Model(error)) => {
-                Some(error)
-            }
+            Self::Model(error) | Self::Observe(ObserveError::Model(error)) => Some(error),
+            #[cfg(feature = "experiments")]
+            Self::Walk(WalkError::Model(error)) => Some(error),
+            _ => None,
+        }
+    }
+
+    /// The error of a platform, if it is one.
+    pub(crate) fn platform_error(&self) -> Option<&PlatformError> {
+        match self {
+            Self::Platform(error) | Self::Observe(ObserveError::Platform(error)) => Some(error),
+            #[cfg(feature = "experiments")]
+            Self::Walk(WalkError::Platform(error)) => Some(error),
             _ => None,
         }
     }

@@ -81,8 +81,6 @@ fn error_file(error: &CommandError) -> Option<&Path> {
 
 /// The kind of an error, as [`ErrorParts::kind`] lists them.
 fn error_kind(error: &CommandError) -> &'static str {
-    use wayword_navigation::WalkError;
-    use wayword_synthesis::observe::ObserveError;
     match error.exit_code() {
         Exit::Lost => return "lost",
         Exit::Stopped => return "stopped",
@@ -91,28 +89,25 @@ fn error_kind(error: &CommandError) -> &'static str {
         Exit::Done | Exit::BadInput | Exit::WithLoss => {}
     }
     match error {
-        CommandError::Platform(_)
-        | CommandError::Observe(ObserveError::Platform(_))
-        | CommandError::Walk(WalkError::Platform(_)) => "platform",
+        error if error.platform_error().is_some() => "platform",
+        error if error.model_error().is_some() => "model",
         CommandError::Format(FormatError::Io { .. }) => "file",
         CommandError::Format(_) => "format",
         CommandError::Style(_) | CommandError::Prompt(_) => "style",
-        CommandError::Model(_)
-        | CommandError::Observe(ObserveError::Model(_))
-        | CommandError::Walk(WalkError::Model(_))
-        | CommandError::Service(_) => "model",
+        CommandError::Model(_) | CommandError::Observe(_) | CommandError::Service(_) => "model",
         #[cfg(feature = "local")]
         CommandError::Local(_) => "model",
         CommandError::Ledger(_) => "ledger",
         #[cfg(feature = "queue")]
         CommandError::Database(_) => "ledger",
         CommandError::Queue(_) => "file",
+        #[cfg(feature = "experiments")]
         CommandError::Walk(_) => "walk",
         #[cfg(feature = "study")]
         CommandError::Study(_) => "study",
         CommandError::House(_) | CommandError::Io { .. } => "file",
         CommandError::Usage { .. } | CommandError::Launch(_) => "input",
-        CommandError::ChangedScene { .. } => "platform",
+        CommandError::Platform(_) | CommandError::ChangedScene { .. } => "platform",
         // The exit codes above have handled these.
         CommandError::Interrupted | CommandError::Busy(_) | CommandError::BusyElsewhere { .. } => "input",
     }

@@ -5,6 +5,7 @@ use std::{
     fs,
     path::{Path, PathBuf},
 };
+#[cfg(feature = "experiments")]
 use wayword_experiments::compare;
 use wayword_report::pages;
 use wayword_run::{
@@ -35,6 +36,7 @@ pub struct ReportArgs {
 /// Items of a run that are shown, unless `--items` gives another number.
 const MAX_REPORT_ITEMS: usize = 1000;
 /// Walks of a comparison that are shown, unless `--items` gives another number.
+#[cfg(feature = "experiments")]
 const MAX_REPORT_WALKS: usize = 100;
 /// Most runs below a folder that an error names.
 const MAX_NAMED_ITEMS: usize = 3;
@@ -43,6 +45,7 @@ const MAX_NAMED_ITEMS: usize = 3;
 pub(crate) fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     expect_run(&args.run)?;
     let out = args.out.clone().unwrap_or_else(|| args.run.join(file::REPORT));
+    #[cfg(feature = "experiments")]
     if compare::is_comparison(&args.run) {
         let written = compare::write_page_from_folder(&args.run, &out, args.items.unwrap_or(MAX_REPORT_WALKS))?;
         output.print_result(&written, &written);

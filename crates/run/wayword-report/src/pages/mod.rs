@@ -4,6 +4,7 @@
 //! Everything from files or models is untrusted: the templates escape it, and the pages' content security policy
 //! forbids scripts and remote addresses.
 
+#[cfg(feature = "experiments")]
 pub mod comparison;
 pub(crate) mod data_uri;
 pub mod doubts;
@@ -17,8 +18,10 @@ mod page;
 pub(crate) mod palette;
 mod pictures;
 mod records;
+#[cfg(feature = "experiments")]
 pub mod replay;
 mod report_files;
+#[cfg(feature = "experiments")]
 pub mod robustness;
 mod rows;
 pub(crate) mod sheet;

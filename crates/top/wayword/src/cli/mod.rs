@@ -5,6 +5,9 @@ use crate::{
     ledger::args::LedgerArgs, models_args::ModelsArgs, report_command::ReportArgs, runs::args::RunsArgs,
 };
 use clap::{Parser, Subcommand};
+#[cfg(not(feature = "experiments"))]
+use std::ffi::OsString;
+#[cfg(feature = "experiments")]
 use wayword_experiments::{
     compare::args::CompareArgs, evaluate::args::EvaluateArgs, perceive::args::PerceiveArgs,
     robustness::args::RobustnessArgs, similarity::args::SimilarityArgs, study_args::StudyArgs,
@@ -71,17 +74,35 @@ pub enum WaywordCommand {
     Export(Box<ExportArgs>),
     /// Write a run as HTML pages: map, frames, dialogue, captions, instructions and checks.
     Report(ReportArgs),
+    /// Compare, evaluate and the other experiments, which this build lacks.
+    #[cfg(not(feature = "experiments"))]
+    #[command(
+        name = "compare",
+        visible_aliases = ["evaluate", "perceive", "robustness", "similarity", "study"],
+        disable_help_flag = true
+    )]
+    Experiment {
+        /// Everything after the name of the command.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+        rest: Vec<OsString>,
+    },
     /// Measure captions against the labels of their views: objects named rightly, hallucinated objects, calls.
+    #[cfg(feature = "experiments")]
     Perceive(Box<PerceiveArgs>),
     /// Measure how similar two sets of instructions are, compared with two people and with random pairs.
+    #[cfg(feature = "experiments")]
     Similarity(SimilarityArgs),
     /// Let agents follow several sets of instructions, and compare how often each set leads them to the goal.
+    #[cfg(feature = "experiments")]
     Compare(Box<CompareArgs>),
     /// Score anyone's trajectories as the evaluators of R2R and REVERIE do, with confidence intervals.
+    #[cfg(feature = "experiments")]
     Evaluate(EvaluateArgs),
     /// Write a run's texts again in changed worlds, and say how much of them changes.
+    #[cfg(feature = "experiments")]
     Robustness(Box<RobustnessArgs>),
     /// Let people walk by texts, rate them or choose between them, on a site of your own.
+    #[cfg(feature = "experiments")]
     Study(StudyArgs),
     /// Check keys, servers, models and data, and say how to fix what is wrong.
     Doctor(Box<DoctorArgs>),
@@ -111,6 +132,7 @@ mod tests {
     use super::*;
     use clap::Args;
     use std::collections::BTreeSet;
+    #[cfg(feature = "experiments")]
     use wayword_experiments::study_args::StudyCommand;
     use wayword_run::settings::AskedSettings;
 
@@ -138,6 +160,7 @@ mod tests {
         assert!(flags.len() > 40, "{flags:?}");
     }
 
+    #[cfg(feature = "experiments")]
     #[test]
     fn a_participant_whose_id_begins_with_a_hyphen_can_be_forgotten() {
         let typed = ["wayword", "study", "forget", "study", "--participant", "-HuqVrYIytaJwRfGxaH5Pw", "--dry-run"];

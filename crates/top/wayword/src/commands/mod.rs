@@ -7,6 +7,7 @@ use crate::{
 };
 #[cfg(feature = "study")]
 use wayword_experiments::study;
+#[cfg(feature = "experiments")]
 use wayword_experiments::{compare, evaluate, perceive, robustness, similarity};
 use wayword_report::{export, view};
 use wayword_run::{
@@ -29,14 +30,23 @@ pub fn run_command(command: WaywordCommand, output: &CommandOutput) -> Result<Ex
         WaywordCommand::Calibrate(args) => calibrate::run_calibrate(&args, output),
         WaywordCommand::Export(args) => export::run_export(&args, output),
         WaywordCommand::Report(args) => report_command::run_report(&args, output),
+        #[cfg(feature = "experiments")]
         WaywordCommand::Compare(args) => compare::run_comparison(&args, output),
+        #[cfg(feature = "experiments")]
         WaywordCommand::Evaluate(args) => evaluate::run_evaluate(&args, output),
+        #[cfg(feature = "experiments")]
         WaywordCommand::Perceive(args) => perceive::run_perceive(&args, output),
+        #[cfg(feature = "experiments")]
         WaywordCommand::Robustness(args) => robustness::run_robustness(&args, output),
+        #[cfg(feature = "experiments")]
         WaywordCommand::Similarity(args) => similarity::run_similarity(&args, output),
         #[cfg(feature = "study")]
         WaywordCommand::Study(args) => study::run_study(&args, output),
-        #[cfg(not(feature = "study"))]
+        #[cfg(not(feature = "experiments"))]
+        WaywordCommand::Experiment { .. } => Err(CommandError::not_built(
+            "this build has no experiments: compare, evaluate, perceive, robustness, similarity, study",
+        )),
+        #[cfg(all(feature = "experiments", not(feature = "study")))]
         WaywordCommand::Study(_) => {
             Err(CommandError::not_built("there are no studies: this build has no site for them"))
         }
