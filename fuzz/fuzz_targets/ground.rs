@@ -6,10 +6,10 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use wayword_core::rng;
+use wayword_core::seeded_rng;
 use wayword_fuzz::{Bound, begin, seeds};
 use wayword_habitat::{
-    Ground, NavMesh,
+    NavMesh, NavMeshGround,
     ground::{stops_along, viewpoint_graph},
 };
 
@@ -18,8 +18,8 @@ const BOUND: Bound = Bound { flat: 96 << 20, per_byte: 4096 };
 fuzz_target!(init: begin("ground", &seeds::navmesh::all()), |data: &[u8]| {
     BOUND.hold(data, || {
         let Ok(mesh) = NavMesh::from_bytes(data) else { return };
-        let ground = Ground::new(&mesh);
-        let mut rng = rng(1, &["fuzz"]);
+        let ground = NavMeshGround::new(&mesh);
+        let mut rng = seeded_rng(1, &["fuzz"]);
         for island in 0..2 {
             let places = [ground.random_place(island, &mut rng), ground.random_place(island, &mut rng)];
             if let [Some(from), Some(to)] = places

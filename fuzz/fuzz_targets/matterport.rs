@@ -7,9 +7,9 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use wayword_core::{Gaze, Heading, Platform};
+use wayword_core::{Heading, Platform, ViewGaze};
 use wayword_fuzz::{Bound, begin, scratch, seeds::words};
-use wayword_platforms::Matterport;
+use wayword_platforms::MatterportPlatform;
 use wayword_world::labels_around;
 
 const BOUND: Bound = Bound { flat: 300 << 20, per_byte: 1024 };
@@ -33,13 +33,13 @@ fuzz_target!(init: begin("matterport", &words::building()), |data: &[u8]| {
         }
     }
     BOUND.hold(data, || {
-        let Ok(platform) = Matterport::open(folder.path()) else { return };
-        let Some(scene) = platform.scenes().ok().and_then(|scenes| scenes.into_iter().next()) else { return };
-        let Ok(graph) = platform.graph(&scene) else { return };
+        let Ok(platform) = MatterportPlatform::open(folder.path()) else { return };
+        let Some(scene) = platform.list_scenes().ok().and_then(|scenes| scenes.into_iter().next()) else { return };
+        let Ok(graph) = platform.graph_for_scene(&scene) else { return };
         let Some(first) = graph.viewpoints().next() else { return };
-        let frames = graph.walk(std::slice::from_ref(first), None).expect("a viewpoint of the graph");
+        let frames = graph.path_frames(std::slice::from_ref(first), None).expect("a viewpoint of the graph");
         let _ = labels_around(&platform, &scene, &frames[0]);
-        let _ = platform.look(&scene, &frames[0], Gaze::quarter(Heading::NORTH));
+        let _ = platform.look_from(&scene, &frames[0], ViewGaze::quarter_view(Heading::NORTH));
         for object in ["5", "6"].map(|name| wayword_core::ObjectId::new(name).expect("a name")) {
             let _ = platform.catalogue().visible_from(&scene, &object);
         }

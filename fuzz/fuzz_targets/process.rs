@@ -8,7 +8,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use std::{sync::Arc, time::Duration};
-use wayword_core::{DVec3, Frame, Gaze, Heading, ObjectId, PathRequest, Platform, Pose, SceneId};
+use wayword_core::{DVec3, Frame, Heading, ObjectId, PathRequest, Platform, Pose, SceneId, ViewGaze};
 use wayword_fuzz::{Bound, begin, scratch, seeds::words};
 use wayword_platforms::{ProcessPlatform, process::ProcessOptions};
 
@@ -33,13 +33,13 @@ fuzz_target!(init: begin("process", &seeds()), |data: &[u8]| {
     };
     BOUND.hold(data, || {
         let Ok(platform) = ProcessPlatform::start(options, Arc::new(|_: &str| ())) else { return };
-        let _ = platform.scenes();
+        let _ = platform.list_scenes();
         let scene = SceneId::new("s").expect("a name");
-        let _ = platform.graph(&scene);
-        let pose = Pose::level(DVec3::new(0.0, 0.0, 1.5), Heading::NORTH);
+        let _ = platform.graph_for_scene(&scene);
+        let pose = Pose::looking_level(DVec3::new(0.0, 0.0, 1.5), Heading::NORTH);
         let frame = Frame { pose, viewpoint: None, level: None };
-        let _ = platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH));
-        let _ = platform.look_without_picture(&scene, &frame, Gaze::quarter(Heading::NORTH));
+        let _ = platform.look_from(&scene, &frame, ViewGaze::quarter_view(Heading::NORTH));
+        let _ = platform.look_without_picture(&scene, &frame, ViewGaze::quarter_view(Heading::NORTH));
         let _ = platform.sample_path(&scene, &PathRequest { hops: 1..=4, length_m: 0.5..=9.0 }, 3);
         let object = ObjectId::new("7").expect("a name");
         let _ = platform.catalogue().object_name(&scene, &frame, &object);

@@ -6,7 +6,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use wayword_fuzz::{Bound, begin, tape};
-use wayword_live::tdw::{Output, depth_m};
+use wayword_live::tdw::{BuildOutput, depth_m};
 
 const BOUND: Bound = Bound { flat: 16 << 10, per_byte: 128 };
 
@@ -17,7 +17,7 @@ fn seeds() -> Vec<Vec<u8>> {
 
 fuzz_target!(init: begin("tdw_output", &seeds()), |data: &[u8]| {
     BOUND.hold(data, || {
-        if let Ok(Output::Images(images)) = Output::read(data) {
+        if let Ok(BuildOutput::Images(images)) = BuildOutput::read(data) {
             for pass in &images.passes {
                 let _ = depth_m(pass.bytes, images.width, images.height);
             }

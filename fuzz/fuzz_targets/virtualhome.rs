@@ -7,10 +7,10 @@
 
 use libfuzzer_sys::fuzz_target;
 use std::{sync::OnceLock, time::Duration};
-use wayword_core::{Gaze, Heading, PathRequest, Platform, SceneId};
+use wayword_core::{Heading, PathRequest, Platform, SceneId, ViewGaze};
 use wayword_fuzz::{Bound, begin, seeds, virtualhome};
 use wayword_live::{
-    Pictures,
+    LivePictureOptions,
     virtualhome::{VirtualHomeOptions, VirtualHomePlatform},
 };
 
@@ -23,14 +23,14 @@ fuzz_target!(init: begin("virtualhome", &[seeds::words::HOME.into()]), |data: &[
     let url = URL.get_or_init(virtualhome::start).clone();
     virtualhome::set_graph(text.to_owned());
     BOUND.hold(data, || {
-        let pictures = Pictures { width_px: 16, height_px: 12, ..Pictures::default() };
+        let pictures = LivePictureOptions { width_px: 16, height_px: 12, ..LivePictureOptions::default() };
         let options = VirtualHomeOptions { url, timeout: Duration::from_secs(60), pictures };
         let platform = VirtualHomePlatform::new(options);
         let home = SceneId::new("home_0").expect("a name");
-        let Ok(graph) = platform.graph(&home) else { return };
+        let Ok(graph) = platform.graph_for_scene(&home) else { return };
         let Some(first) = graph.viewpoints().next() else { return };
-        let frames = graph.walk(std::slice::from_ref(first), None).expect("a viewpoint of the graph");
-        let _ = platform.look(&home, &frames[0], Gaze::quarter(Heading::NORTH));
+        let frames = graph.path_frames(std::slice::from_ref(first), None).expect("a viewpoint of the graph");
+        let _ = platform.look_from(&home, &frames[0], ViewGaze::quarter_view(Heading::NORTH));
         let _ = platform.sample_path(&home, &PathRequest { hops: 0..=9, length_m: 0.5..=4.0 }, 3);
     });
 });

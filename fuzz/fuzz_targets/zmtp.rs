@@ -12,7 +12,7 @@ use std::{
     time::Duration,
 };
 use wayword_fuzz::{Bound, begin, tape};
-use wayword_live::tdw::{Command, Controller, ControllerOptions, Frequency};
+use wayword_live::tdw::{BuildCommand, ControllerOptions, SendFrequency, TdwController};
 
 const BOUND: Bound = Bound { flat: 4 << 20, per_byte: 64 };
 
@@ -44,14 +44,15 @@ fuzz_target!(init: begin("zmtp", &seeds()), |data: &[u8]| {
         step_timeout: patience,
     };
     BOUND.hold(data, || {
-        let mut controller = Controller::bind(options).expect("a port");
+        let mut controller = TdwController::bind(options).expect("a port");
         // A correct build connects after the fuzzed peer, so that the controller does not wait until its time is up.
         let good = GOOD.get().map_or(&[][..], Vec::as_slice);
         let _speakers = [data, good].map(|bytes| speaker(controller.address(), bytes));
         if controller.connect().is_ok()
-            && let Ok(answer) = controller.communicate(&[Command::SendSceneRegions { frequency: Frequency::Once }])
+            && let Ok(answer) =
+                controller.communicate(&[BuildCommand::SendSceneRegions { frequency: SendFrequency::Once }])
         {
-            answer.outputs().for_each(drop);
+            answer.read_outputs().for_each(drop);
         }
     });
 });

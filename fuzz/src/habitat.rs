@@ -2,18 +2,18 @@
 
 use crate::scratch;
 use std::path::Path;
-use wayword_core::{Frame, Gaze, Heading, Platform, PlatformError, View};
+use wayword_core::{Frame, Heading, Platform, PlatformError, View, ViewGaze};
 use wayword_habitat::{
     HabitatOptions, HabitatPlatform,
-    scene::{Model, Stage},
+    scene::{HabitatStage, SceneModel},
 };
-use wayword_render::{Camera, Scene, render};
+use wayword_render::{PinholeCamera, RenderScene, render_scene};
 
 /// Reads a scene's file and draws it, small.
 pub fn draw(file: &Path) -> Option<()> {
-    let model = Model::of(&Stage::of(file).ok()?).ok()?;
-    let scene = Scene::new(model.meshes, model.materials, model.textures).ok()?;
-    let camera = Camera {
+    let model = SceneModel::from_stage(&HabitatStage::from_file(file).ok()?).ok()?;
+    let scene = RenderScene::new(model.meshes, model.materials, model.textures).ok()?;
+    let camera = PinholeCamera {
         position: wayword_core::DVec3::new(0.0, -2.0, 1.0),
         heading_rad: 0.0,
         elevation_rad: 0.0,
@@ -21,7 +21,7 @@ pub fn draw(file: &Path) -> Option<()> {
         width: 16,
         height: 12,
     };
-    render(&scene, &camera).ok().map(drop)
+    render_scene(&scene, &camera).ok().map(drop)
 }
 
 /// Draws a scene with these bytes as its only picture.
@@ -35,10 +35,10 @@ pub fn draw_picture(bytes: &[u8]) -> Option<()> {
 pub fn visit(folder: &Path) -> Result<View, PlatformError> {
     let options = HabitatOptions { width_px: 16, height_px: 12, ..HabitatOptions::default() };
     let platform = HabitatPlatform::open(folder, options, std::sync::Arc::new(|_: &str| {}))?;
-    let scene = platform.scenes()?.remove(0);
-    let graph = platform.graph(&scene)?;
+    let scene = platform.list_scenes()?.remove(0);
+    let graph = platform.graph_for_scene(&scene)?;
     let first = graph.viewpoints().next().cloned();
-    let frames: Vec<Frame> = graph.walk(first.as_slice(), None).unwrap_or_default();
+    let frames: Vec<Frame> = graph.path_frames(first.as_slice(), None).unwrap_or_default();
     let frame = frames.into_iter().next().ok_or(PlatformError::NotAViewpoint { scene: scene.clone() })?;
-    platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH))
+    platform.look_from(&scene, &frame, ViewGaze::quarter_view(Heading::NORTH))
 }

@@ -7,8 +7,8 @@ use std::{
     time::Duration,
 };
 use wayword_live::tdw::{
-    Command, Controller, ControllerOptions, Frequency, Vector3,
-    stand_in::{StandIn, StandInOptions},
+    BuildCommand, ControllerOptions, SendFrequency, TdwController, TdwVector3,
+    stand_in::{StandInOptions, TdwStandIn},
 };
 
 /// Everything that the stand-in of a version sends for one list of commands, including its greeting.
@@ -18,7 +18,7 @@ pub fn record(version: &'static str) -> Vec<u8> {
         connect_timeout: Duration::from_secs(60),
         step_timeout: Duration::from_secs(60),
     };
-    let mut controller = Controller::bind(options).expect("a port");
+    let mut controller = TdwController::bind(options).expect("a port");
     let target = controller.address();
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let between = listener.local_addr().expect("its address");
@@ -31,7 +31,7 @@ pub fn record(version: &'static str) -> Vec<u8> {
         drop(back.join());
         tape
     });
-    let build = StandIn::start(between, StandInOptions { version, ..StandInOptions::default() });
+    let build = TdwStandIn::start(between, StandInOptions { version, ..StandInOptions::default() });
     controller.connect().expect("the stand-in greets");
     controller.communicate(&commands()).expect("the stand-in answers");
     controller.terminate().expect("the stand-in ends");
@@ -53,25 +53,25 @@ fn copy(mut from: TcpStream, mut to: TcpStream) -> Vec<u8> {
     tape
 }
 
-fn commands() -> Vec<Command> {
-    let (id, frequency) = (String::from("a"), Frequency::Once);
-    let place = |x, z| Vector3 { x, y: 0.0, z };
+fn commands() -> Vec<BuildCommand> {
+    let (id, frequency) = (String::from("a"), SendFrequency::Once);
+    let place = |x, z| TdwVector3 { x, y: 0.0, z };
     vec![
-        Command::CreateAvatar { kind: "A_Img_Caps_Kinematic", id: id.clone() },
-        Command::SetScreenSize { width: 8, height: 6 },
-        Command::SetPassMasks { pass_masks: vec!["_img", "_id", "_depth"], avatar_id: id },
-        Command::SendImages { ids: Vec::new(), frequency },
-        Command::SendSegmentationColors { ids: Vec::new(), frequency },
-        Command::SendCategories { frequency },
-        Command::SendSceneRegions { frequency },
-        Command::SendBounds { ids: Vec::new(), frequency },
-        Command::SendTransforms { ids: Vec::new(), frequency },
-        Command::SendOccupancyMap { cell_size: 2.0, raycast_y: 2.5 },
-        Command::SendAvatars { ids: Vec::new(), frequency },
-        Command::SendCameraMatrices { ids: Vec::new(), frequency },
-        Command::SendImageSensors { ids: Vec::new(), frequency },
-        Command::SendIsOnNavMesh { position: place(2.0, 2.0), max_distance: 2.0, id: 3 },
-        Command::SendNavMeshPath { origin: place(1.0, 1.0), destination: place(3.0, 3.0), id: 4 },
+        BuildCommand::CreateAvatar { kind: "A_Img_Caps_Kinematic", id: id.clone() },
+        BuildCommand::SetScreenSize { width: 8, height: 6 },
+        BuildCommand::SetPassMasks { pass_masks: vec!["_img", "_id", "_depth"], avatar_id: id },
+        BuildCommand::SendImages { ids: Vec::new(), frequency },
+        BuildCommand::SendSegmentationColors { ids: Vec::new(), frequency },
+        BuildCommand::SendCategories { frequency },
+        BuildCommand::SendSceneRegions { frequency },
+        BuildCommand::SendBounds { ids: Vec::new(), frequency },
+        BuildCommand::SendTransforms { ids: Vec::new(), frequency },
+        BuildCommand::SendOccupancyMap { cell_size: 2.0, raycast_y: 2.5 },
+        BuildCommand::SendAvatars { ids: Vec::new(), frequency },
+        BuildCommand::SendCameraMatrices { ids: Vec::new(), frequency },
+        BuildCommand::SendImageSensors { ids: Vec::new(), frequency },
+        BuildCommand::SendIsOnNavMesh { position: place(2.0, 2.0), max_distance: 2.0, id: 3 },
+        BuildCommand::SendNavMeshPath { origin: place(1.0, 1.0), destination: place(3.0, 3.0), id: 4 },
     ]
 }
 

@@ -1,6 +1,6 @@
 //! Small navmeshes.
 
-use wayword_habitat::{NavMeshSettings, bake::bake, scene::Model};
+use wayword_habitat::{NavMeshSettings, bake::bake_navmesh, scene::SceneModel};
 use wayword_render::Mesh;
 
 /// A floor of 4 x 3 m with a table in its middle, baked.
@@ -13,8 +13,8 @@ pub fn baked() -> Vec<u8> {
     };
     quad([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 3.0, 0.0], [0.0, 3.0, 0.0]]);
     quad([[1.5, 1.0, 0.8], [2.5, 1.0, 0.8], [2.5, 2.0, 0.8], [1.5, 2.0, 0.8]]);
-    let model = Model { meshes: vec![mesh], ..Model::default() };
-    bake(&model, &NavMeshSettings::default()).expect("a navmesh").to_bytes()
+    let model = SceneModel { meshes: vec![mesh], ..SceneModel::default() };
+    bake_navmesh(&model, &NavMeshSettings::default()).expect("a navmesh").to_bytes()
 }
 
 /// A square metre at a tile's place. Its four edges lead into the tiles around it, and detail raises its second half.

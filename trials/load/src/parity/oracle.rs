@@ -71,7 +71,7 @@ impl PytorchOracle {
     /// Opens a folder with PyTorch's numbers. Runs the script to make it if it doesn't exist.
     pub(super) fn open_or_make(kind: ParityDetector, folder: &Path, python: &Path) -> Result<Self, CommandError> {
         let (script, name) = kind.script_and_name();
-        let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/wayword-local/fixtures");
+        let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../crates/models/wayword-local/fixtures");
         let (script, cases_file) = (fixtures.join(script), folder.join("expected.json"));
         if !cases_file.is_file() {
             let mut command = Command::new(python);
