@@ -11,7 +11,7 @@ import numpy as np
 from . import errors
 from ._call import PathLike, opened
 from ._extras import extra
-from .checking import _as_file
+from .checking import as_file
 from .platform import Platform
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ class Evaluator:
     ) -> None:
         from . import _wayword
 
-        with _as_file(episodes) as file, opened(platform, data, at, island, connectivity) as where:
+        with as_file(episodes) as file, opened(platform, data, at, island, connectivity) as where:
             self._judge = _wayword.Judge(file, **where)
 
     def __len__(self) -> int:
