@@ -214,3 +214,6 @@ fn hops_class(hops: usize) -> usize {
 fn width_class(rad: f64) -> usize {
     limit_class(rad.abs().to_degrees(), &[15.0, 35.0, 60.0, 90.0])
 }
+
+#[cfg(test)]
+mod tests;

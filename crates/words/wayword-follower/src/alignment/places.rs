@@ -91,4 +91,17 @@ mod tests {
         let wider = zigzag.map(|[east, north]| [2.0 * east, north]);
         assert_eq!(all_places(&building_along(&wider)), [0, 2, 3, 5]);
     }
+
+    #[test]
+    fn a_frame_counts_from_the_limits_of_its_distance_on() {
+        let far = |next_m: f64| {
+            let north = [-1.1, 0.0, next_m, next_m + 0.1, next_m + 0.2, next_m + 0.3];
+            all_places(&building_along(&north.map(|north| [0.0, north])))
+        };
+        assert_eq!(far(2.2), [0, 1, 2, 5], "the middle of the second hop is 2.2 m away");
+        assert_eq!(far(2.1), [0, 2, 5]);
+        let turned = |first_m: f64| all_places(&building_along(&[[0.0, 0.0], [0.0, first_m], [0.4, first_m]]));
+        assert_eq!(turned(0.4), [0, 1, 2]);
+        assert_eq!(turned(0.39), [0, 2]);
+    }
 }

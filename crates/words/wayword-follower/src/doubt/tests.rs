@@ -418,3 +418,28 @@ fn doubts_from_ambiguity_mark_the_last_step_where_no_step_stops() {
     assert_eq!(doubts("Walk to the lamp.", None, Some("attic")), []);
     assert_eq!(doubts("Walk to the lamp.", Some(1), Some("attic")), []);
 }
+
+#[test]
+fn words_about_a_place_keep_their_range_beside_a_turn_and_only_wrong_ones_may_be_left_out() {
+    let building = KnownBuilding::from_survey(&surveyed());
+    let known = KnownWalk { building: &building, walk: &WALK, heading_rad: 0.0 };
+    let doubt = |words: &str, verdict| {
+        let from = TO_KITCHEN.find(words).unwrap();
+        let finding = CheckFinding {
+            check: CheckKind::Landmarks,
+            verdict,
+            reason: "r".into(),
+            span: Some([from, from + words.len()]),
+        };
+        let (bounds, guide) = (DoubtBounds::default(), Guide::read_text(TO_KITCHEN));
+        let doubts = find_doubts(TO_KITCHEN, &guide, known, FeatureWeights::fitted(), (&bounds, &[finding]));
+        let [from, to] = doubts[0].span;
+        (&TO_KITCHEN[from..to], doubts[0].alternatives.clone())
+    };
+    // The text has a turn too, but these words are not about it.
+    let (words, others) = doubt("Walk into the kitchen", Verdict::Fail);
+    assert_eq!((words, others.first()), ("Walk into the kitchen", Some(&alternative(None, None))));
+    let (words, others) = doubt("kitchen", Verdict::Unverified);
+    assert_eq!(words, "kitchen");
+    assert!(others.iter().all(|other| other.words.is_some()), "{others:?}");
+}

@@ -178,6 +178,32 @@ fn three_steps() -> Guide {
 }
 
 #[test]
+fn append_steps_moves_the_bytes_of_the_piece_alone() {
+    let mut guide = three_steps();
+    let mut piece = three_steps();
+    piece.steps[1].mentions.push(make_mention(StepRelation::Into, true, "outdoor area"));
+    guide.append_steps(piece, 40);
+    let spans: Vec<_> = guide.steps.iter().map(|told| told.step.span).collect();
+    assert_eq!(spans, [[0, 10], [12, 20], [22, 30], [40, 50], [52, 60], [62, 70]]);
+    let turn_spans: Vec<_> = guide.steps.iter().map(|told| told.step.turn_span).collect();
+    assert_eq!(turn_spans, [Some([2, 4]), None, None, Some([42, 44]), None, None]);
+    let named: Vec<_> = guide.steps.iter().flat_map(|told| &told.mentions).map(|mention| mention.span).collect();
+    assert_eq!(named, [Some([14, 16]), Some([54, 56]), None]);
+    assert!(!guide.names_room("kitchen"));
+    guide.append_steps(Guide::read_text("Walk into the kitchen."), 80);
+    assert!(guide.names_room("kitchen"));
+}
+
+#[test]
+fn as_way_takes_each_step_by_its_own_content() {
+    let goal = Guide::read_text("Go to the attic and dust the globe.");
+    let way = goal.clone().as_way();
+    assert!(goal.is_goal && !way.is_goal);
+    assert_eq!(way.len(), goal.len());
+    assert!(way.steps.iter().all(|told| told.kind == GuideStepKind::for_step(&told.step)));
+}
+
+#[test]
 fn has_step_without_needs_something_to_lose_and_a_step_that_stays() {
     let guide = three_steps();
     for (span, stands) in [

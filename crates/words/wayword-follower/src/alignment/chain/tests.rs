@@ -81,6 +81,7 @@ fn all_stretches_go_from_each_place_to_itself_and_each_later_one() {
     let mut indices: Vec<usize> = all_stretches(4).map(|stretch| stretch_index(4, stretch)).collect();
     indices.dedup();
     assert!(indices.len() == 10 && indices.iter().all(|index| *index < 16));
+    assert_eq!([[0, 2], [1, 1], [2, 3]].map(|stretch| stretch_index(4, stretch)), [2, 5, 11]);
 }
 
 #[test]
