@@ -191,7 +191,7 @@ impl Guide {
     }
 
     /// The same guide, read as a piece of a way even if the piece names only a place to go to.
-    pub(crate) fn as_way(mut self) -> Self {
+    pub(crate) fn into_way(mut self) -> Self {
         self.is_goal = false;
         self.steps.iter_mut().for_each(|step| step.kind = GuideStepKind::for_step(&step.step));
         self

@@ -132,7 +132,7 @@ impl PartedText {
         let mut parts = Vec::new();
         for [from, to] in spans.iter().copied() {
             let words = text.get(from..to).unwrap_or_default();
-            let part = Guide::from_reading(words, &read_instruction(words, &BTreeSet::new())).as_way();
+            let part = Guide::from_reading(words, &read_instruction(words, &BTreeSet::new())).into_way();
             let first = guide.len();
             guide.append_steps(part, from);
             let steps = first..guide.len();

@@ -195,9 +195,9 @@ fn append_steps_moves_the_bytes_of_the_piece_alone() {
 }
 
 #[test]
-fn as_way_takes_each_step_by_its_own_content() {
+fn into_way_takes_each_step_by_its_own_content() {
     let goal = Guide::read_text("Go to the attic and dust the globe.");
-    let way = goal.clone().as_way();
+    let way = goal.clone().into_way();
     assert!(goal.is_goal && !way.is_goal);
     assert_eq!(way.len(), goal.len());
     assert!(way.steps.iter().all(|told| told.kind == GuideStepKind::for_step(&told.step)));
