@@ -161,20 +161,6 @@ impl KnownBuilding {
         })
     }
 
-    /// The turns at the viewpoints of a walk but the last, radians, positive right. The first is from the walker's first direction,
-    /// radians from +y clockwise.
-    #[must_use]
-    pub fn turns_along(&self, walk: &[usize], heading_rad: f64) -> Vec<f64> {
-        let mut facing_rad = heading_rad;
-        let turn = |hop: &[usize]| {
-            let bearing_rad = self.hop_between(hop[0], hop[1]).0.unwrap_or(facing_rad);
-            let turn_rad = wrap_angle(bearing_rad - facing_rad);
-            facing_rad = bearing_rad;
-            turn_rad
-        };
-        walk.windows(2).map(turn).collect()
-    }
-
     /// The distance between two viewpoints, metres.
     #[must_use]
     pub fn distance_m(&self, a: usize, b: usize) -> f64 {

@@ -139,7 +139,7 @@ impl WalkFit {
 }
 
 /// Shares below this are ignored.
-const NEGLIGIBLE_SHARE: f64 = 1e-6;
+pub(crate) const NEGLIGIBLE_SHARE: f64 = 1e-6;
 
 /// The index in [`WalkFit::stretches`] of a step over the stretch of `hops` hops that ends at the node `end`.
 fn stretch_index(nodes: usize, step: usize, end: usize, hops: usize) -> usize {

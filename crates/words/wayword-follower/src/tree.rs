@@ -221,6 +221,15 @@ impl WalkTree {
         viewpoints
     }
 
+    /// The turns before the hops of a walk, radians, positive right. The first is from the walker's first direction.
+    #[must_use]
+    pub fn turns_rad(&self, walk: usize) -> Vec<f64> {
+        let mut turns_rad: Vec<f64> =
+            self.nodes_back(walk).take(self.nodes[walk].hops).map(|at| self.nodes[at].turn_rad).collect();
+        turns_rad.reverse();
+        turns_rad
+    }
+
     /// The walk with exactly these viewpoints, if the tree has it.
     #[must_use]
     pub fn find_walk(&self, viewpoints: &[usize]) -> Option<usize> {

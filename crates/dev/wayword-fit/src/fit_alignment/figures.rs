@@ -5,11 +5,15 @@ use crate::fit_follower::texts::FollowerScene;
 use rayon::prelude::*;
 use serde::Serialize;
 use wayword_core::Side;
-use wayword_follower::alignment::{AlignmentCase, AlignmentWeights, PartedText, WalkAlignment};
+use wayword_follower::{
+    WalkTree,
+    alignment::{AlignmentCase, AlignmentWeights, PartedText, WalkAlignment},
+};
 
 /// A text with people's stretches, ready to be aligned.
 pub(super) struct AlignedCase<'a> {
     pub(super) text: &'a PeopleAlignedText,
+    parted: &'a PartedText,
     pub(super) case: AlignmentCase<'a>,
     /// The parts of which the walk itself shows where they begin.
     evident: Vec<EvidentPart>,
@@ -72,13 +76,13 @@ const OTHER_DEG: f64 = 25.0;
 impl<'a> AlignedCase<'a> {
     pub(super) fn new(
         text: &'a PeopleAlignedText,
-        parted: &PartedText,
+        parted: &'a PartedText,
         scene: &FollowerScene,
         walk: &[usize],
         case: AlignmentCase<'a>,
     ) -> Self {
-        let turns_deg = scene.building.turns_along(walk, text.heading_rad).into_iter().map(f64::to_degrees);
-        let turns_deg: Vec<f64> = turns_deg.collect();
+        let tree = WalkTree::single_walk(&scene.building, walk, text.heading_rad);
+        let turns_deg: Vec<f64> = tree.turns_rad(tree.len() - 1).into_iter().map(f64::to_degrees).collect();
         let mut evident = Vec::new();
         for side in [Side::Left, Side::Right] {
             let sign = if side == Side::Left { -1.0 } else { 1.0 };
@@ -95,7 +99,7 @@ impl<'a> AlignedCase<'a> {
             evident.push(EvidentPart { part: *part, kind: EvidentKind::Climb });
         }
         evident.retain(|evident| evident.part > 0);
-        Self { text, case, evident }
+        Self { text, parted, case, evident }
     }
 
     /// People's boundary behind each part but the last.
@@ -165,8 +169,7 @@ impl AlignmentFigures {
                 hidden_likeliest.add(blind.parts[part].likeliest_end(), known);
                 hidden.add(blind.parts[part].median_end(), known);
             }
-            let words: Vec<usize> =
-                case.text.spans.iter().map(|[from, to]| word_count(&case.text.words, *from, *to)).collect();
+            let words: Vec<usize> = case.parted.parts.iter().map(|part| part.word_count).collect();
             let all = words.iter().sum::<usize>().max(1) as f64;
             let shares = case.boundaries_by_share(|parts| parts as f64 / count as f64);
             shares.zip(case.boundaries()).for_each(|(place, known)| equal.add(place, known));
@@ -245,8 +248,4 @@ impl AlignmentFigures {
             self.climb_mean_error,
         )
     }
-}
-
-fn word_count(words: &str, from: usize, to: usize) -> usize {
-    words.get(from..to).map_or(0, wayword_language::text::word_count)
 }

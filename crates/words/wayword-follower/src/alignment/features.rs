@@ -42,7 +42,7 @@ impl AlignedWalk {
         });
         Self {
             along_m: along_m.collect(),
-            turns_rad: tree.nodes.iter().skip(1).map(|node| node.turn_rad).collect(),
+            turns_rad: tree.turns_rad(tree.len() - 1),
             heights_m: (0..tree.len()).map(|node| viewpoint(node).position.z).collect(),
             changes_room: (1..tree.len()).map(|node| viewpoint(node).room != viewpoint(node - 1).room).collect(),
         }

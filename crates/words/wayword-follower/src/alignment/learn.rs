@@ -1,7 +1,10 @@
 //! Fits the weights of the alignment to known stretches, by gradient descent on the likelihood of people's cut among all cuts.
 
 use super::{AlignmentCase, AlignmentWeights, PartReading, chain::all_stretches, features::ValuedFeature, tables};
-use crate::learn::{AdamDescent, FitPlan, hold_strengths};
+use crate::{
+    fit::NEGLIGIBLE_SHARE,
+    learn::{AdamDescent, FitPlan, hold_strengths},
+};
 
 /// The gradient of the loss over texts, and the loss.
 #[derive(Debug, Clone)]
@@ -21,8 +24,6 @@ impl Default for AlignmentSlope {
 impl AlignmentSlope {
     /// Adds a text with its known stretches, one for each part: consecutive, from the first to the last viewpoint of the walk.
     pub fn add_text(&mut self, case: &AlignmentCase<'_>, stretches: &[[usize; 2]], weights: &AlignmentWeights) {
-        /// Stretches with a lower share are left out: their gradient is too small to matter.
-        const NEGLIGIBLE_SHARE: f64 = 1e-6;
         let chain = case.cut_chain(weights);
         let mut found: Vec<ValuedFeature> = Vec::new();
         let mut known_score = 0.0;

@@ -1,10 +1,10 @@
 //! Cuts a text into parts: the steps that belong to one stretch of a walk.
 
 use crate::guide::{Guide, GuideStep, GuideStepKind};
-use std::{collections::BTreeSet, ops::Range};
+use std::ops::Range;
 use wayword_core::{ClimbDirection, Side};
 use wayword_language::{
-    reading::{TextReading, read_instruction, steps::StepRelation},
+    reading::{TextReading, steps::StepRelation},
     text,
 };
 
@@ -132,7 +132,7 @@ impl PartedText {
         let mut parts = Vec::new();
         for [from, to] in spans.iter().copied() {
             let words = text.get(from..to).unwrap_or_default();
-            let part = Guide::from_reading(words, &read_instruction(words, &BTreeSet::new())).into_way();
+            let part = Guide::read_text(words).into_way();
             let first = guide.len();
             guide.append_steps(part, from);
             let steps = first..guide.len();
@@ -140,9 +140,7 @@ impl PartedText {
         }
         Self { guide, parts }
     }
-}
 
-impl PartedText {
     /// The numbers of the parts that turn to a side.
     #[must_use]
     pub fn parts_with_turn(&self, side: Side) -> Vec<usize> {

@@ -1,7 +1,7 @@
 //! The weights of the features of parts, and their file.
 
 use super::{features::ValuedFeature, tables};
-use crate::weights::{WeightsError, lists_by_table, weights_by_table};
+use crate::weights::{WeightsError, lists_by_table, weights_by_table, write_tables};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, sync::LazyLock};
 
@@ -74,15 +74,12 @@ impl AlignmentWeights {
     /// Both sets of weights as a file, rounded to thousandths. `origin` names the data of the fit, `command` how it was run.
     #[must_use]
     pub fn to_json(words: &Self, word_counts: &Self, origin: &str, command: &str) -> String {
-        let file = AlignmentFile {
+        write_tables(&AlignmentFile {
             origin: origin.into(),
             command: command.into(),
             words: lists_by_table(tables::ALL, &words.values),
             word_counts: lists_by_table(tables::ALL, &word_counts.values),
-        };
-        let mut text = serde_json::to_string(&file).unwrap_or_default().replace("],\"", "],\n\"");
-        text.push('\n');
-        text
+        })
     }
 }
 

@@ -87,23 +87,6 @@ fn distinguishing_name_prefers_the_room_and_then_the_most_striking_thing() {
 }
 
 #[test]
-fn turns_along_are_from_hop_to_hop_and_the_first_from_the_walker_s_direction() {
-    let places =
-        [(0.0, 0.0, 0.0, ""), (0.0, 2.0, 0.0, ""), (2.0, 2.0, 0.0, ""), (2.0, 2.0, 3.0, ""), (2.0, 0.0, 3.0, "")];
-    let building = make_building(&places, &[(0, 1), (1, 2), (2, 3), (3, 4)]);
-    let are_turns = |walk: &[usize], heading_rad: f64, expected: &[f64]| {
-        let turns = building.turns_along(walk, heading_rad);
-        assert_eq!(turns.len(), expected.len());
-        assert!(turns.iter().zip(expected).all(|(a, b)| near(*a, *b)), "{turns:?}");
-    };
-    // Straight up, the walker keeps its direction.
-    are_turns(&[0, 1, 2, 3, 4], 0.5, &[-0.5, FRAC_PI_2, 0.0, FRAC_PI_2]);
-    // To the west and then to the south, the shorter way round.
-    are_turns(&[2, 1, 0], 2.5, &[1.5 * PI - 2.5, -FRAC_PI_2]);
-    are_turns(&[2], 2.5, &[]);
-}
-
-#[test]
 fn distance_m_is_measured_in_space() {
     let building = make_building(&[(0.0, 0.0, 0.0, ""), (2.0, 3.0, 6.0, "")], &[(0, 1)]);
     assert!(near(building.distance_m(0, 1), 7.0) && near(building.distance_m(1, 0), 7.0));

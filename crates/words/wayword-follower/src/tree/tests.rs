@@ -1,7 +1,7 @@
 use super::*;
 use crate::made_buildings::{make_building, make_corridor};
 use std::collections::BTreeSet;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 fn near(a: f64, b: f64) -> bool {
     (a - b).abs() < 1e-9
@@ -196,4 +196,22 @@ fn find_walk_needs_every_viewpoint() {
     assert_eq!(tree.find_walk(&[0, 1, 2]), Some(2));
     assert_eq!(tree.find_walk(&[0]), Some(0));
     assert_eq!([&[][..], &[1, 2], &[0, 2], &[0, 3, 2], &[0, 1, 2, 3, 2]].map(|walk| tree.find_walk(walk)), [None; 5]);
+}
+
+#[test]
+fn turns_rad_are_from_hop_to_hop_and_the_first_from_the_walker_s_direction() {
+    let places =
+        [(0.0, 0.0, 0.0, ""), (0.0, 2.0, 0.0, ""), (2.0, 2.0, 0.0, ""), (2.0, 2.0, 3.0, ""), (2.0, 0.0, 3.0, "")];
+    let building = make_building(&places, &[(0, 1), (1, 2), (2, 3), (3, 4)]);
+    let are_turns = |walk: &[usize], heading_rad: f64, expected: &[f64]| {
+        let tree = WalkTree::single_walk(&building, walk, heading_rad);
+        let turns = tree.turns_rad(tree.len() - 1);
+        assert_eq!(turns.len(), expected.len());
+        assert!(turns.iter().zip(expected).all(|(a, b)| near(*a, *b)), "{turns:?}");
+    };
+    // Straight up, the walker keeps its direction.
+    are_turns(&[0, 1, 2, 3, 4], 0.5, &[-0.5, FRAC_PI_2, 0.0, FRAC_PI_2]);
+    // To the west and then to the south, the shorter way round.
+    are_turns(&[2, 1, 0], 2.5, &[1.5 * PI - 2.5, -FRAC_PI_2]);
+    are_turns(&[2], 2.5, &[]);
 }

@@ -62,15 +62,14 @@ impl FeatureWeights {
     #[must_use]
     pub fn to_json(&self, origin: &str, command: &str) -> String {
         let (origin, command) = (origin.into(), command.into());
-        WeightsFile {
+        write_tables(&WeightsFile {
             origin,
             command,
             tables: tables_from_weights(self),
             going: BTreeMap::new(),
             left: Vec::new(),
             away: Vec::new(),
-        }
-        .to_text()
+        })
     }
 }
 
@@ -97,17 +96,15 @@ impl OnwardWeights {
         let (tables, going) = (tables_from_weights(&self.done), tables_from_weights(&self.going));
         let left = self.left.iter().map(round_weight).collect();
         let away = self.away.as_flattened().iter().map(round_weight).collect();
-        WeightsFile { origin: origin.into(), command: command.into(), tables, going, left, away }.to_text()
+        write_tables(&WeightsFile { origin: origin.into(), command: command.into(), tables, going, left, away })
     }
 }
 
-impl WeightsFile {
-    /// The file as text: JSON with a line for each table.
-    fn to_text(&self) -> String {
-        let mut text = serde_json::to_string(self).unwrap_or_default().replace("],\"", "],\n\"");
-        text.push('\n');
-        text
-    }
+/// A file of weights as text: JSON with a line for each table.
+pub(crate) fn write_tables(file: &impl Serialize) -> String {
+    let mut text = serde_json::to_string(file).unwrap_or_default().replace("],\"", "],\n\"");
+    text.push('\n');
+    text
 }
 
 /// A weight rounded to thousandths.

@@ -5,7 +5,7 @@ mod file;
 
 use crate::features::{FeatureNumber, tables};
 pub use file::WeightsError;
-pub(crate) use file::{lists_by_table, weights_by_table};
+pub(crate) use file::{lists_by_table, weights_by_table, write_tables};
 use std::sync::LazyLock;
 
 /// The weight of each feature for or against a walk, in natural logs.

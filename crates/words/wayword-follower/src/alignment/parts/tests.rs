@@ -1,4 +1,6 @@
 use super::*;
+use std::collections::BTreeSet;
+use wayword_language::reading::read_instruction;
 
 fn read_parted(text: &str) -> PartedText {
     PartedText::from_reading(text, &read_instruction(text, &BTreeSet::new()))
