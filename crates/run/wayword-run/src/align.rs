@@ -112,8 +112,10 @@ fn align_walk(
 ) -> Result<Vec<(usize, AlignedText)>, CommandError> {
     let views = path_panoramas(&RememberingPlatform::new(platform), &walk.path)?;
     let evidence = Evidence::from_labels(&walk.path, &views).unwrap_or_else(|| Evidence::for_path_alone(&walk.path));
-    let scene = scenes.get_or_survey(platform, &walk.path.scene)?;
-    let followed = FollowedPath::new(Some(&scene), &walk.path, &evidence);
+    // Only a path along the viewpoints of a graph needs the survey of its scene.
+    let is_on_graph = walk.path.frames.iter().all(|frame| frame.viewpoint.is_some());
+    let scene = is_on_graph.then(|| scenes.get_or_survey(platform, &walk.path.scene)).transpose()?;
+    let followed = FollowedPath::new(scene.as_deref(), &walk.path, &evidence);
     let align = |text: &FileText| {
         let aligned = followed.as_ref().map_err(|why| *why);
         let aligned = aligned.and_then(|followed| followed.align_text(&text.words, text.tag.as_deref()));
