@@ -1,5 +1,5 @@
 //! A run: settings, models and their calls, platforms by name, the items and their pipeline, the plan, the run folder, and the
-//! commands `generate`, `check` and `calibrate`.
+//! commands `generate`, `check`, `align` and `calibrate`.
 //!
 //! The command line, the reports, the experiments and the Python package are built on this crate.
 //!

@@ -11,7 +11,7 @@ use wayword_report::pages;
 use wayword_run::{
     error::{CommandError, Exit},
     output::CommandOutput,
-    run_folder::{file, refuse_unmerged},
+    run_folder::{file, is_comparison, refuse_unmerged},
 };
 
 /// `wayword report`.
@@ -45,11 +45,15 @@ const MAX_NAMED_ITEMS: usize = 3;
 pub(crate) fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     expect_run(&args.run)?;
     let out = args.out.clone().unwrap_or_else(|| args.run.join(file::REPORT));
-    #[cfg(feature = "experiments")]
-    if compare::is_comparison(&args.run) {
-        let written = compare::write_page_from_folder(&args.run, &out, args.items.unwrap_or(MAX_REPORT_WALKS))?;
-        output.print_result(&written, &written);
-        return Ok(Exit::Done);
+    if is_comparison(&args.run) {
+        #[cfg(not(feature = "experiments"))]
+        return Err(CommandError::not_built("the folder holds a comparison, which this build cannot show"));
+        #[cfg(feature = "experiments")]
+        {
+            let written = compare::write_page_from_folder(&args.run, &out, args.items.unwrap_or(MAX_REPORT_WALKS))?;
+            output.print_result(&written, &written);
+            return Ok(Exit::Done);
+        }
     }
     let written = pages::write_report(&args.run, &out, args.items.unwrap_or(MAX_REPORT_ITEMS))?;
     output.print_result(&written, &written);

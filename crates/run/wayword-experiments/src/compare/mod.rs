@@ -45,7 +45,7 @@ use wayword_run::{
     settings_file,
 };
 
-pub use page::{is_comparison, write_page_from_folder};
+pub use page::write_page_from_folder;
 pub(crate) use settings::ComparisonSettings;
 
 /// Names of the files in a comparison's folder, except `config.toml`.

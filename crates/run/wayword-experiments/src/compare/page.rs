@@ -16,11 +16,6 @@ use wayword_report::pages::{
 };
 use wayword_run::{error::CommandError, run_folder, text_file};
 
-/// Whether a folder holds a comparison, finished or not.
-pub fn is_comparison(folder: &Path) -> bool {
-    run_folder::read_config_table(folder).is_ok_and(|config| config.contains_key("agents"))
-}
-
 /// Writes the page of a finished comparison from its folder. It needs the platform and the episodes, but not the sets of instructions.
 ///
 /// # Errors

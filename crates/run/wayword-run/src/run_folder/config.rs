@@ -115,8 +115,14 @@ pub fn read_run_settings(folder: &Path) -> Result<RunSettings, CommandError> {
     read_config(folder)
 }
 
+/// Whether a folder holds a comparison of agents, finished or not, and not a run.
+#[must_use]
+pub fn is_comparison(folder: &Path) -> bool {
+    read_config_table(folder).is_ok_and(|config| config.contains_key("agents"))
+}
+
 /// The table in `config.toml` of a folder, whatever its format.
-pub fn read_config_table(folder: &Path) -> Result<toml::Table, CommandError> {
+fn read_config_table(folder: &Path) -> Result<toml::Table, CommandError> {
     let path = folder.join(file::CONFIG);
     let text = text_file::read_text_file(&path, "read the folder's settings")?;
     toml::from_str(&text).map_err(|error| {

@@ -29,7 +29,7 @@ use wayword_world::files;
 
 use config::keep_settings;
 pub use config::{
-    config_text, differing_keys, keep_config, read_config, read_config_table, refuse_other_format, refuse_unmerged,
+    config_text, differing_keys, is_comparison, keep_config, read_config, refuse_other_format, refuse_unmerged,
 };
 pub use config::{continued_settings, is_begun, read_run_settings};
 pub use folder_lock::{FolderLock, lock_folder};
