@@ -30,20 +30,22 @@ pub(super) struct HouseDrawing {
     pub(super) textures: Vec<Texture>,
 }
 
-/// The surfaces of everything in a house, world frame, metres, for their geometry alone. They are not cut where the light
-/// changes, so there are fewer triangles than for a picture.
+/// The surfaces of everything in a house, world frame, metres, for their geometry alone. They have no light and are not cut
+/// where it changes, so they are made in less time than those of a picture, and are far fewer.
 #[must_use]
 pub fn build_surfaces(house: &House) -> Vec<Mesh> {
     collect_meshes(house, MeshCollector::default()).meshes
 }
 
-/// Collects the meshes of everything in a house, cut where the light changes.
+/// Collects the meshes of everything in a house, lit and cut where the light changes.
 pub(super) fn draw_house(house: &House) -> HouseDrawing {
-    collect_meshes(house, MeshCollector { cuts: true, ..MeshCollector::default() })
+    let drawing = collect_meshes(house, MeshCollector { is_lit: true, ..MeshCollector::default() });
+    let textures = drawing.patterns.into_iter().map(textures::texture_for_pattern).collect();
+    HouseDrawing { meshes: drawing.meshes, materials: drawing.materials, textures }
 }
 
 /// Builds every part of a house, lights it by its room, and adds it to the meshes.
-fn collect_meshes(house: &House, mut drawing: MeshCollector) -> HouseDrawing {
+fn collect_meshes(house: &House, mut drawing: MeshCollector) -> MeshCollector {
     let lights: Vec<_> = (0..house.rooms.len()).map(|index| RoomLight::for_room(house, index)).collect();
     for (index, light) in lights.iter().enumerate() {
         let shell = [
@@ -97,7 +99,7 @@ fn collect_meshes(house: &House, mut drawing: MeshCollector) -> HouseDrawing {
         drawing
             .add_shape(piece_in_place(piece), piece.id, grain, |at, normal| light.on_thing(at, normal, Some(piece.id)));
     }
-    drawing.finish()
+    drawing
 }
 
 /// A piece's shape, turned and moved to its place in the house.
@@ -121,8 +123,8 @@ fn piece_in_place(piece: &FurniturePiece) -> HouseShape {
 /// Gathers meshes, and gives surfaces that look alike the same material.
 #[derive(Default)]
 struct MeshCollector {
-    /// Whether surfaces are cut where the light changes.
-    cuts: bool,
+    /// Whether surfaces are lit, and cut where the light changes.
+    is_lit: bool,
     meshes: Vec<Mesh>,
     materials: Vec<MeshMaterial>,
     /// The pattern of each texture that some material uses, in order of first use.
@@ -141,12 +143,10 @@ impl MeshCollector {
         light: impl Fn(Vec3, Vec3) -> LightFactors,
     ) {
         for mut part in shape.parts {
-            let colours = if part.surface.glows {
-                vec![[1.0; 3]; part.positions.len()]
-            } else if self.cuts {
-                cut_part(&mut part, grain, &light)
-            } else {
-                part.positions.iter().zip(&part.normals).map(|(at, normal)| light(*at, *normal)).collect()
+            let colours = match (self.is_lit, part.surface.glows) {
+                (false, _) => Vec::new(),
+                (true, true) => vec![[1.0; 3]; part.positions.len()],
+                (true, false) => cut_part(&mut part, grain, &light),
             };
             let MeshPart { surface, positions, uvs, triangles, .. } = part;
             let material = self.material_index(surface);
@@ -169,10 +169,5 @@ impl MeshCollector {
             materials.push(MeshMaterial { base_colour: [r, g, b, 1.0], texture, double_sided: false });
             materials.len() - 1
         })
-    }
-
-    fn finish(self) -> HouseDrawing {
-        let textures = self.patterns.into_iter().map(textures::texture_for_pattern).collect();
-        HouseDrawing { meshes: self.meshes, materials: self.materials, textures }
     }
 }

@@ -4,39 +4,56 @@ use super::{
     objects::{NumberedObject, ObjectRole},
     scene::HouseScene,
 };
-use wayword_core::{Heading, ObjectId, ObjectLabel, ViewGaze};
-use wayword_render::{PinholeCamera, RenderedPicture, VisibleObject, box_corners, evident_objects};
+use wayword_core::{DVec3, Heading, ObjectId, ObjectLabel, ViewGaze};
+use wayword_render::{PinholeCamera, RenderError, VisibleObject, box_corners, evident_objects};
 
-/// Labels of the visible furniture, doors, windows and stairs, the largest first. The middle of an object's box must lie
-/// within the gaze.
+/// The largest drawing from which labels are taken, pixels. It can be small, because an object counts by its share of a picture.
+pub(super) const LABELS_SIZE_PX: [u32; 2] = [320, 240];
+
+/// Labels of the visible furniture, doors, windows and stairs, the largest first, with boxes in a picture of `size` pixels. The
+/// middle of an object's box must lie within the gaze.
 ///
 /// An object that is hidden behind others, or that shows only a sliver of itself, gets no label.
+///
+/// # Errors
+/// When the numbers of the camera are not usable.
 pub(super) fn visible_labels(
     scene: &HouseScene,
-    camera: &PinholeCamera,
+    eye: DVec3,
     gaze: ViewGaze,
-    picture: &RenderedPicture,
-) -> Vec<ObjectLabel> {
-    let visible = evident_objects(picture);
+    size: [u32; 2],
+) -> Result<Vec<ObjectLabel>, RenderError> {
+    let shrink = (0..2).map(|side| f64::from(LABELS_SIZE_PX[side]) / f64::from(size[side].max(1))).fold(1.0, f64::min);
+    let drawn_size = size.map(|side| (f64::from(side) * shrink).round() as u32);
+    let camera = PinholeCamera::for_level_gaze(eye, gaze, drawn_size);
+    let visible = evident_objects(&scene.render_object_ids(&camera)?);
+    let scale: [f64; 2] = std::array::from_fn(|side| f64::from(size[side]) / f64::from(drawn_size[side]));
     let labels = visible.iter().filter_map(|each| {
         let object = scene.objects.get(&each.id).filter(|object| object.role != ObjectRole::Shell)?;
         let (low, high) = object.bounds_m;
-        let is_sliver = each.is_sliver(camera, &box_corners(low, high));
-        (!is_sliver).then(|| label_for_object(camera, each, object)).flatten()
+        let is_sliver = each.is_sliver(&camera, &box_corners(low, high));
+        (!is_sliver).then(|| label_for_object(&camera, each, object, scale)).flatten()
     });
-    labels.filter(|label| gaze.holds_heading(label.heading)).collect()
+    Ok(labels.filter(|label| gaze.holds_heading(label.heading)).collect())
 }
 
-fn label_for_object(camera: &PinholeCamera, seen: &VisibleObject, object: &NumberedObject) -> Option<ObjectLabel> {
+/// The label of an object. `scale` leads from the pixels of the drawing, across and down, to those of the picture.
+fn label_for_object(
+    camera: &PinholeCamera,
+    seen: &VisibleObject,
+    object: &NumberedObject,
+    [across, down]: [f64; 2],
+) -> Option<ObjectLabel> {
     let centre = object.centre_m();
     let offset = centre - camera.position;
+    let [left, top, width, height] = seen.bbox.map(f64::from);
     let level_m = libm::sqrt(offset.x * offset.x + offset.y * offset.y);
     Some(ObjectLabel {
         object: ObjectId::new(seen.id.to_string()).ok()?,
         name: object.name.clone(),
         heading: Heading::new(libm::atan2(offset.x, offset.y)).ok()?,
         elevation_rad: libm::atan2(offset.z, level_m),
-        box_px: Some(seen.bbox.map(f64::from)),
+        box_px: Some([left * across, top * down, width * across, height * down]),
         distance_m: Some(offset.length()),
         position: Some(centre),
         colour: object.colour.map(str::to_owned),
@@ -47,22 +64,11 @@ fn label_for_object(camera: &PinholeCamera, seen: &VisibleObject, object: &Numbe
 mod tests {
     use super::super::{catalogue::FurnitureKind, generate_house, model::House};
     use super::*;
-    use wayword_core::DVec3;
 
     fn names(house: House, eye: DVec3, heading_rad: f64) -> Vec<String> {
         let scene = HouseScene::new(house).unwrap();
-        let fov = 2.0 * libm::atan(0.75);
-        let camera = PinholeCamera {
-            position: eye,
-            heading_rad,
-            elevation_rad: 0.0,
-            vertical_fov_rad: fov,
-            width: 160,
-            height: 120,
-        };
-        let picture = scene.render_picture(&camera).unwrap();
         let gaze = ViewGaze::quarter_view(Heading::new(heading_rad).unwrap());
-        visible_labels(&scene, &camera, gaze, &picture).into_iter().map(|label| label.name).collect()
+        visible_labels(&scene, eye, gaze, [160, 120]).unwrap().into_iter().map(|label| label.name).collect()
     }
 
     /// A house with a refrigerator in the middle of its living room and no other furniture, and an eye south of it.

@@ -56,4 +56,4 @@ pub use rect::{RectCm, SpanCm, WallSide};
 pub use save::{
     HouseFiles, SaveError, encode_glb, gltf_from_wayword, navigation_json, save_house, semantic_glb, semantic_txt,
 };
-pub use scene::HouseScene;
+pub use scene::{HousePictureError, HouseScene};

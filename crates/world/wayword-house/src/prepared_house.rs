@@ -5,7 +5,7 @@ use super::{
     furnish::furnish_house,
     graph::{EYE_M, viewpoint_graph},
     ground::HouseGround,
-    labels::visible_labels,
+    labels::{LABELS_SIZE_PX, visible_labels},
     layout::{HouseLayout, lay_out},
     model::{House, WallOpening},
     names::{old_seed_of, scene_name, seed_of},
@@ -74,17 +74,18 @@ impl PreparedHouse {
         size: [u32; 2],
         pictured: bool,
     ) -> Result<View, PlatformError> {
-        let camera = PinholeCamera::for_level_gaze(pose.position, gaze, size);
-        let drawn = if pictured { self.scene.render_picture(&camera) } else { self.scene.render_object_ids(&camera) };
-        let picture = drawn.map_err(|error| self.not_drawn_error(&error))?;
+        let labels = visible_labels(&self.scene, pose.position, gaze, size);
         let truth = GroundTruth {
             lists_objects: true,
-            labels: visible_labels(&self.scene, &camera, gaze, &picture),
+            labels: labels.map_err(|error| self.not_drawn_error(&error))?,
             room: self.room_seen(pose.position, gaze.heading),
         };
-        let image =
-            || Image::new(picture.width, picture.height, picture.rgb).map_err(|error| self.not_drawn_error(&error));
-        let image = pictured.then(image).transpose()?.map(Arc::new);
+        let draw_image = || {
+            let camera = PinholeCamera::for_level_gaze(pose.position, gaze, size);
+            let picture = self.scene.render_picture(&camera).map_err(|error| self.not_drawn_error(&error))?;
+            Image::new(picture.width, picture.height, picture.rgb).map_err(|error| self.not_drawn_error(&error))
+        };
+        let image = pictured.then(draw_image).transpose()?.map(Arc::new);
         let pose = Pose::looking_level(pose.position, gaze.heading);
         Ok(View::new(pose, gaze.horizontal_fov_rad, image, Some(truth)))
     }
@@ -124,12 +125,12 @@ impl PreparedHouse {
         self.scene.house.openings.iter().any(stands_in)
     }
 
-    /// Everything visible from a pose. Small pictures are enough, because an object counts by its share of the picture.
+    /// Everything visible from a pose.
     pub(super) fn labels_around(&self, pose: Pose) -> Result<Vec<ObjectLabel>, PlatformError> {
         let mut all = Vec::new();
         for gaze in ViewGaze::around_heading(pose.heading) {
-            let view = self.view_from(pose, gaze, [320, 240], false)?;
-            all.extend(view.ground_truth().into_iter().flat_map(|truth| truth.labels.iter().cloned()));
+            let labels = visible_labels(&self.scene, pose.position, gaze, LABELS_SIZE_PX);
+            all.extend(labels.map_err(|error| self.not_drawn_error(&error))?);
         }
         Ok(all)
     }

@@ -65,8 +65,7 @@ mod tests {
             height: 120,
         };
         let (centre, half) = (DVec3::Y * ahead_m, DVec3::splat(0.25));
-        let seen =
-            VisibleObject { id: 5, pixels: columns * 20, bbox: [70, 50, columns, 20], nearest_m: 1.0, median_m: 1.0 };
+        let seen = VisibleObject { id: 5, pixels: columns * 20, bbox: [70, 50, columns, 20] };
         seen.is_sliver(&camera, &box_corners(centre - half, centre + half))
     }
 

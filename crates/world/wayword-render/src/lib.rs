@@ -33,6 +33,7 @@
 //! ```
 //!
 //! # Where things are
+//! - `hidden`: what lies behind nearer things, which is not drawn.
 //! - `evident`: which objects of a picture are visible enough to be named; `visibility` counts their pixels.
 //! - `panorama`, `storey`, `top_down`: panoramas, and maps from above.
 //! - `mipmap`, `texture`: how textures are looked up.
@@ -49,6 +50,7 @@ mod cluster;
 mod cube_row;
 mod cubemap;
 mod evident;
+mod hidden;
 mod mesh;
 mod mipmap;
 mod panorama;

@@ -5,8 +5,10 @@
 //! or a left one (the top-left rule of GPUs).
 
 use crate::cluster::SceneTriangle;
+use crate::hidden::TILE_WIDTH_PX;
 use crate::triangle_setup::{ScreenTriangle, TriangleBatch, centres_between};
 use crate::view::SUBPIXEL_STEPS;
+use std::ops::RangeInclusive;
 
 /// A triangle of the batches: the batch and its place there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +32,8 @@ pub(crate) struct PictureBand {
     pub(crate) nearness: Vec<f32>,
     /// The nearest triangle at each pixel.
     pub(crate) seen: Vec<BatchTriangleIndex>,
+    /// For each tile of [`TILE_WIDTH_PX`] columns, the least nearness of its pixels when the tiles were last measured.
+    pub(crate) tiles: Vec<f32>,
 }
 
 impl PictureBand {
@@ -40,16 +44,36 @@ impl PictureBand {
             first_row,
             nearness: vec![f32::NEG_INFINITY; pixels],
             seen: vec![BatchTriangleIndex::NO_TRIANGLE; pixels],
+            tiles: vec![f32::NEG_INFINITY; (width as usize).div_ceil(TILE_WIDTH_PX)],
         }
     }
 
-    /// Draws all batches. The result for a pixel depends on no other pixel, so it is the same for any division into
-    /// bands.
-    pub(crate) fn draw_batches(&mut self, batches: &[TriangleBatch], triangles: &[SceneTriangle]) {
-        let rows = (self.nearness.len() / self.width.max(1) as usize) as u32;
-        let (first, end) = (self.first_row, self.first_row + rows);
+    /// The row of the picture after the band's last.
+    fn end_row(&self) -> u32 {
+        self.first_row + (self.nearness.len() / self.width.max(1) as usize) as u32
+    }
+
+    /// Whether the band has one of these rows of the picture.
+    pub(crate) fn holds_rows(&self, rows: &RangeInclusive<usize>) -> bool {
+        (self.first_row as usize) <= *rows.end() && *rows.start() < self.end_row() as usize
+    }
+
+    /// Records how far what each tile shows is.
+    pub(crate) fn measure_tiles(&mut self) {
+        self.tiles.fill(f32::INFINITY);
+        for row in self.nearness.chunks_exact(self.width.max(1) as usize) {
+            for (tile, pixels) in self.tiles.iter_mut().zip(row.chunks(TILE_WIDTH_PX)) {
+                *tile = pixels.iter().copied().fold(*tile, f32::min);
+            }
+        }
+    }
+
+    /// Draws the batches from number `from` on. The result for a pixel depends on no other pixel and not on the order of the
+    /// batches, so it is the same for any division into bands and groups.
+    pub(crate) fn draw_batches(&mut self, batches: &[TriangleBatch], from: usize, triangles: &[SceneTriangle]) {
+        let (first, end) = (self.first_row, self.end_row());
         let overlaps = |[low, high]: [u16; 2]| u32::from(low) < end && u32::from(high) >= first;
-        for (index, batch) in batches.iter().enumerate() {
+        for (index, batch) in batches.iter().enumerate().skip(from) {
             if !overlaps(batch.rows) {
                 continue;
             }

@@ -2,16 +2,21 @@
 
 use crate::background::PictureBackground;
 use crate::camera::PinholeCamera;
+use crate::hidden::{is_hidden, sort_by_distance};
 use crate::picture::{RenderError, RenderedPicture};
 use crate::raster::{BatchTriangleIndex, PictureBand};
 use crate::scene::RenderScene;
 use crate::shade::TriangleShader;
-use crate::triangle_setup::{TriangleBatch, visible_batches};
+use crate::triangle_setup::{TriangleBatch, batches_for_clusters, clusters_within};
 use crate::view::ViewProjection;
 use rayon::prelude::*;
 
 /// Bands per picture: several per core, so that a crowded band does not delay the rest.
 const BANDS_PER_PICTURE: usize = 16;
+/// Least rows of a band: each band goes through all clusters.
+const MIN_BAND_ROWS: usize = 20;
+/// Clusters of the first group that is drawn; each further group has twice as many as the one before.
+const FIRST_GROUP_CLUSTERS: usize = 48;
 
 /// Draws what a camera sees. The picture is the same to the bit for any number of threads and on any machine.
 ///
@@ -45,31 +50,45 @@ pub(crate) fn draw_view(
         depth_m: vec![f32::INFINITY; width * height],
         ids: vec![0; width * height],
     };
-    let batches = visible_batches(scene, view);
-    let rows = height.div_ceil(BANDS_PER_PICTURE);
-    let bands = picture.depth_m.par_chunks_mut(rows * width).zip(picture.ids.par_chunks_mut(rows * width));
-    let draw_band = |index: usize, depth_m: &mut [f32], ids: &mut [u32]| {
-        let mut band = PictureBand::new(view.width, (index * rows) as u32, ids.len() / width);
-        band.draw_batches(&batches, &scene.soup.triangles);
-        write_depths(view, &band, depth_m);
+    let rows = height.div_ceil(BANDS_PER_PICTURE).max(MIN_BAND_ROWS);
+    let (batches, bands) = draw_bands(scene, view, rows);
+    let results = picture.depth_m.par_chunks_mut(rows * width).zip(picture.ids.par_chunks_mut(rows * width));
+    results.zip(&bands).for_each(|((depth_m, ids), band)| {
+        write_depths(view, band, depth_m);
         for (id, seen) in ids.iter_mut().zip(&band.seen) {
             *id = visible_id(scene, &batches, *seen);
         }
-        band
-    };
-    match background {
-        None => bands.enumerate().for_each(|(index, (depth_m, ids))| {
-            draw_band(index, depth_m, ids);
-        }),
-        Some(background) => {
-            let colours = picture.rgb.par_chunks_mut(3 * rows * width);
-            colours.zip(bands).enumerate().for_each(|(index, (rgb, (depth_m, ids)))| {
-                let band = draw_band(index, depth_m, ids);
-                BandPainter { scene, view, background, batches: &batches, band: &band }.paint_band(rgb);
-            });
-        }
+    });
+    if let Some(background) = background {
+        let colours = picture.rgb.par_chunks_mut(3 * rows * width);
+        colours.zip(&bands).for_each(|(rgb, band)| {
+            BandPainter { scene, view, background, batches: &batches, band }.paint_band(rgb);
+        });
     }
     picture
+}
+
+/// Finds the nearest triangle of each pixel, in bands of `rows` rows. The clusters are drawn in groups, the nearest first, and those
+/// that are hidden by the groups before are left out.
+fn draw_bands(scene: &RenderScene, view: &ViewProjection, rows: usize) -> (Vec<TriangleBatch>, Vec<PictureBand>) {
+    let height = view.height as usize;
+    let band = |first: usize| PictureBand::new(view.width, first as u32, rows.min(height - first));
+    let mut bands: Vec<PictureBand> = (0..height).step_by(rows).map(band).collect();
+    let clusters = sort_by_distance(clusters_within(scene, view), view);
+    let mut batches: Vec<TriangleBatch> = Vec::new();
+    let (mut rest, mut group_len) = (clusters.as_slice(), FIRST_GROUP_CLUSTERS);
+    while !rest.is_empty() {
+        let (group, later) = rest.split_at(group_len.min(rest.len()));
+        let shown: Vec<_> = group.iter().copied().filter(|cluster| !is_hidden(cluster, view, &bands)).collect();
+        let from = batches.len();
+        batches.extend(batches_for_clusters(scene, view, &shown));
+        bands.par_iter_mut().for_each(|band| {
+            band.draw_batches(&batches, from, &scene.soup.triangles);
+            band.measure_tiles();
+        });
+        (rest, group_len) = (later, 2 * group_len);
+    }
+    (batches, bands)
 }
 
 /// The depth of each pixel of a band.

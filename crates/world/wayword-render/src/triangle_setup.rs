@@ -60,12 +60,21 @@ impl ScreenTriangle {
     }
 }
 
-/// The triangles of a scene that a view can show, in the order of the clusters.
-pub(crate) fn visible_batches(scene: &RenderScene, view: &ViewProjection) -> Vec<TriangleBatch> {
-    let (frustum, clip_planes) = (view.frustum_planes(), view.clip_planes());
+/// The clusters of a scene that lie within a view.
+pub(crate) fn clusters_within<'a>(scene: &'a RenderScene, view: &ViewProjection) -> Vec<&'a TriangleCluster> {
+    let frustum = view.frustum_planes();
     let visible = |cluster: &&TriangleCluster| !view.misses_box(&frustum, cluster.centre, cluster.half_extent);
-    let clusters = scene.soup.clusters.par_iter().filter(visible);
-    clusters.filter_map(|cluster| batch_for_cluster(scene, view, &clip_planes, cluster)).collect()
+    scene.soup.clusters.iter().filter(visible).collect()
+}
+
+/// The triangles that clusters put on the screen, in the order of the clusters.
+pub(crate) fn batches_for_clusters(
+    scene: &RenderScene,
+    view: &ViewProjection,
+    clusters: &[&TriangleCluster],
+) -> Vec<TriangleBatch> {
+    let clip_planes = view.clip_planes();
+    clusters.par_iter().filter_map(|cluster| batch_for_cluster(scene, view, &clip_planes, cluster)).collect()
 }
 
 /// The triangles that a cluster puts on the screen; `None` if there are none.

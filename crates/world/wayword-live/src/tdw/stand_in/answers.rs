@@ -56,7 +56,10 @@ fn images_frame(state: &BuildState, avatar: &StandInAvatar) -> Option<Vec<u8>> {
     let (width, height) = state.size;
     let (scene, camera) = (&state.world.scene, avatar.render_camera(state.size));
     let has_colours = avatar.pass_masks.iter().any(|pass| pass == "_img");
-    let picture = if has_colours { scene.render_picture(&camera) } else { scene.render_object_ids(&camera) }.ok()?;
+    let picture = match has_colours {
+        true => scene.render_picture(&camera).ok()?,
+        false => scene.render_object_ids(&camera).ok()?,
+    };
     let is_object = |id| state.world.is_object(id);
     let passes = pictures::encode_passes(&picture, &avatar.pass_masks, state.png, is_object).into_iter().map(
         |pictures::EncodedPass(mask, bytes, extension)| {
