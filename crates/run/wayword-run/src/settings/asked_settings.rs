@@ -165,6 +165,9 @@ writing:
         /// Do not follow the texts: their records say neither whether they lead elsewhere nor what they may mean.
         #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
         pub no_route: Option<bool>,
+        /// Draw no pictures, where labels see: a run takes a fraction of the time, and its report has no pictures.
+        #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
+        pub no_pictures: Option<bool>,
     }
 
 draw:

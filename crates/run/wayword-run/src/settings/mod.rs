@@ -98,6 +98,9 @@ pub struct RunSettings {
     /// Whether no text is followed.
     #[serde(default, skip_serializing_if = "is_false")]
     pub no_route: bool,
+    /// Whether no picture is drawn, kept or shown.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub no_pictures: bool,
     /// Who asks, sees, summarises and writes.
     #[serde(default)]
     pub roles: RunRoles,
@@ -285,6 +288,14 @@ impl AskedSettings {
         }
         let request = resolve_request(walks.hops.as_deref(), walks.metres.as_deref())?;
         let roles = roles.resolve()?;
+        let looks_at_pictures =
+            matches!(roles.see, RolePlayer::Model(_)) || roles.write_sees || roles.detector.is_some();
+        if writing.no_pictures == Some(true) && looks_at_pictures {
+            return Err(CommandError::usage(
+                "--no-pictures leaves nothing to look at for a model that sees, --write-sees or --detector",
+                "leave --no-pictures out, or let labels see",
+            ));
+        }
         let (repairs, candidates) = match roles.write {
             RolePlayer::Model(_) => (DEFAULT_MODEL_REPAIRS, 1),
             RolePlayer::Rules | RolePlayer::Labels => (DEFAULT_REPAIRS, DEFAULT_CANDIDATES),
@@ -319,6 +330,7 @@ impl AskedSettings {
             calibration: writing.calibration,
             reject_ambiguous: writing.reject_ambiguous.unwrap_or(false),
             no_route: writing.no_route.unwrap_or(false),
+            no_pictures: writing.no_pictures.unwrap_or(false),
             roles,
             inputs: BTreeMap::new(),
             left_out: BTreeMap::new(),
