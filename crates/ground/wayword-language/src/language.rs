@@ -4,11 +4,7 @@
 //! In Latin letters, a sentence is foreign if the reader knows few of its words. The small words of a language ("der",
 //! "est") show which language it is.
 
-use crate::{
-    data,
-    reading::ReadWord,
-    text::{TextToken, split_tokens},
-};
+use crate::{data, reading::ReadWord, text::TextToken};
 use std::{collections::BTreeMap, fmt, sync::LazyLock};
 
 const LANGUAGE_LISTS: &str = include_str!("words/languages.txt");
@@ -138,14 +134,14 @@ impl fmt::Display for Language {
     }
 }
 
-/// Decides the language of a text from its letters, and then from its words as the reader took them.
+/// Decides the language of a text from its letters, and then from its words as the reader took them. `tokens` are those
+/// of the text.
 #[must_use]
-pub(crate) fn language_of(text: &str, words: &[ReadWord]) -> Language {
+pub(crate) fn language_of(text: &str, tokens: &[TextToken], words: &[ReadWord]) -> Language {
     let script_language = by_script(text);
     if script_language != Language::English {
         return script_language;
     }
-    let tokens = split_tokens(text);
     let mut whole = LanguageVotes::default();
     // The language of the first foreign sentence, and whether a sentence is English.
     let (mut foreign, mut english) = (None, false);

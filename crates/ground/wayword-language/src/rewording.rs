@@ -1,7 +1,11 @@
 //! Finds the words of a text for a turn, a side, a climb, or the way past or through a place, and exchanges left with right and
 //! up with down. Repairs and alternatives replace just these words.
 
-use crate::text::{TextToken, split_tokens};
+use crate::{
+    reading::TextReading,
+    text::{TextToken, split_tokens},
+};
+use std::borrow::Cow;
 
 crate::data::lists! {
     "words/rewording.txt";
@@ -19,7 +23,7 @@ const WAY_REACH_TOKENS: usize = 5;
 #[derive(Debug)]
 pub struct TokenisedText<'a> {
     text: &'a str,
-    tokens: Vec<TextToken>,
+    tokens: Cow<'a, [TextToken]>,
 }
 
 /// The words before a place for how the walk passes it: "walk past", "head out of", "leave".
@@ -35,7 +39,19 @@ impl<'a> TokenisedText<'a> {
     /// A text.
     #[must_use]
     pub fn from_text(text: &'a str) -> Self {
-        Self { text, tokens: split_tokens(text) }
+        Self { text, tokens: Cow::Owned(split_tokens(text)) }
+    }
+
+    /// A text that was read before, with the tokens of its reading.
+    #[must_use]
+    pub fn from_reading(text: &'a str, reading: &'a TextReading) -> Self {
+        Self { text, tokens: Cow::Borrowed(reading.tokens()) }
+    }
+
+    /// The whole text.
+    #[must_use]
+    pub fn text(&self) -> &'a str {
+        self.text
     }
 
     /// The words of a byte range, as they are written.

@@ -127,10 +127,12 @@ pub fn word_count(text: &str) -> usize {
 /// Number of sentences: words up to a full stop, exclamation or question mark, or the end.
 #[must_use]
 pub fn sentence_count(text: &str) -> usize {
-    split_tokens(text)
-        .split(TextToken::ends_sentence)
-        .filter(|sentence| sentence.iter().any(TextToken::is_word))
-        .count()
+    count_sentences(&split_tokens(text))
+}
+
+/// As [`sentence_count`], of a text that was split before.
+pub(crate) fn count_sentences(tokens: &[TextToken]) -> usize {
+    tokens.split(TextToken::ends_sentence).filter(|sentence| sentence.iter().any(TextToken::is_word)).count()
 }
 
 #[cfg(test)]

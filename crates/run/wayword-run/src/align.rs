@@ -115,7 +115,7 @@ fn align_walk(
     // Only a path along the viewpoints of a graph needs the survey of its scene.
     let is_on_graph = walk.path.frames.iter().all(|frame| frame.viewpoint.is_some());
     let scene = is_on_graph.then(|| scenes.get_or_survey(platform, &walk.path.scene)).transpose()?;
-    let followed = FollowedPath::new(scene.as_deref(), &walk.path, &evidence);
+    let followed = FollowedPath::new(platform, scene.as_deref(), &walk.path, &evidence);
     let align = |text: &FileText| {
         let aligned = followed.as_ref().map_err(|why| *why);
         let aligned = aligned.and_then(|followed| followed.align_text(&text.words, text.tag.as_deref()));

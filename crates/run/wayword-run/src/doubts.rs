@@ -9,6 +9,7 @@ use wayword_follower::{
     doubt::{DoubtBounds, find_doubts as by_changes, from_checks, is_too_long},
     route::UnfollowedReason,
 };
+use wayword_language::rewording::TokenisedText;
 
 /// The words of a text that a reader should doubt.
 #[derive(Debug, Clone, Default)]
@@ -33,9 +34,10 @@ pub(crate) fn find_doubts(
     let read = followed.and_then(|followed| Ok((followed, read_followable(text, tag)?)));
     let (doubts, unfollowed) = match read {
         Ok((followed, (guide, reading))) => {
+            let spelt = TokenisedText::from_reading(text, &reading);
             let bounds_and_findings = (&DoubtBounds::default(), &checked.findings[..]);
             let changes =
-                || by_changes(text, &guide, followed.known_path(), FeatureWeights::fitted(), bounds_and_findings);
+                || by_changes(&spelt, &guide, followed.known_path(), FeatureWeights::fitted(), bounds_and_findings);
             let mut doubts = if checked.world == CheckWorld::Open { changes() } else { by_checks() };
             let from_ambiguity = |ambiguity| from_checks::doubts_from_ambiguity(text, &guide, &reading, ambiguity);
             doubts.extend(ambiguity.into_iter().flat_map(from_ambiguity));

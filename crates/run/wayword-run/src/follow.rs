@@ -9,10 +9,11 @@ use std::{
 };
 use wayword_checks::{CheckWorld, Evidence, FrameEvidence, TextFindings, TurnJudge, count_objects_meant};
 use wayword_core::{
-    CheckFinding, CheckKind, Frame, Path, Platform, RecentCache, SceneId, TextAmbiguity, Verdict, ViewpointSurvey,
+    CheckFinding, CheckKind, DVec3, Frame, Heading, Path, Platform, Pose, RecentCache, SceneId, TextAmbiguity, Verdict,
+    ViewpointSurvey,
 };
 use wayword_follower::{
-    FeatureWeights, Guide, KnownBuilding, PathPlace, WalkPrior,
+    FeatureWeights, Guide, KnownBuilding, PathPlace, PathThing, WalkOnGraph, WalkPrior,
     alignment::{AlignmentCase, AlignmentWeights, PartReading, PartedText, WalkAlignment},
     route::{GainThresholds, KnownWalk, RouteVerdict, UnfollowedReason, goal_probability, judge_route, judge_steps},
 };
@@ -84,6 +85,13 @@ pub(crate) struct FollowedPath<'a> {
 enum FollowedPlace<'a> {
     /// The building with its viewpoint graph.
     Graph(&'a KnownScene),
+    /// A path that leaves the viewpoints of its building.
+    JoinedGraph {
+        /// The building with its viewpoint graph, on which the path was put.
+        building: KnownBuilding,
+        /// The path alone, with a viewpoint at each of its frames. The parts of a text are aligned with it.
+        frames: KnownBuilding,
+    },
     /// The path alone: there is no graph, so no other walk is known.
     PathAlone(KnownBuilding),
 }
@@ -100,6 +108,9 @@ pub(crate) struct FollowerFindings {
     pub(crate) ends: Option<TextEnds>,
     /// Whether its turns were judged.
     pub(crate) turns: TurnJudge,
+    /// Whether the walks were compared over a graph of the ground, and not over the viewpoints of a dataset. The weights were fitted to
+    /// the latter.
+    is_over_ground: bool,
 }
 
 /// How likely it is that a text means a walk, among the walks that the follower thinks of.
@@ -120,12 +131,17 @@ pub(crate) struct TextEnds {
 }
 
 impl<'a> FollowedPath<'a> {
-    /// A path in its scene. If the path does not go along the viewpoints of a graph, the building consists of its own frames and
-    /// what they show.
+    /// A path in its scene. If the path does not go along the viewpoints of the scene's graph, its places are joined to them; without a
+    /// graph, the building consists of its own frames and what they show.
     ///
     /// # Errors
     /// With the reason, where its motion is unknown, or it goes nowhere.
-    pub(crate) fn new(scene: Option<&'a KnownScene>, path: &Path, evidence: &Evidence) -> Result<Self, &'static str> {
+    pub(crate) fn new(
+        platform: &dyn Platform,
+        scene: Option<&'a KnownScene>,
+        path: &Path,
+        evidence: &Evidence,
+    ) -> Result<Self, &'static str> {
         if !path.motion.is_known() {
             return Err(UNKNOWN_MOTION_REASON);
         }
@@ -138,18 +154,22 @@ impl<'a> FollowedPath<'a> {
         if let Some((scene, walk)) = scene.and_then(|scene| Some((scene, on_graph(scene)?))) {
             return Ok(Self { place: FollowedPlace::Graph(scene), walk, heading_rad });
         }
-        let place = |(frame, seen): (&Frame, &FrameEvidence)| PathPlace {
-            position: frame.pose.position,
-            room: seen.rooms.first().cloned(),
-            things: seen
-                .things
-                .iter()
-                .map(|thing| (thing.name.clone(), thing.turn_rad.map(|rad| frame.pose.heading.turned_by(rad).rad())))
-                .collect(),
+        let places: Vec<PathPlace> = path.frames.iter().zip(&evidence.frames).map(path_place).collect();
+        let Some(scene) = scene.filter(|scene| !scene.building.is_empty()) else {
+            let walk = (0..places.len()).collect();
+            return Ok(Self { place: FollowedPlace::PathAlone(KnownBuilding::along_path(places)), walk, heading_rad });
         };
-        let building = KnownBuilding::along_path(path.frames.iter().zip(&evidence.frames).map(place).collect());
-        let walk = (0..path.frames.len()).collect();
-        Ok(Self { place: FollowedPlace::PathAlone(building), walk, heading_rad })
+        let knows_ground = path
+            .frames
+            .windows(2)
+            .any(|pair| matches!(platform.ground().ground_route(&path.scene, &pair[0], &pair[1]), Ok(Some(_))));
+        let can_walk = |from: DVec3, to: DVec3| match knows_ground {
+            true => walks_straight(platform, &path.scene, from, to),
+            false => from.distance(to) <= ASSUMED_STRAIGHT_M && (from.z - to.z).abs() <= ASSUMED_LEVEL_M,
+        };
+        let WalkOnGraph { building, walk } = WalkOnGraph::new(&scene.building, &places, &can_walk);
+        let place = FollowedPlace::JoinedGraph { building, frames: KnownBuilding::along_path(places) };
+        Ok(Self { place, walk, heading_rad })
     }
 
     /// Follows a text, and judges its route and its single steps. `tag` is the tag of its language, where its file
@@ -175,7 +195,14 @@ impl<'a> FollowedPath<'a> {
     pub(crate) fn align_text(&self, text: &str, tag: Option<&str>) -> Result<WalkAlignment, &'static str> {
         let (_, reading) = read_followable(text, tag)?;
         let parted = PartedText::from_reading(text, &reading);
-        let known = self.known_path();
+        let frame_numbers: Vec<usize>;
+        let known = match &self.place {
+            FollowedPlace::JoinedGraph { frames, .. } => {
+                frame_numbers = (0..frames.len()).collect();
+                KnownWalk { building: frames, walk: &frame_numbers, heading_rad: self.heading_rad }
+            }
+            FollowedPlace::Graph(_) | FollowedPlace::PathAlone(_) => self.known_path(),
+        };
         let case = AlignmentCase::new(&parted, known.building, known.walk, known.heading_rad, FeatureWeights::fitted());
         Ok(case.align_parts(AlignmentWeights::fitted(PartReading::Words)))
     }
@@ -193,13 +220,18 @@ impl<'a> FollowedPath<'a> {
 
     /// The prior over other walks; `None` if the path alone is known.
     fn walk_prior(&self) -> Option<WalkPrior> {
-        matches!(self.place, FollowedPlace::Graph(_)).then(WalkPrior::default)
+        match self.place {
+            FollowedPlace::PathAlone(_) => None,
+            FollowedPlace::Graph(_) => Some(WalkPrior::default()),
+            // Such paths can be longer than those of R2R.
+            FollowedPlace::JoinedGraph { .. } => Some(WalkPrior::Shortest(self.walk.len().max(8))),
+        }
     }
 
     pub(crate) fn known_path(&self) -> KnownWalk<'_> {
         let building = match &self.place {
             FollowedPlace::Graph(scene) => &scene.building,
-            FollowedPlace::PathAlone(building) => building,
+            FollowedPlace::JoinedGraph { building, .. } | FollowedPlace::PathAlone(building) => building,
         };
         KnownWalk { building, walk: &self.walk, heading_rad: self.heading_rad }
     }
@@ -222,7 +254,39 @@ impl<'a> FollowedPath<'a> {
         let ends = verdict.map(|route| TextEnds { count: route.ends.len(), told_apart_by: apart(route) });
         let route = verdict.map(|route| RouteShares { annotated: route.share, other: route.other });
         let finding = routed.map_or_else(|why| unknown_route(why.reason_words()), |route| route.finding);
-        FollowerFindings { findings: vec![finding], route, turn_gain: None, ends, turns: TurnJudge::JudgedElsewhere }
+        let is_over_ground = matches!(self.place, FollowedPlace::JoinedGraph { .. });
+        let turns = TurnJudge::JudgedElsewhere;
+        FollowerFindings { findings: vec![finding], route, turn_gain: None, ends, turns, is_over_ground }
+    }
+}
+
+/// A frame of a path with what is seen from it, as the follower knows a place.
+fn path_place((frame, seen): (&Frame, &FrameEvidence)) -> PathPlace {
+    let things = seen.things.iter().map(|thing| PathThing {
+        name: thing.name.clone(),
+        position: thing.position,
+        direction_rad: thing.turn_rad.map(|rad| frame.pose.heading.turned_by(rad).rad()),
+    });
+    let (position, room) = (frame.pose.position, seen.rooms.first().cloned());
+    PathPlace { position, room, level: frame.level, things: things.collect() }
+}
+
+/// A way over the ground counts as straight if it is at most this many times as long as the line, and not much longer.
+const STRAIGHT_FACTOR: f64 = 1.1;
+/// The ground is known to the nearest cell, metres.
+const STRAIGHT_SLACK_M: f64 = 0.1;
+/// Where the ground is not known, one is taken to walk straight between places that lie so near to each other, metres.
+const ASSUMED_STRAIGHT_M: f64 = 1.5;
+/// Places with more height between them are on different floors or stairs, metres.
+const ASSUMED_LEVEL_M: f64 = 0.5;
+
+/// Whether the way over the known ground from below one eye to below another is straight.
+fn walks_straight(platform: &dyn Platform, scene: &SceneId, from: DVec3, to: DVec3) -> bool {
+    let frame = |position| Frame { pose: Pose::looking_level(position, Heading::NORTH), viewpoint: None, level: None };
+    let line_m = from.distance(to);
+    match platform.ground().ground_route(scene, &frame(from), &frame(to)) {
+        Ok(Some(way)) => way.length_m <= line_m * STRAIGHT_FACTOR + STRAIGHT_SLACK_M,
+        Ok(None) | Err(_) => false,
     }
 }
 
@@ -237,7 +301,7 @@ pub(crate) fn read_followable(text: &str, tag: Option<&str>) -> Result<(Guide, T
     if !is_understood(&reading, tag) {
         return Err("the program does not understand it");
     }
-    let guide = Guide::from_reading(text, &reading);
+    let guide = Guide::from_reading(&reading);
     if guide.is_empty() { Err("the text tells no step") } else { Ok((guide, reading)) }
 }
 
@@ -261,7 +325,8 @@ impl FollowerFindings {
     /// The result for a text that cannot be followed, for this reason.
     pub(crate) fn not_followed(why: &'static str) -> Self {
         let findings = vec![unknown_route(why)];
-        Self { findings, route: None, turn_gain: None, ends: None, turns: TurnJudge::NotJudged(why) }
+        let turns = TurnJudge::NotJudged(why);
+        Self { findings, route: None, turn_gain: None, ends: None, turns, is_over_ground: false }
     }
 
     /// How ambiguous the text is: places where it may end, and objects that it may mean.
@@ -276,11 +341,17 @@ impl FollowerFindings {
     }
 
     /// Adds the follower's findings to those of a checked text. In a closed world the checks have judged the turns already, so
-    /// only the route is added.
+    /// only the route is added. A text that ends in a task need not tell its way, and over the ground there are many ways to a place, so
+    /// there a better way says nothing against it.
     pub(crate) fn add_to(&self, checked: &mut TextFindings) {
+        let ends_in_task = checked.findings.iter().any(|finding| finding.check == CheckKind::Task);
         let is_route = |finding: &&CheckFinding| finding.check == CheckKind::Route;
         let all = checked.world == CheckWorld::Open;
-        checked.add_findings(self.findings.iter().filter(|finding| all || is_route(finding)).cloned());
+        let says_nothing = |finding: &&CheckFinding| {
+            ends_in_task && self.is_over_ground && is_route(finding) && finding.verdict == Verdict::Fail
+        };
+        let added = self.findings.iter().filter(|finding| (all || is_route(finding)) && !says_nothing(finding));
+        checked.add_findings(added.cloned());
     }
 }
 

@@ -102,7 +102,10 @@ pub fn write_item(
     threads: usize,
 ) -> Result<WrittenItem, CommandError> {
     let RunPlatform { platform, data, scenes } = world;
-    let world = RememberingPlatform::new(platform);
+    let world = match settings.no_pictures {
+        true => RememberingPlatform::for_labels(platform),
+        false => RememberingPlatform::new(platform),
+    };
     let mut path = item_path(item, settings, &world)?;
     describe_path_target(&mut path, platform, scenes)?;
     if let Some(data) = data {
@@ -126,7 +129,9 @@ pub fn write_item(
     let mut evidence = collect_evidence(&walk, &world, settings.evidence, detector)?;
     // With labels, the writer's memory has everything that they list around each frame; with a model, what its captions name.
     let lists_labels = team.sees_labels() && evidence.source == EvidenceSource::Labels;
-    let memory = if lists_labels { WalkMemory::from_path(&evidence, &walk.path) } else { walk.memory() };
+    let evidence_memory = WalkMemory::from_path(&evidence, &walk.path);
+    let captions_memory = (!lists_labels).then(|| walk.memory());
+    let memory = captions_memory.as_ref().unwrap_or(&evidence_memory);
     let scene = match evidence.source {
         EvidenceSource::Labels => Some(scenes.get_or_survey(platform, &walk.path.scene)?),
         _ => None,
@@ -137,7 +142,7 @@ pub fn write_item(
     let followed = match scene.as_deref() {
         None if evidence.motion.is_known() => Err("the texts are not checked against labels"),
         None => Err(UNKNOWN_MOTION_REASON),
-        scene => FollowedPath::new(scene, &walk.path, &evidence),
+        scene => FollowedPath::new(platform, scene, &walk.path, &evidence),
     };
     let follower = PathFollower { followed, evidence: &evidence, rejects_ambiguous: settings.reject_ambiguous };
     let ahead = views_ahead(&world, &walk.path)?;
@@ -146,8 +151,9 @@ pub fn write_item(
     let write_style = |MeasuredStyle { style, profile, hash }: &MeasuredStyle| {
         let order = InstructionOrder {
             walk: &walk,
-            memory: &memory,
+            memory,
             evidence: &evidence,
+            evidence_memory: &evidence_memory,
             style,
             profile,
             style_hash: hash,

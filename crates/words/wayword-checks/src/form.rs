@@ -2,11 +2,11 @@
 
 use super::{findings_or_pass, new_finding};
 use wayword_core::{CheckFinding, CheckKind, StyleConstraints, Verdict};
-use wayword_language::text::{sentence_count, word_count};
+use wayword_language::{reading::TextReading, text::word_count};
 
 /// The findings about the length of a text: a pass if it keeps all limits of its style.
-pub(super) fn check_form(text: &str, constraints: &StyleConstraints) -> Vec<CheckFinding> {
-    let (sentences, words) = (sentence_count(text), word_count(text));
+pub(super) fn check_form(text: &str, reading: &TextReading, constraints: &StyleConstraints) -> Vec<CheckFinding> {
+    let (sentences, words) = (reading.count_sentences(), word_count(text));
     let counted = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
     let mut wrong = Vec::new();
     let mut fail = |reason: String| wrong.push(new_finding(CheckKind::Form, Verdict::Fail, reason, None));
@@ -28,9 +28,15 @@ pub(super) fn check_form(text: &str, constraints: &StyleConstraints) -> Vec<Chec
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeSet;
+    use wayword_language::reading::read_instruction;
+
+    fn findings(text: &str, constraints: &StyleConstraints) -> Vec<CheckFinding> {
+        check_form(text, &read_instruction(text, &BTreeSet::new()), constraints)
+    }
 
     fn reasons(text: &str, constraints: &StyleConstraints) -> Vec<String> {
-        let wrong = check_form(text, constraints).into_iter().filter(|finding| finding.verdict == Verdict::Fail);
+        let wrong = findings(text, constraints).into_iter().filter(|finding| finding.verdict == Verdict::Fail);
         wrong.map(|finding| finding.reason).collect()
     }
 
@@ -55,7 +61,7 @@ mod tests {
     fn a_text_without_words_fails() {
         assert_eq!(reasons("", &StyleConstraints::default()), ["it has no words"]);
         assert_eq!(reasons(" ... ", &StyleConstraints::default()), ["it has no words"]);
-        let passed = check_form("Stop.", &StyleConstraints::default());
+        let passed = findings("Stop.", &StyleConstraints::default());
         assert_eq!((passed.len(), passed[0].check, passed[0].verdict), (1, CheckKind::Form, Verdict::Pass));
     }
 }

@@ -9,7 +9,10 @@ use std::{
 use wayword_core::{CheckFinding, CheckKind, Verdict};
 use wayword_language::{
     lexicon::{names_agree, normalise_name, room_name, same_room},
-    reading::vocabulary::{STOCK, TURNING, WALKING, ordinal_or_number},
+    reading::{
+        TextReading,
+        vocabulary::{STOCK, TURNING, WALKING, ordinal_or_number},
+    },
     text::{TextToken, split_tokens},
 };
 
@@ -48,26 +51,37 @@ impl ReferenceRuns {
     #[must_use]
     pub fn from_references(references: &[String]) -> Self {
         let mut copies = Self::default();
-        for reference in references {
-            let words = word_tokens(reference);
-            let runs = |length: usize| words.windows(length).map(run_hash);
-            for run in runs(SHARED_RUN).collect::<BTreeSet<u64>>() {
-                let count = copies.shared.entry(run).or_default();
-                *count = (*count + 1).min(FORMULA_REFERENCES);
-            }
-            copies.avoided.extend(runs(AVOIDED_RUN));
-            copies.long.extend(runs(LONG_RUN));
-        }
+        references.iter().for_each(|reference| copies.add_reference(&split_tokens(reference)));
         copies
     }
 
-    /// The byte range of the first run of a text that is copied.
+    /// Indexes reference texts that were read before.
     #[must_use]
-    pub fn find_copy(&self, text: &str, topic: TextTopic<'_>) -> Option<[usize; 2]> {
-        let words = word_tokens(text);
-        let has_content_word = |run: &[TextToken]| run.iter().any(|token| !STOCK.contains(&token.word.as_str()));
-        let is_long = |run: &&[TextToken]| has_content_word(run) && self.long.contains(&run_hash(run));
-        let is_shared = |run: &&[TextToken]| {
+    pub fn from_readings<'a>(readings: impl IntoIterator<Item = &'a TextReading>) -> Self {
+        let mut copies = Self::default();
+        readings.into_iter().for_each(|reading| copies.add_reference(reading.tokens()));
+        copies
+    }
+
+    /// Adds the runs of a reference text, of which these are the tokens.
+    fn add_reference(&mut self, tokens: &[TextToken]) {
+        let words = word_tokens(tokens);
+        let runs = |length: usize| words.windows(length).map(run_hash);
+        for run in runs(SHARED_RUN).collect::<BTreeSet<u64>>() {
+            let count = self.shared.entry(run).or_default();
+            *count = (*count + 1).min(FORMULA_REFERENCES);
+        }
+        self.avoided.extend(runs(AVOIDED_RUN));
+        self.long.extend(runs(LONG_RUN));
+    }
+
+    /// The byte range of the first run of a text that is copied. `tokens` are those of the text.
+    #[must_use]
+    pub fn find_copy(&self, tokens: &[TextToken], topic: TextTopic<'_>) -> Option<[usize; 2]> {
+        let words = word_tokens(tokens);
+        let has_content_word = |run: &[&TextToken]| run.iter().any(|token| !STOCK.contains(&token.word.as_str()));
+        let is_long = |run: &&[&TextToken]| has_content_word(run) && self.long.contains(&run_hash(run));
+        let is_shared = |run: &&[&TextToken]| {
             let count = self.shared.get(&run_hash(run)).copied().unwrap_or_default();
             (1..FORMULA_REFERENCES).contains(&count) && run.iter().any(|token| is_content(&token.word, topic))
         };
@@ -75,20 +89,21 @@ impl ReferenceRuns {
         Some([run[0].span[0], run[run.len() - 1].span[1]])
     }
 
-    /// The byte range of the first eight words in a row that a text shares with a reference.
+    /// The byte range of the first eight words in a row that a text shares with a reference. `tokens` are those of the
+    /// text.
     #[must_use]
-    pub fn find_avoidable_copy(&self, text: &str) -> Option<[usize; 2]> {
-        let words = word_tokens(text);
+    pub fn find_avoidable_copy(&self, tokens: &[TextToken]) -> Option<[usize; 2]> {
+        let words = word_tokens(tokens);
         let run = words.windows(AVOIDED_RUN).find(|run| self.avoided.contains(&run_hash(run)))?;
         Some([run[0].span[0], run[AVOIDED_RUN - 1].span[1]])
     }
 }
 
-fn word_tokens(text: &str) -> Vec<TextToken> {
-    split_tokens(text).into_iter().filter(TextToken::is_word).collect()
+fn word_tokens(tokens: &[TextToken]) -> Vec<&TextToken> {
+    tokens.iter().filter(|token| token.is_word()).collect()
 }
 
-fn run_hash(run: &[TextToken]) -> u64 {
+fn run_hash(run: &[&TextToken]) -> u64 {
     let mut hasher = DefaultHasher::new();
     run.iter().for_each(|token| token.word.hash(&mut hasher));
     hasher.finish()
@@ -107,13 +122,13 @@ fn is_content(word: &str, topic: TextTopic<'_>) -> bool {
     !(is_of_way || is_of_storey || ordinal_or_number(word) || is_target() || is_room())
 }
 
-/// The finding about copied words: a failure at the first copy.
-pub(super) fn check_leak(text: &str, subject: CheckSubject<'_>) -> CheckFinding {
+/// The finding about copied words: a failure at the first copy. `tokens` are those of the text.
+pub(super) fn check_leak(text: &str, tokens: &[TextToken], subject: CheckSubject<'_>) -> CheckFinding {
     let rooms = subject.evidence.frames.last().map_or(&[][..], |frame| &frame.rooms);
     let topic = TextTopic { target: subject.target.map(|target| target.name.as_str()), rooms };
     let copied = match subject.copies {
-        Some(copies) => copies.find_copy(text, topic),
-        None => ReferenceRuns::from_references(&subject.style.references).find_copy(text, topic),
+        Some(copies) => copies.find_copy(tokens, topic),
+        None => ReferenceRuns::from_references(&subject.style.references).find_copy(tokens, topic),
     };
     match copied {
         None => pass_finding(CheckKind::Leak),
@@ -130,7 +145,8 @@ mod tests {
 
     fn copied<'a>(text: &'a str, references: &[&str], topic: TextTopic<'_>) -> Option<&'a str> {
         let references: Vec<String> = references.iter().map(|text| (*text).to_owned()).collect();
-        ReferenceRuns::from_references(&references).find_copy(text, topic).map(|[from, to]| &text[from..to])
+        let found = ReferenceRuns::from_references(&references).find_copy(&split_tokens(text), topic);
+        found.map(|[from, to]| &text[from..to])
     }
 
     #[test]
@@ -209,9 +225,9 @@ mod tests {
         let references = ["Now go to the old oak table and wait there".to_owned()];
         let runs = ReferenceRuns::from_references(&references);
         let text = "Please go to the old oak table and wait there.";
-        let found = runs.find_avoidable_copy(text).map(|[from, to]| &text[from..to]);
+        let found = runs.find_avoidable_copy(&split_tokens(text)).map(|[from, to]| &text[from..to]);
         assert_eq!(found, Some("go to the old oak table and wait"));
-        assert_eq!(runs.find_avoidable_copy("Please go to the old oak table and stop."), None);
+        assert_eq!(runs.find_avoidable_copy(&split_tokens("Please go to the old oak table and stop.")), None);
     }
 
     #[test]
@@ -221,17 +237,18 @@ mod tests {
         let evidence = crate::tests::to_the_bedroom();
         let subject = CheckSubject::closed_world(&evidence, &style, None);
         let text = "Now walk past the old oak table";
-        let found = check_leak(text, subject);
+        let leak = |text: &str, subject: CheckSubject<'_>| check_leak(text, &split_tokens(text), subject);
+        let found = leak(text, subject);
         assert_eq!((found.check, found.verdict, found.span), (CheckKind::Leak, Verdict::Fail, Some([4, text.len()])));
         assert_eq!(found.reason, "\"walk past the old oak table\" is in a reference text too");
         let empty = ReferenceRuns::default();
-        assert_eq!(check_leak(text, subject.with_copies(&empty)), pass_finding(CheckKind::Leak));
-        assert_eq!(check_leak("Walk past the bed", subject), pass_finding(CheckKind::Leak));
+        assert_eq!(leak(text, subject.with_copies(&empty)), pass_finding(CheckKind::Leak));
+        assert_eq!(leak("Walk past the bed", subject), pass_finding(CheckKind::Leak));
         // The rooms of the last frame are the text's own topic.
         let rooms = vec!["Go on and go into the bedroom.".to_owned(), "Go on and go into the hallway.".to_owned()];
         let style = wayword_core::InstructionStyle { references: rooms, ..style };
         let subject = CheckSubject::closed_world(&evidence, &style, None);
-        assert_eq!(check_leak("Go on and go into the bedroom.", subject).verdict, Verdict::Pass);
-        assert_eq!(check_leak("Go on and go into the hallway.", subject).verdict, Verdict::Fail);
+        assert_eq!(leak("Go on and go into the bedroom.", subject).verdict, Verdict::Pass);
+        assert_eq!(leak("Go on and go into the hallway.", subject).verdict, Verdict::Fail);
     }
 }

@@ -13,8 +13,9 @@
 //! - `evidence/`: the knowledge of a path, one file for each source; `building.rs` and `surroundings.rs` for the things listed around it.
 //! - [`detection`]: what a detector's finds and misses prove, by its measured figures.
 //! - [`memory`]: what stays in mind of a walk. Writers and prompts get it.
-//! - `align`: which frames the statements of a text are about.
-//! - `goal`: where a text ends the walk. `coverage`: what was not understood. `leak`: what was copied from a style's references.
+//! - `walk_claims/`: each claim at its own stretch of the walk, where labels and poses are known and frames lie close together.
+//! - `align`, `order`, `goal`: the order and the end of a text where `walk_claims` does not judge them.
+//! - `coverage`: what was not understood. `leak`: what was copied from a style's references.
 //! - `world`: whether a text is held against a closed or an open world.
 //! - `open/claims.rs`, `relation.rs`: what a text of another author claims; `features.rs` and `claim_sight.rs`: how far the labels confirm it.
 //! - `open/weights.toml`: the weights and thresholds of those features, fitted by `wayword-measure fit-evidence`.
@@ -38,13 +39,14 @@ mod testimony;
 #[cfg(test)]
 mod tests;
 mod unknown_motion;
+mod walk_claims;
 mod world;
 
 use std::collections::BTreeSet;
 use wayword_core::{CheckFinding, CheckKind, InstructionStyle, MentionKind, PathTarget, TextMention, Verdict};
 use wayword_language::{
     lexicon::{names_agree, normalise_name, same_colour},
-    reading::{EventContent, TextEvent, TextReading, read_instruction},
+    reading::{EventContent, TextEvent, TextReading, read_instruction, steps::read_steps},
 };
 
 pub use evidence::{
@@ -77,6 +79,8 @@ pub struct CheckSubject<'a> {
     pub writer_sees: bool,
     /// The index of the style's reference texts; where there is none, it is made for each text.
     pub copies: Option<&'a ReferenceRuns>,
+    /// The memory of the walk, with its poses. In a closed world with labels, each claim is held against its own stretch of it.
+    pub memory: Option<&'a WalkMemory>,
 }
 
 impl<'a> CheckSubject<'a> {
@@ -94,6 +98,7 @@ impl<'a> CheckSubject<'a> {
             tag: None,
             writer_sees: false,
             copies: None,
+            memory: None,
         }
     }
 
@@ -101,6 +106,12 @@ impl<'a> CheckSubject<'a> {
     #[must_use]
     pub fn with_copies(self, copies: &'a ReferenceRuns) -> Self {
         Self { copies: Some(copies), ..self }
+    }
+
+    /// The same, with the memory of the walk.
+    #[must_use]
+    pub fn with_memory(self, memory: &'a WalkMemory) -> Self {
+        Self { memory: Some(memory), ..self }
     }
 
     /// A text by another author.
@@ -122,31 +133,29 @@ pub struct TextFindings {
 }
 
 impl TextFindings {
-    /// The verdict of all checks together: the worst of them. In a closed world, an unverified route is left out, so a
-    /// text can pass in spite of such a finding: the other checks know everything that such a text may claim.
+    /// The verdict of all checks together: the worst of them.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
-        let is_left_out = |finding: &&CheckFinding| {
-            let is_unfollowed = finding.check == CheckKind::Route && finding.verdict == Verdict::Unverified;
-            self.world == CheckWorld::Closed && is_unfollowed
-        };
-        let counted = self.findings.iter().filter(|finding| !is_left_out(finding));
-        counted.map(|finding| finding.verdict).max().unwrap_or(Verdict::Unverified)
+        self.findings.iter().map(|finding| finding.verdict).max().unwrap_or(Verdict::Unverified)
     }
 }
 
 /// Runs all checks on a text, in the style and the world of `subject`.
 #[must_use]
 pub fn check_text(text: &str, subject: CheckSubject<'_>) -> TextFindings {
-    check_against(text, subject, false)
+    check_against(text, &read_instruction(text, &known_names(subject.evidence)), subject, false)
 }
 
-/// Runs all checks. `from_captions_alone`: the text was written from the captions alone, so a thing that none of them
-/// names was made up.
-fn check_against(text: &str, subject: CheckSubject<'_>, from_captions_alone: bool) -> TextFindings {
-    let whole = read_instruction(text, &known_names(subject.evidence));
+/// Runs all checks. `whole` is the reading of the text with its denied events. `from_captions_alone`: the text was
+/// written from the captions alone, so a thing that none of them names was made up.
+fn check_against(
+    text: &str,
+    whole: &TextReading,
+    subject: CheckSubject<'_>,
+    from_captions_alone: bool,
+) -> TextFindings {
     let reading = whole.clone().into_claims();
-    let mut findings = form::check_form(text, &subject.style.constraints);
+    let mut findings = form::check_form(text, whole, &subject.style.constraints);
     let ends_in_task = subject.style.constraints.ends_in_task;
     if ends_in_task {
         findings.push(task::check_task(&reading, subject));
@@ -154,9 +163,21 @@ fn check_against(text: &str, subject: CheckSubject<'_>, from_captions_alone: boo
     // Where the style asks for no task, the object of one is a landmark like any other.
     let object = reading.task.as_ref().and_then(|task| task.object).filter(|_| ends_in_task);
     let places = landmarks::check_landmarks(&reading, subject.evidence, object, from_captions_alone);
+    let on_walk = check_on_walk(&reading, subject, object);
     let walk = order::check_order(&reading, subject.evidence, &places.shown);
-    match subject.world {
-        CheckWorld::Closed => {
+    let mut frames = walk.frames;
+    match (subject.world, on_walk) {
+        (CheckWorld::Closed, Some(on_walk)) => {
+            findings.extend(places.findings);
+            findings.extend(floors::check_floors(&reading, subject.evidence));
+            on_walk.findings.into_iter().for_each(|finding| add_worse(&mut findings, finding));
+            findings.extend(open::repeats::check_repeats(&reading, subject));
+            // The check of the order knows a frame for places that this one does not judge.
+            for (frame, judged) in frames.iter_mut().zip(on_walk.frames) {
+                *frame = judged.or(*frame);
+            }
+        }
+        (CheckWorld::Closed, None) => {
             findings.extend(places.findings);
             if let Some(wrong) = goal::check_goal(&reading, subject.evidence, object) {
                 add_worse(&mut findings, wrong);
@@ -164,12 +185,27 @@ fn check_against(text: &str, subject: CheckSubject<'_>, from_captions_alone: boo
             findings.extend(walk.findings);
             findings.extend(floors::check_floors(&reading, subject.evidence));
         }
-        CheckWorld::Open => findings.extend(open::check_open(text, &whole, &reading, subject)),
+        (CheckWorld::Open, _) => findings.extend(open::check_open(whole, &reading, subject)),
     }
     findings.extend(coverage::check_coverage(&reading, reading.language.or_tagged(subject.tag)));
-    findings.push(leak::check_leak(text, subject));
+    findings.push(leak::check_leak(text, whole.tokens(), subject));
     findings.sort_by_key(|finding| finding.check);
-    TextFindings { mentions: collect_mentions(&reading, &walk.frames), findings, world: subject.world }
+    TextFindings { mentions: collect_mentions(&reading, &frames), findings, world: subject.world }
+}
+
+/// The findings about each claim at its own stretch of the walk, where the labels and the poses of the walk are known.
+fn check_on_walk(
+    reading: &TextReading,
+    subject: CheckSubject<'_>,
+    object: Option<usize>,
+) -> Option<walk_claims::WalkFindings> {
+    let memory = subject.memory.filter(|_| subject.world == CheckWorld::Closed)?;
+    if subject.evidence.source != EvidenceSource::Labels {
+        return None;
+    }
+    let steps = read_steps(reading);
+    let tells_way = !subject.style.constraints.ends_in_task;
+    walk_claims::check_walk_claims(reading, &steps, (subject.evidence, memory), object, tells_way)
 }
 
 /// Checks a text that this program wrote. It is stricter than [`check_text`]: where the motion is unknown, the writer must
@@ -178,11 +214,12 @@ fn check_against(text: &str, subject: CheckSubject<'_>, from_captions_alone: boo
 #[must_use]
 pub fn check_own_text(text: &str, subject: CheckSubject<'_>) -> TextFindings {
     let from_captions_alone = subject.evidence.source == EvidenceSource::Captions && !subject.writer_sees;
-    let mut checked = check_against(text, subject, from_captions_alone);
+    let whole = read_instruction(text, &known_names(subject.evidence));
+    let mut checked = check_against(text, &whole, subject, from_captions_alone);
     if subject.evidence.motion.is_known() {
         return checked;
     }
-    let made_up = unknown_motion::find_made_up(text, &known_names(subject.evidence));
+    let made_up = unknown_motion::find_made_up(text, &whole);
     // These findings replace milder ones of the same check, on the same words or on no words at all.
     let replaced: BTreeSet<_> =
         made_up.iter().flat_map(|finding| [(finding.check, None), (finding.check, finding.span)]).collect();

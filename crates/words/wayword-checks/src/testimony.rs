@@ -5,7 +5,6 @@ use wayword_core::{CheckFinding, CheckKind, ClimbDirection, Side, Verdict};
 use wayword_language::{
     lexicon::{names_agree, same_room},
     reading::{EventContent, PlaceMention, TextEvent, read_instruction},
-    text::split_words,
 };
 
 /// The statements of a text, as testimony for other texts about the same path.
@@ -20,7 +19,8 @@ impl Testimony {
     /// Reads the statements of a text about a path.
     #[must_use]
     pub fn from_text(text: &str, evidence: &Evidence) -> Self {
-        Self { events: read_instruction(text, &known_names(evidence)).into_claims().events, words: split_words(text) }
+        let reading = read_instruction(text, &known_names(evidence)).into_claims();
+        Self { words: reading.to_plain_words(), events: reading.events }
     }
 
     /// Its turns, each with its side, in their order.

@@ -2,11 +2,10 @@
 //! them, so it invented them.
 
 use super::new_finding;
-use std::collections::BTreeSet;
 use wayword_core::{CheckFinding, CheckKind, Verdict};
 use wayword_language::{
-    reading::{EventContent, TextEvent, read_instruction},
-    text::{TextToken, split_tokens},
+    reading::{EventContent, TextEvent, TextReading},
+    text::TextToken,
 };
 
 /// Words that count how far one walks.
@@ -18,16 +17,15 @@ const DISTANCE_UNIT_WORDS: &[&str] = &[
 ];
 
 /// Failures for turns, sides, stairs, storeys and distances, even where the text denies them: "do not turn left" claims
-/// to know of a turn. `known`: the names of the objects along the path.
-pub(super) fn find_made_up(text: &str, known: &BTreeSet<String>) -> Vec<CheckFinding> {
-    let events = read_instruction(text, known).events;
-    let tokens = split_tokens(text);
-    let stated = events.iter().filter_map(|event| Some((unknown_motion_fact(event)?, event.span)));
+/// to know of a turn. `reading` still has its denied events.
+pub(super) fn find_made_up(text: &str, reading: &TextReading) -> Vec<CheckFinding> {
+    let tokens = reading.tokens();
+    let stated = reading.events.iter().filter_map(|event| Some((unknown_motion_fact(event)?, event.span)));
     let straight = tokens
         .iter()
         .filter(|token| token.word == "straight")
         .map(|token| ((CheckKind::Turns, "which way the path goes"), token.span));
-    let distances = distance_spans(&tokens).map(|span| ((CheckKind::Turns, "how far the path goes"), span));
+    let distances = distance_spans(tokens).map(|span| ((CheckKind::Turns, "how far the path goes"), span));
     let all = stated.chain(straight).chain(distances);
     all.map(|((check, what), span)| {
         let words = text.get(span[0]..span[1]).unwrap_or_default();
@@ -70,9 +68,15 @@ fn distance_spans(tokens: &[TextToken]) -> impl Iterator<Item = [usize; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeSet;
+    use wayword_language::reading::read_instruction;
+
+    fn findings(text: &str) -> Vec<CheckFinding> {
+        find_made_up(text, &read_instruction(text, &BTreeSet::new()))
+    }
 
     fn made_up(text: &str) -> Vec<(CheckKind, &str)> {
-        let found = find_made_up(text, &BTreeSet::new());
+        let found = findings(text);
         assert!(found.iter().all(|finding| finding.verdict == Verdict::Fail), "{found:?}");
         found.iter().map(|finding| (finding.check, finding.span.map_or("", |[from, to]| &text[from..to]))).collect()
     }
@@ -98,7 +102,7 @@ mod tests {
 
     #[test]
     fn find_made_up_gives_the_fact_that_is_not_known() {
-        let reason = |text: &str| find_made_up(text, &BTreeSet::new()).remove(0).reason;
+        let reason = |text: &str| findings(text).remove(0).reason;
         for (text, words, fact) in [
             ("Go straight to the sofa", "straight", "which way the path goes"),
             ("Go 3 metres to the sofa", "3 metres", "how far the path goes"),

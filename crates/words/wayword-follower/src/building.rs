@@ -30,8 +30,29 @@ pub struct PathPlace {
     pub position: DVec3,
     /// The room, where it is known.
     pub room: Option<String>,
-    /// The objects that are seen, each with its direction (radians from +y, clockwise), where that is known.
-    pub things: Vec<(String, Option<f64>)>,
+    /// The storey, the lowest being 1, where it is known.
+    pub level: Option<u32>,
+    /// The objects that are seen.
+    pub things: Vec<PathThing>,
+}
+
+/// An object that is seen from a place on a path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PathThing {
+    /// Its name.
+    pub name: String,
+    /// Its position, metres, where that is known.
+    pub position: Option<DVec3>,
+    /// Its direction, radians from +y clockwise, where that is known.
+    pub direction_rad: Option<f64>,
+}
+
+impl PathThing {
+    /// Where it lies, seen from an eye. If only its direction is known, it is assumed to be near.
+    pub(crate) fn position_from(&self, eye: DVec3) -> DVec3 {
+        let towards = |rad: f64| DVec3::new(libm::sin(rad), libm::cos(rad), 0.0) * NEARBY_M;
+        self.position.unwrap_or_else(|| eye + self.direction_rad.map_or(DVec3::ZERO, towards))
+    }
 }
 
 /// Assumed distance of an object that is seen from a path, metres.
@@ -84,19 +105,22 @@ impl KnownBuilding {
         for (at, place) in path.into_iter().enumerate() {
             let neighbours = [at.checked_sub(1), (at < last).then_some(at + 1)];
             let neighbours = neighbours.into_iter().flatten().collect();
-            for (name, direction) in place.things {
-                let off =
-                    direction.map_or(DVec3::ZERO, |rad| DVec3::new(libm::sin(rad), libm::cos(rad), 0.0) * NEARBY_M);
-                let (name, position) = (normalise_name(&name), place.position + off);
+            for thing in place.things {
+                let (name, position) = (normalise_name(&thing.name), thing.position_from(place.position));
                 building.things.push(BuildingThing { name, position, seen_from: vec![at] });
             }
-            let (position, room) = (place.position, place.room);
-            let viewpoint =
-                BuildingViewpoint { position, neighbours, room, level: None, is_known: true, climbs: [false; 2] };
+            let PathPlace { position, room, level, .. } = place;
+            let viewpoint = BuildingViewpoint { position, neighbours, room, level, is_known: true, climbs: [false; 2] };
             building.viewpoints.push(viewpoint);
         }
         building.find_stairs();
         building
+    }
+
+    /// The same viewpoints and things, without the computed distances.
+    pub(crate) fn copy_places(&self) -> Self {
+        let (viewpoints, things) = (self.viewpoints.clone(), self.things.clone());
+        Self { viewpoints, things, levels: self.levels, near: Mutex::default() }
     }
 
     /// Records at which viewpoints a way up or down begins.

@@ -139,12 +139,12 @@ impl Guide {
     /// Reads an instruction.
     #[must_use]
     pub fn read_text(text: &str) -> Self {
-        Self::from_reading(text, &read_instruction(text, &BTreeSet::new()))
+        Self::from_reading(&read_instruction(text, &BTreeSet::new()))
     }
 
     /// The guide of an instruction that was read before.
     #[must_use]
-    pub fn from_reading(text: &str, reading: &TextReading) -> Self {
+    pub fn from_reading(reading: &TextReading) -> Self {
         let mut rooms = Vec::new();
         let to_guide_step = |step: InstructionStep| {
             let mut mentions: Vec<GuideMention> = Vec::new();
@@ -169,7 +169,7 @@ impl Guide {
             }
             GuideStep { kind: GuideStepKind::for_step(&step), step, mentions }
         };
-        let mut steps: Vec<GuideStep> = read_steps(text, reading).into_iter().map(to_guide_step).collect();
+        let mut steps: Vec<GuideStep> = read_steps(reading).into_iter().map(to_guide_step).collect();
         let is_goal = !steps.is_empty() && !steps.iter().any(|step| step.describes_way());
         if is_goal {
             steps.iter_mut().for_each(|step| step.kind = GuideStepKind::Task);

@@ -13,6 +13,7 @@
 //! - [`doubt`]: `mod.rs`, `ways.rs` and `other_places.rs` find words to doubt and others for them; `bounds.rs` has the gains, `from_checks.rs` the
 //!   doubts that come from checks and ambiguity.
 //! - `guide`: the steps of a text. `features/`: the features of a step on a walk. `tree`: the walks that a text may mean.
+//! - `walk_on_graph`: a walk between the viewpoints of a graph, put onto it.
 //! - [`online`]: the same without a map, and going on to the unknown.
 //! - `weights/fitted.json`, `online/fitted.json`: the weights, fitted by [`learn`] and `wayword-measure fit-follower`.
 
@@ -36,11 +37,13 @@ pub mod swap;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod walk_on_graph;
 mod weights;
 
-pub use building::{KnownBuilding, PathPlace};
+pub use building::{KnownBuilding, PathPlace, PathThing};
 pub use fit::{MAX_FOLLOW_WORK, WalkFit};
 pub use guide::{Guide, GuideTrial};
 pub use posterior::{best_walk, walk_shares};
 pub use tree::{WalkPrior, WalkTree};
+pub use walk_on_graph::WalkOnGraph;
 pub use weights::{FeatureWeights, WeightsError};

@@ -2,13 +2,11 @@
 
 use crate::{
     cluster::TriangleCluster,
-    raster::PictureBand,
+    raster::{PictureBand, TILE_WIDTH_PX},
     view::{SUBPIXEL_STEPS, ScreenCorner, ViewProjection},
 };
 use glam::Vec3;
 
-/// Width of a tile, pixels. A tile is as high as its band.
-pub(crate) const TILE_WIDTH_PX: usize = 16;
 /// A cluster counts as nearer than it is by this share, because nearness is rounded.
 const NEARNESS_SLACK: f32 = 1e-3;
 

@@ -5,10 +5,12 @@
 //! or a left one (the top-left rule of GPUs).
 
 use crate::cluster::SceneTriangle;
-use crate::hidden::TILE_WIDTH_PX;
 use crate::triangle_setup::{ScreenTriangle, TriangleBatch, centres_between};
 use crate::view::SUBPIXEL_STEPS;
 use std::ops::RangeInclusive;
+
+/// Width of a tile of a band, pixels. A tile is as high as its band.
+pub(crate) const TILE_WIDTH_PX: usize = 16;
 
 /// A triangle of the batches: the batch and its place there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,12 @@
-//! The result of reading an instruction: its events in the order of the text, its closing task, its words and clauses.
+//! The result of reading an instruction: its events in the order of the text, its closing task, its words and clauses,
+//! and the tokens that all of these were read from.
 
-use super::{ReadWord, TextClause};
-use crate::Language;
+use super::{ReadWord, TextClause, tokens::ReadTokens};
+use crate::{
+    Language,
+    text::{self, TextToken},
+};
+use std::sync::Arc;
 use wayword_core::{ClimbDirection, Side};
 
 /// An instruction after the rules of the language went over it.
@@ -17,6 +22,9 @@ pub struct TextReading {
     pub clauses: Vec<TextClause>,
     /// The language of the text. Parts in another language than English are not read.
     pub language: Language,
+    /// Its tokens, so that the text need not be split again. A reading without its denied events still has all of them,
+    /// and shares them with the reading that it was made from.
+    pub(super) tokens: Arc<ReadTokens>,
 }
 
 /// One statement or command of an instruction: a place, a turn, a climb, a distance.
@@ -192,6 +200,35 @@ pub struct ClosingTask {
 }
 
 impl TextReading {
+    /// The words and marks of the text, as [`split_tokens`](text::split_tokens) finds them.
+    #[must_use]
+    pub fn tokens(&self) -> &[TextToken] {
+        &self.tokens.all
+    }
+
+    /// For each token, the number of its clause, counted over the whole text.
+    #[must_use]
+    pub fn token_clauses(&self) -> &[usize] {
+        &self.tokens.clauses
+    }
+
+    /// For each token, whether the text denies it.
+    pub(super) fn denied_tokens(&self) -> &[bool] {
+        &self.tokens.denied
+    }
+
+    /// The words of the text, lower case, without marks.
+    #[must_use]
+    pub fn to_plain_words(&self) -> Vec<String> {
+        self.tokens().iter().filter(|token| token.is_word()).map(|token| token.word.clone()).collect()
+    }
+
+    /// Number of sentences: words up to a full stop, exclamation or question mark, or the end.
+    #[must_use]
+    pub fn count_sentences(&self) -> usize {
+        text::count_sentences(self.tokens())
+    }
+
     /// The reading without the denied events: only the text's claims.
     #[must_use]
     pub fn into_claims(mut self) -> Self {

@@ -41,21 +41,21 @@ pub use events::{
 };
 pub use numbers::{cardinal_number, ordinal_word};
 pub use roles::{ReadWord, TextClause, WordRole};
-use std::collections::BTreeSet;
-use tokens::TokenSlice;
+use std::{collections::BTreeSet, sync::Arc};
+use tokens::{ReadTokens, TokenSlice};
 
 /// Reads a text. `known` has the evidence's names in normal spelling, because the lexicon may lack them.
 #[must_use]
 pub fn read_instruction(text: &str, known: &BTreeSet<String>) -> TextReading {
-    let tokens = text::split_tokens(text);
-    let clauses = clause_numbers(&tokens);
-    let tokens = TokenSlice::from_tokens(&tokens);
-    let mut events = turns::read_turns(tokens, &clauses);
-    events.extend(climbs::climbs_and_floors(tokens, &clauses));
-    events.extend(onward::onward_commands(tokens, &clauses));
-    events.extend(compass::compass_events(tokens, &clauses));
-    events.extend(stops::stops_and_facing(tokens, &clauses));
-    events.extend(distances::read_distances(tokens, &clauses));
+    let all = text::split_tokens(text);
+    let numbers = clause_numbers(&all);
+    let tokens = TokenSlice::from_tokens(&all);
+    let mut events = turns::read_turns(tokens, &numbers);
+    events.extend(climbs::climbs_and_floors(tokens, &numbers));
+    events.extend(onward::onward_commands(tokens, &numbers));
+    events.extend(compass::compass_events(tokens, &numbers));
+    events.extend(stops::stops_and_facing(tokens, &numbers));
+    events.extend(distances::read_distances(tokens, &numbers));
     // In "the second floor" there is no place, and "left" in "turn left at the door" is no side of the door.
     let names_no_place =
         |event: &&TextEvent| matches!(event.what, EventContent::Floor(_) | EventContent::Distance { .. });
@@ -63,17 +63,18 @@ pub fn read_instruction(text: &str, known: &BTreeSet<String>) -> TextReading {
     let has_own_side = |event: &&TextEvent| matches!(event.what, EventContent::Turn(_) | EventContent::Floor(_));
     let mut turns_and_storeys: Vec<[usize; 2]> = events.iter().filter(has_own_side).map(|event| event.span).collect();
     turns_and_storeys.sort_unstable();
-    events.extend(places::read_places(tokens, &clauses, known, &placeless, &turns_and_storeys));
+    events.extend(places::read_places(tokens, &numbers, known, &placeless, &turns_and_storeys));
     events.sort_by_key(|event| event.span);
-    let denied = denial::denied_tokens(tokens, &clauses);
+    let denied = denial::denied_tokens(tokens, &numbers);
     for event in &mut events {
         event.denied = denied[tokens.first_from(event.span[0])];
     }
     mark_turn_places(tokens, &mut events);
     let task = task::closing_task(tokens, &events);
-    let (words, clauses) = coverage::read_coverage(tokens, &clauses, &events, known);
-    let language = language_of(text, &words);
-    TextReading { events, task, words, clauses, language }
+    let (words, clauses) = coverage::read_coverage(tokens, &numbers, &events, known);
+    let language = language_of(text, &all, &words);
+    let tokens = Arc::new(ReadTokens { all, clauses: numbers, denied });
+    TextReading { events, task, words, clauses, language, tokens }
 }
 
 /// The number of each token's clause. Commas, full stops and "then" begin a new clause, and so does an "and" before a
@@ -163,6 +164,9 @@ mod tests {
             let tokens = text::split_tokens(&text);
             let spans: Vec<[usize; 2]> = tokens.iter().filter(|token| token.is_word()).map(|token| token.span).collect();
             prop_assert_eq!(reading.words.iter().map(|word| word.span).collect::<Vec<_>>(), spans);
+            prop_assert_eq!(reading.tokens(), tokens.as_slice());
+            prop_assert_eq!(reading.to_plain_words(), text::split_words(&text));
+            prop_assert_eq!(reading.count_sentences(), text::sentence_count(&text));
             for event in &reading.events {
                 let clause = reading.clauses[event.clause];
                 prop_assert!(is_part(event.span) && clause.span[0] <= event.span[0], "{:?}", event);
@@ -214,6 +218,15 @@ mod tests {
             read_instruction("Don't pass the sofa. Go to the bed and clean the lamp", &BTreeSet::new()).into_claims();
         let object = reading.task.and_then(|task| task.object).unwrap();
         assert!(matches!(&reading.events[object].what, EventContent::Place(place) if place.name == "lamp"));
+    }
+
+    #[test]
+    fn into_claims_keeps_the_tokens_of_denied_events() {
+        let reading = read_instruction("Do not turn right. Stop at the sofa.", &BTreeSet::new());
+        let claims = reading.clone().into_claims();
+        assert!(claims.events.len() < reading.events.len());
+        assert_eq!(claims.tokens(), reading.tokens());
+        assert_eq!(claims.token_clauses(), clause_numbers(reading.tokens()));
     }
 
     #[test]

@@ -2,13 +2,8 @@
 
 mod relation;
 
-use super::{
-    EventContent, StoreyMention, TextEvent, TextReading, clause_numbers, denial::denied_tokens, tokens::TokenSlice,
-};
-use crate::{
-    lexicon::room_name,
-    text::{self, TextToken},
-};
+use super::{EventContent, StoreyMention, TextEvent, TextReading};
+use crate::{lexicon::room_name, text::TextToken};
 pub use relation::StepRelation;
 use std::ops::Range;
 use wayword_core::{ClimbDirection, Side};
@@ -95,21 +90,16 @@ pub enum StepStairs {
 
 /// The steps of a text that was read. Denied events are no part of them.
 #[must_use]
-pub fn read_steps(text: &str, reading: &TextReading) -> Vec<InstructionStep> {
-    let tokens = text::split_tokens(text);
-    let clauses = clause_numbers(&tokens);
-    let denied = denied_tokens(TokenSlice::from_tokens(&tokens), &clauses);
+pub fn read_steps(reading: &TextReading) -> Vec<InstructionStep> {
+    let (tokens, denied) = (reading.tokens(), reading.denied_tokens());
     let first_token = |event: &TextEvent| tokens.partition_point(|token| token.span[0] < event.span[0]);
     let events: Vec<(usize, &TextEvent)> = reading.events.iter().map(|event| (first_token(event), event)).collect();
     let mut next_event = 0;
     let mut steps = Vec::new();
-    for range in step_ranges(&tokens, &clauses, &events) {
+    for range in step_ranges(tokens, reading.token_clauses(), &events) {
         let from = next_event;
         next_event += events[from..].partition_point(|(at, _)| *at < range.end);
-        steps.extend(
-            StepBuilder { tokens: &tokens, denied: &denied, range, first_event: from }
-                .build_step(&events[from..next_event]),
-        );
+        steps.extend(StepBuilder { tokens, denied, range, first_event: from }.build_step(&events[from..next_event]));
     }
     steps
 }
@@ -280,7 +270,7 @@ mod tests {
 
     fn told(text: &str) -> Vec<(String, InstructionStep)> {
         let reading = read_instruction(text, &BTreeSet::new());
-        read_steps(text, &reading).into_iter().map(|step| (text[step.span[0]..step.span[1]].to_owned(), step)).collect()
+        read_steps(&reading).into_iter().map(|step| (text[step.span[0]..step.span[1]].to_owned(), step)).collect()
     }
 
     #[test]

@@ -6,6 +6,17 @@
 
 use crate::text::TextToken;
 
+/// The tokens of a text, with what depends on the text alone and not on the names that its reader knew.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct ReadTokens {
+    /// The words and marks of the text.
+    pub(super) all: Vec<TextToken>,
+    /// For each token, the number of its clause.
+    pub(super) clauses: Vec<usize>,
+    /// For each token, whether the text denies it.
+    pub(super) denied: Vec<bool>,
+}
+
 /// The tokens of a text.
 #[derive(Clone, Copy)]
 pub(super) struct TokenSlice<'a>(&'a [TextToken]);

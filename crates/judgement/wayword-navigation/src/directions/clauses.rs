@@ -17,9 +17,9 @@ pub(super) struct MendedClause {
     pub(super) head: Range<usize>,
 }
 
-/// The clauses of a text that have words.
-pub(super) fn mend_clauses(text: &str, tokens: &[TextToken]) -> Vec<MendedClause> {
-    let ranges = clause_ranges(tokens);
+/// The clauses of a text that have words. `numbers` has the reader's number of each token's clause.
+pub(super) fn mend_clauses(text: &str, tokens: &[TextToken], numbers: &[usize]) -> Vec<MendedClause> {
+    let ranges = clause_ranges(tokens, numbers);
     let mut mended: Vec<MendedClause> = Vec::new();
     for (at, range) in ranges.iter().enumerate() {
         let continues = || {
@@ -39,7 +39,7 @@ pub(super) fn mend_clauses(text: &str, tokens: &[TextToken]) -> Vec<MendedClause
 pub(crate) fn clause_texts(text: &str) -> Vec<&str> {
     let tokens = split_tokens(text);
     let words = |clause: MendedClause| &text[tokens[clause.all.start].span[0]..tokens[clause.all.end - 1].span[1]];
-    mend_clauses(text, &tokens).into_iter().map(words).collect()
+    mend_clauses(text, &tokens, &clause_numbers(&tokens)).into_iter().map(words).collect()
 }
 
 /// Whether a text by itself ends in a task.
@@ -71,10 +71,10 @@ fn is_adjective(text: &str, tokens: &[TextToken], from: usize, clause: &Range<us
 }
 
 /// The reader's clauses that have words, as ranges of tokens without the words and marks that join them.
-fn clause_ranges(tokens: &[TextToken]) -> Vec<Range<usize>> {
+fn clause_ranges(tokens: &[TextToken], numbers: &[usize]) -> Vec<Range<usize>> {
     let mut ranges = Vec::new();
     let mut from = 0;
-    for clause in clause_numbers(tokens).chunk_by(|a, b| a == b) {
+    for clause in numbers.chunk_by(|a, b| a == b) {
         let mut range = from..from + clause.len();
         from = range.end;
         range.start += tokens[range.clone()].iter().take_while(|token| is_joint(token)).count();

@@ -7,7 +7,7 @@ use std::{collections::BTreeSet, ops::Range};
 use wayword_language::{
     directions::{AFTER_ROOM, GOING_ON},
     reading::{EventContent, PlaceLink, PlaceMention, TextEvent, TextReading, read_instruction},
-    text::{TextToken, split_tokens},
+    text::TextToken,
 };
 
 /// Most clauses of a closing task, as in "empty the bin, wipe the sink and close the door". Earlier clauses belong to the way.
@@ -17,19 +17,23 @@ const MAX_CLIMB_PIECE_WORDS: usize = 16;
 /// How far before a place its preposition is looked for, words.
 const PREPOSITION_REACH_WORDS: usize = 7;
 
-/// An instruction with its tokens, its reading and its clauses, from which pieces are cut.
+/// An instruction with its reading and its clauses, from which pieces are cut.
 pub(super) struct InstructionPieces<'a> {
     text: &'a str,
-    tokens: Vec<TextToken>,
     reading: TextReading,
     clauses: Vec<MendedClause>,
 }
 
 impl<'a> InstructionPieces<'a> {
     pub(super) fn from_text(text: &'a str) -> Self {
-        let tokens = split_tokens(text);
-        let clauses = mend_clauses(text, &tokens);
-        Self { text, reading: read_instruction(text, &BTreeSet::new()), tokens, clauses }
+        let reading = read_instruction(text, &BTreeSet::new());
+        let clauses = mend_clauses(text, reading.tokens(), reading.token_clauses());
+        Self { text, reading, clauses }
+    }
+
+    /// The words and marks of the instruction.
+    fn tokens(&self) -> &[TextToken] {
+        self.reading.tokens()
     }
 
     /// The first clause of the closing task. Where several tasks end a text, all of them are the closing task.
@@ -44,7 +48,7 @@ impl<'a> InstructionPieces<'a> {
         let is_one_of_several = |clause: &usize| {
             let head = &self.clauses[*clause].head;
             let gets_there = self.visible_places(head).next().is_some_and(|(_, place)| place.link == PlaceLink::Goal);
-            !gets_there && has_object(&self.tokens, head) && is_task(clause)
+            !gets_there && has_object(self.tokens(), head) && is_task(clause)
         };
         (0..last).rev().take(MAX_TASK_CLAUSES - 1).take_while(is_one_of_several).last().or(Some(last))
     }
@@ -116,10 +120,10 @@ impl<'a> InstructionPieces<'a> {
                     .or_else(|| is_goal.then(|| self.goal_start(end.max(start)..at)).flatten());
                 cuts.extend(cut);
             }
-            previous = Some((self.tokens.partition_point(|token| token.span[0] < event.span[1]), place));
+            previous = Some((self.tokens().partition_point(|token| token.span[0] < event.span[1]), place));
         }
         cuts.push(clause.end);
-        cuts.windows(2).map(|ends| without_joints(&self.tokens, ends[0]..ends[1])).collect()
+        cuts.windows(2).map(|ends| without_joints(self.tokens(), ends[0]..ends[1])).collect()
     }
 
     /// Whether the walk passes or leaves a place on its way to the next. The place's last token is before `end`.
@@ -203,16 +207,17 @@ impl<'a> InstructionPieces<'a> {
 
     /// The index of an event's first token.
     fn first_token(&self, event: &TextEvent) -> usize {
-        self.tokens.partition_point(|token| token.span[0] < event.span[0])
+        self.tokens().partition_point(|token| token.span[0] < event.span[0])
     }
 
     fn word_at(&self, at: usize) -> &str {
-        &self.tokens[at].word
+        &self.tokens()[at].word
     }
 
     /// The bytes of a range of tokens.
     fn byte_span(&self, range: &Range<usize>) -> [usize; 2] {
-        [self.tokens[range.start].span[0], self.tokens[range.end - 1].span[1]]
+        let tokens = self.tokens();
+        [tokens[range.start].span[0], tokens[range.end - 1].span[1]]
     }
 
     /// The text of a range of tokens.

@@ -65,10 +65,10 @@ impl<'a> TextTokens<'a> {
         };
         let edit = |at: usize| Some((self.tokens[at].span, one_of_pair(at)?.to_owned()));
         let same = replace_spans(self.text, &(0..self.tokens.len()).filter_map(edit).collect::<Vec<_>>());
-        let tokens = split_tokens(&same);
-        let events = read_instruction(&same, &BTreeSet::new()).events.into_iter();
-        let turns = events.filter(|event| event.what == EventContent::Turn(Side::Right));
-        turns.map(|event| tokens.partition_point(|token| token.span[0] < event.span[0])).collect()
+        let reading = read_instruction(&same, &BTreeSet::new());
+        let first_token = |from: usize| reading.tokens().partition_point(|token| token.span[0] < from);
+        let turns = reading.events.iter().filter(|event| event.what == EventContent::Turn(Side::Right));
+        turns.map(|event| first_token(event.span[0])).collect()
     }
 
     /// The opposite of the word at a token, if the word means a direction there.

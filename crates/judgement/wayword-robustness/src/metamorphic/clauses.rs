@@ -6,10 +6,7 @@
 use super::AnnotatedText;
 use std::{collections::BTreeSet, ops::RangeInclusive};
 use wayword_core::{MentionKind, TextMention};
-use wayword_language::{
-    reading::{self, EventContent},
-    text::split_tokens,
-};
+use wayword_language::reading::{EventContent, TextReading, read_instruction};
 
 /// A clause, as the reader of the language crate divides sentences.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -33,11 +30,10 @@ impl FramedClause {
 
 /// The clauses of a text, in order. Clauses of conjunctions alone are left out.
 pub(super) fn clauses_with_frames(written: AnnotatedText<'_>) -> Vec<FramedClause> {
-    let tokens = split_tokens(written.text);
-    let numbers = reading::clause_numbers(&tokens);
+    let reading = read_instruction(written.text, &BTreeSet::new());
     // For each clause: its number, its words, and its byte range.
     let mut parts: Vec<(usize, Vec<&str>, [usize; 2])> = Vec::new();
-    for (token, number) in tokens.iter().zip(numbers) {
+    for (token, number) in reading.tokens().iter().zip(reading.token_clauses().iter().copied()) {
         match parts.last_mut() {
             Some((last, words, span)) if *last == number => {
                 words.push(&token.word);
@@ -46,7 +42,7 @@ pub(super) fn clauses_with_frames(written: AnnotatedText<'_>) -> Vec<FramedClaus
             _ => parts.push((number, vec![&token.word], token.span)),
         }
     }
-    let stops = stop_positions(written.text);
+    let stops = stop_positions(&reading);
     let mut drafts: Vec<ClauseDraft> = Vec::new();
     for (_, words, span) in parts {
         let content: Vec<&str> = words.into_iter().skip_while(|word| is_joining_word(word)).collect();
@@ -90,9 +86,9 @@ pub(super) fn clauses_with_frames(written: AnnotatedText<'_>) -> Vec<FramedClaus
 }
 
 /// The byte positions of the words that ask the walker to stop.
-fn stop_positions(text: &str) -> Vec<usize> {
-    let events = reading::read_instruction(text, &BTreeSet::new()).events;
-    events.into_iter().filter(|event| event.what == EventContent::Stop).map(|event| event.span[0]).collect()
+fn stop_positions(reading: &TextReading) -> Vec<usize> {
+    let stops = reading.events.iter().filter(|event| event.what == EventContent::Stop);
+    stops.map(|event| event.span[0]).collect()
 }
 
 /// A clause before its range is final.

@@ -24,6 +24,8 @@ pub(super) struct TextView {
     /// Empty if no text could be written.
     parts: Vec<PartView>,
     findings: Vec<FindingView>,
+    /// How many of its claims could not be decided.
+    unverified: usize,
     /// The possible meanings of the text, if there are several.
     ambiguity: Option<String>,
     provenance: Option<String>,
@@ -72,6 +74,7 @@ pub(super) fn text_views(record: &ItemRecord, places: LinkTargets<'_>) -> Vec<Te
         reason: None,
         parts: part_views(instruction, places),
         findings: finding_views(instruction),
+        unverified: count_unverified(instruction),
         ambiguity: describe_ambiguity(instruction),
         provenance: Some(describe_provenance(&instruction.provenance)),
     });
@@ -81,12 +84,17 @@ pub(super) fn text_views(record: &ItemRecord, places: LinkTargets<'_>) -> Vec<Te
         reason: Some(rejected.reason.clone()),
         parts: rejected.last.as_ref().map(|last| part_views(last, places)).unwrap_or_default(),
         findings: rejected.last.as_ref().map(finding_views).unwrap_or_default(),
+        unverified: rejected.last.as_ref().map_or(0, count_unverified),
         ambiguity: rejected.last.as_ref().and_then(describe_ambiguity),
         provenance: rejected.last.as_ref().map(|last| describe_provenance(&last.provenance)),
     });
     let mut texts: Vec<TextView> = accepted.chain(rejected).collect();
     texts.sort_by(|a, b| a.style.cmp(&b.style));
     texts
+}
+
+fn count_unverified(instruction: &Instruction) -> usize {
+    instruction.findings.iter().filter(|finding| finding.verdict == Verdict::Unverified).count()
 }
 
 fn part_views(instruction: &Instruction, places: LinkTargets<'_>) -> Vec<PartView> {

@@ -22,9 +22,9 @@ pub struct CheckArgs {
     /// The platform.
     #[command(flatten)]
     pub platform: AskedPlatform,
-    /// Check against what this run saw: its folder has the paths and their captions, so no platform is needed. For texts of a
-    /// run that were edited after `wayword export`. The check is in a closed world if captions were the run's evidence. Labels
-    /// are not kept in a run, so if they were the evidence, claims that the captions lack are unverified.
+    /// Check against what this run saw, for texts of a run that were edited after `wayword export`: the labels of its platform if they
+    /// were its evidence, or else the captions in its folder. If the platform cannot be opened, the captions are all that is left, and
+    /// claims that they lack are unverified.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["platform", "data", "at", "island", "connectivity", "calibration"])]
     pub run: Option<PathBuf>,
     /// Check that every text keeps to this style. Without it, a text written by Wayword is checked against the built-in style that

@@ -28,8 +28,8 @@ use report::CheckReportText;
 use std::{collections::BTreeMap, path::Path as FilePath};
 use styles::CheckStyles;
 use wayword_checks::{
-    CheckSubject, CheckWorld, Evidence, PathSurroundings, Testimony, TurnJudge, WorldReach, check_text, lift_confirmed,
-    open::Calibration,
+    CheckSubject, CheckWorld, Evidence, EvidenceSource, PathSurroundings, Testimony, TurnJudge, WalkMemory, WorldReach,
+    check_own_text, check_text, lift_confirmed, open::Calibration,
 };
 use wayword_core::{CheckFinding, Platform};
 #[cfg(feature = "study")]
@@ -64,7 +64,7 @@ pub fn check_texts(args: &Args, output: &CommandOutput) -> Result<CheckReport, C
         captions: None,
     };
     if let Some(run) = &args.run {
-        return run_texts::check_file(&args.file, run, how);
+        return run_texts::check_file(&args.file, run, how, output);
     }
     let settings = AskedSettings::from(args.platform.clone()).resolve()?;
     let lookout = detecting::open_lookout(&args.detecting, output)?;
@@ -127,6 +127,7 @@ fn check_with_lookout(
         calibration: calibration.as_ref(),
         captions: how.captions.map(run_texts::read_captions).transpose()?.unwrap_or_default(),
         scenes: KnownScenes::new(),
+        is_own_run: false,
     };
     checking.check_walks(&walks, output)
 }
@@ -151,6 +152,7 @@ pub fn find_text_doubts(
         calibration: None,
         captions: BTreeMap::new(),
         scenes: KnownScenes::new(),
+        is_own_run: false,
     };
     let report = checking.check_walks(&path_texts::gather_by_path(texts), output)?;
     Ok(report.doubted.into_iter().map(|text| text.doubts).collect())
@@ -174,9 +176,27 @@ struct TextChecker<'a> {
     captions: BTreeMap<String, Evidence>,
     /// The scenes that were surveyed so far.
     scenes: KnownScenes,
+    /// Whether the paths are those of the run that wrote the texts. Then the texts are in a closed world, and their tasks are about the
+    /// targets of the paths.
+    is_own_run: bool,
 }
 
-impl TextChecker<'_> {
+impl<'a> TextChecker<'a> {
+    /// Checks the texts of a run whose evidence were the labels of its platform.
+    fn for_own_texts(platform: &'a dyn Platform, styles: &'a CheckStyles, how: CheckOptions<'a>) -> Self {
+        Self {
+            platform,
+            styles,
+            how,
+            lookout: None,
+            sources: EvidenceSources::default(),
+            calibration: None,
+            captions: BTreeMap::new(),
+            scenes: KnownScenes::new(),
+            is_own_run: true,
+        }
+    }
+
     /// Checks the texts of all walks in parallel, and adds them to a report in the order of the file.
     fn check_walks(&self, walks: &[PathTexts], output: &CommandOutput) -> Result<CheckReport, CommandError> {
         let bar = output.progress_bar(walks.len(), "paths");
@@ -224,13 +244,18 @@ impl TextChecker<'_> {
         let known = labels.or(detected).or_else(captions);
         let mut evidence = known.unwrap_or_else(|| Evidence::for_path_alone(&walk.path));
         let source = evidence.source;
-        let text_world = |text: &FileText| choose_world(text, how.world, platform.name(), source);
+        let text_world = |text: &FileText| match (how.world, self.is_own_run) {
+            (AskedWorld::Auto, true) if source == EvidenceSource::Labels => CheckWorld::Closed,
+            (asked, _) => choose_world(text, asked, platform.name(), source),
+        };
+        let memory = WalkMemory::from_path(&evidence, &walk.path);
         let some_are_open = walk.texts.iter().any(|text| text_world(text) == CheckWorld::Open);
         let scene = Some(self.scenes.get_or_survey(platform, &walk.path.scene)?);
         evidence.beyond = scene.as_ref().map(|scene| scene.inventory.beyond_end(&walk.path)).unwrap_or_default();
         let surroundings = scene.as_ref().and_then(|scene| PathSurroundings::around_path(&scene.inventory, &walk.path));
         let reach = WorldReach { surroundings: surroundings.as_ref(), calibration: self.calibration };
-        let followed = (!how.without_route).then(|| FollowedPath::new(scene.as_deref(), &walk.path, &evidence));
+        let followed =
+            (!how.without_route).then(|| FollowedPath::new(platform, scene.as_deref(), &walk.path, &evidence));
         let uses_witnesses = some_are_open && !how.without_witnesses && walk.texts.len() > 1;
         // A text of a Wayword record is no witness: one writer wrote all texts of its run, with the same mistakes in
         // each.
@@ -245,14 +270,19 @@ impl TextChecker<'_> {
                 Err(why) => FollowerFindings::not_followed(why),
             });
             // People name a target as they like, so any object of the final viewpoint is accepted.
+            let target = walk.path.target.as_ref().filter(|_| self.is_own_run);
             let subject = match text_world(text) {
-                CheckWorld::Closed => CheckSubject::closed_world(&evidence, &check_style.style, None),
+                CheckWorld::Closed => {
+                    CheckSubject::closed_world(&evidence, &check_style.style, target).with_memory(&memory)
+                }
                 CheckWorld::Open => CheckSubject::open_world(&evidence, &check_style.style, reach),
             };
             let turns =
                 follower.as_ref().map_or(TurnJudge::NotJudged("the text is not followed"), |follower| follower.turns);
             let subject = CheckSubject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&check_style.copies) };
-            let mut checked = check_text(&text.words, subject);
+            // The texts of a run are checked as they were when it wrote them.
+            let mut checked =
+                if self.is_own_run { check_own_text(&text.words, subject) } else { check_text(&text.words, subject) };
             if let Some(follower) = &follower {
                 follower.add_to(&mut checked);
             }

@@ -139,6 +139,17 @@ impl CheckedText {
     }
 }
 
+impl CheckedText {
+    /// The verdict, as people read it: a text with unverified claims passes as far as it was decided.
+    fn verdict_words(&self) -> String {
+        let unverified = self.findings.iter().filter(|finding| finding.verdict == Verdict::Unverified).count();
+        match self.verdict {
+            Verdict::Unverified => format!("Pass, {} unverified", count_phrase(unverified, "claim")),
+            verdict => format!("{verdict:?}"),
+        }
+    }
+}
+
 impl CheckReport {
     /// Counts a checked text by verdict, check and world, and keeps it if it did not pass. `findings` are all of its
     /// findings, those that passed among them.
@@ -191,7 +202,7 @@ impl fmt::Display for CheckReportText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { report, most } = self;
         for text in report.not_passed.iter().take(*most) {
-            writeln!(f, "{} {:?}: {}", text.path, text.verdict, text.text)?;
+            writeln!(f, "{} {}: {}", text.path, text.verdict_words(), text.text)?;
             for finding in &text.findings {
                 let words = finding.span.and_then(|[from, to]| text.text.get(from..to));
                 let words = words.map_or(String::new(), |words| format!(" \"{words}\""));

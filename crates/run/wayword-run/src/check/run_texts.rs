@@ -1,14 +1,16 @@
-//! Checks texts that were edited after `wayword export` against the captions of their own run, which needs no platform.
+//! Checks texts that were edited after `wayword export` against the evidence of their own run.
 
 use super::{
-    CheckOptions,
-    path_texts::{FileText, StyleReference},
+    CheckOptions, TextChecker,
+    path_texts::{FileText, PathTexts, StyleReference},
     report::{CheckReport, CheckedText},
     styles::CheckStyles,
 };
 use crate::{
     check::args::AskedWorld,
     error::CommandError,
+    output::CommandOutput,
+    platforms,
     run_folder::{WalkRecord, file, lines, read_run_settings},
 };
 use serde::Deserialize;
@@ -33,35 +35,79 @@ enum RunPathKey {
     Way { scene: SceneId, viewpoints: Vec<ViewpointId>, object: Option<ObjectId>, names: [String; 2] },
 }
 
-/// Checks every text of a file against the captions of a run.
+/// Checks every text of a file against the evidence of the run that wrote it: the labels of its platform, or its captions. Where the
+/// platform cannot be opened any more, the captions are all that is left.
 ///
 /// # Errors
 /// When the file or the run cannot be read, or a text is about a path that the run does not have.
-pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: CheckOptions<'_>) -> Result<CheckReport, CommandError> {
-    let styles = CheckStyles::for_run(how.style, &read_run_settings(run)?)?;
+pub(super) fn check_file(
+    texts: &FilePath,
+    run: &FilePath,
+    how: CheckOptions<'_>,
+    output: &CommandOutput,
+) -> Result<CheckReport, CommandError> {
+    let settings = read_run_settings(run)?;
+    let styles = CheckStyles::for_run(how.style, &settings)?;
+    let source = checked_against(run)?;
+    let walks = match_walks(texts, run)?;
+    // A simulator may be in another state by now, and a command of the user's is not run for a check.
+    let is_program = platforms::is_live(&settings.platform) || settings.platform == "process";
+    if source.as_deref() == Some("labels") && !is_program {
+        match platforms::open_platform(&settings) {
+            Ok(platform) => {
+                let walks: Vec<PathTexts> =
+                    walks.into_iter().map(|(walk, texts)| PathTexts { path: walk.path, texts }).collect();
+                return TextChecker::for_own_texts(platform.as_ref(), &styles, how).check_walks(&walks, output);
+            }
+            Err(error) => output
+                .say(format!("the platform of the run cannot be opened, so its captions are the evidence: {error}")),
+        }
+    }
     // The finds of a detector are part of the captions.
-    let captions_were_evidence = matches!(checked_against(run)?.as_deref(), Some("captions" | "detector"));
+    let captions_were_evidence = matches!(source.as_deref(), Some("captions" | "detector"));
+    Ok(check_by_captions(&walks, &styles, how, captions_were_evidence))
+}
+
+/// The walks of a run that a file has texts about, each with its texts.
+fn match_walks(texts: &FilePath, run: &FilePath) -> Result<Vec<(ObservedWalk, Vec<FileText>)>, CommandError> {
     let mut wanted: Vec<Option<RunText>> = read_texts(texts)?.into_iter().map(Some).collect();
-    let mut checked_texts: Vec<(usize, CheckedText, Vec<CheckFinding>)> = Vec::new();
-    let mut report = CheckReport::default();
+    let mut walks = Vec::new();
     lines::each_line(&run.join(file::WALKS), |line| {
         let record: WalkRecord = line.parse()?;
-        let mut path_texts = Vec::new();
-        for slot in &mut wanted {
-            path_texts.extend(slot.take_if(|wanted| wanted.path.matches_path(&record.path)));
+        let of_path = |slot: &mut Option<RunText>| slot.take_if(|wanted| wanted.path.matches_path(&record.path));
+        let path_texts: Vec<FileText> = wanted.iter_mut().filter_map(of_path).map(|wanted| wanted.text).collect();
+        if !path_texts.is_empty() {
+            walks.push((ObservedWalk::new(record.path, record.observations), path_texts));
         }
-        if path_texts.is_empty() {
-            return Ok(());
+        Ok(())
+    })?;
+    match wanted.iter().flatten().next() {
+        Some(unmatched) => {
+            let problem = format!("{}: the run {} has no path {}", texts.display(), run.display(), unmatched.text.path);
+            Err(CommandError::usage(problem, "give the run that the texts were exported from"))
         }
-        let walk = ObservedWalk::new(record.path, record.observations);
+        None => Ok(walks),
+    }
+}
+
+/// Checks texts against the captions of their walks.
+fn check_by_captions(
+    walks: &[(ObservedWalk, Vec<FileText>)],
+    styles: &CheckStyles,
+    how: CheckOptions<'_>,
+    captions_were_evidence: bool,
+) -> CheckReport {
+    let mut checked_texts: Vec<(usize, CheckedText, Vec<CheckFinding>)> = Vec::new();
+    let mut report = CheckReport::default();
+    for (walk, texts) in walks {
         let evidence = walk.evidence().unwrap_or_else(|| Evidence::for_path_alone(&walk.path));
         let source = evidence.source.name();
         if !report.checked_against.iter().any(|other| other == source) {
             report.checked_against.push(source.to_owned());
         }
-        for RunText { text, .. } in path_texts {
-            styles.count_text(&text, &mut report);
-            let check_style = styles.style_or_any(&text);
+        for text in texts {
+            styles.count_text(text, &mut report);
+            let check_style = styles.style_or_any(text);
             let target = walk.path.target.as_ref();
             // If labels were the evidence, the captions show less than the texts were written from, so the world is open.
             let is_closed = match how.world {
@@ -77,17 +123,12 @@ pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: CheckOptions<'_>
             let turns = TurnJudge::NotJudged("without the platform the text is not followed");
             let subject = CheckSubject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&check_style.copies) };
             let checked = check_own_text(&text.words, subject);
-            checked_texts.push((text.at, CheckedText::from_text(&text, &checked), checked.findings));
+            checked_texts.push((text.at, CheckedText::from_text(text, &checked), checked.findings));
         }
-        Ok(())
-    })?;
-    if let Some(unmatched) = wanted.iter().flatten().next() {
-        let problem = format!("{}: the run {} has no path {}", texts.display(), run.display(), unmatched.text.path);
-        return Err(CommandError::usage(problem, "give the run that the texts were exported from"));
     }
     checked_texts.sort_by_key(|(at, _, _)| *at);
     checked_texts.into_iter().for_each(|(_, text, findings)| report.add_text(text, &findings));
-    Ok(report)
+    report
 }
 
 /// The captions of a run as evidence, by the ids of its paths.

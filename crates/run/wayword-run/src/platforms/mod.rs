@@ -36,7 +36,7 @@ pub fn has_hops(settings: &RunSettings) -> bool {
 }
 
 /// Whether a platform is a separate program that this one connects to by `--at`.
-fn is_live(name: &str) -> bool {
+pub(crate) fn is_live(name: &str) -> bool {
     matches!(name, "tdw" | "virtualhome")
 }
 

@@ -1,4 +1,4 @@
-//! `wayword check --run`: texts that were edited after an export are checked against the captions of their run.
+//! `wayword check --run`: texts that were edited after an export are checked against the evidence of their run.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -55,6 +55,34 @@ fn claims_from_labels_are_unverified_where_only_captions_are_left() {
     let report = ran.json();
     assert_eq!((ran.code, report["failed"].as_u64()), (Some(0), Some(0)), "{ran:?}");
     assert_eq!(report["worlds"]["open"], 20, "{ran:?}");
+}
+
+#[test]
+fn texts_from_labels_keep_their_verdicts_and_fail_once_they_are_wrong() {
+    let building = Building::new();
+    let houses = ["--paths", "4", "--seed", "11", "--style", "r2r", "--no-pictures"];
+    assert_eq!(building.wayword(&[&["generate", "--out", "run"][..], &houses].concat()).code, Some(0));
+    let written: Vec<Value> = building.lines("run/instructions.jsonl");
+    building.wayword(&["export", "--run", "run", "--format", "wayword", "--out", "x.jsonl"]);
+    for file in ["x.jsonl", "run/instructions.jsonl"] {
+        let report = building.wayword(&["check", file, "--run", "run", "--json"]).json();
+        assert_eq!(
+            (&report["checked_against"][0], &report["worlds"]["closed"]),
+            (&"labels".into(), &4.into()),
+            "{report}"
+        );
+        assert!(written.iter().all(|record| record["verdict"] == "pass") && report["passed"] == 4, "{report}");
+    }
+    let flipped = |text: &str| text.replace("left", "RIGHT").replace("right", "left").replace("RIGHT", "right");
+    let turns = written.iter().filter(|record| flipped(record["text"].as_str().unwrap()) != record["text"]).count();
+    let edit = |mut record: Value| {
+        record["text"] = flipped(record["text"].as_str().unwrap()).into();
+        (record["mentions"], record["findings"]) = (Value::Array(Vec::new()), Value::Array(Vec::new()));
+        format!("{record}\n")
+    };
+    building.write("x.jsonl", building.lines("x.jsonl").into_iter().map(edit).collect::<String>());
+    let ran = building.wayword(&["check", "x.jsonl", "--run", "run", "--json"]);
+    assert!(turns > 0 && ran.code == Some(3) && ran.json()["failed"] == turns, "{turns}: {ran:?}");
 }
 
 #[test]

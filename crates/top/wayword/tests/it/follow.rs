@@ -111,25 +111,20 @@ fn a_text_that_is_not_understood_is_not_followed() {
 }
 
 #[test]
-fn where_only_the_path_is_known_the_route_is_unverified_with_the_reason() {
+fn texts_about_houses_are_followed_on_the_graph_of_the_house() {
     let building = Building::new();
-    let house = ["--paths", "1", "--scan", "house2-3", "--seed", "3", "--style", "r2r"];
+    let house = ["--paths", "1", "--scan", "house2-3", "--seed", "3", "--style", "r2r", "--no-pictures"];
     let ran = building.wayword(&[&["generate", "--out", "run", "--json"], &house[..]].concat());
     let summary = ran.json();
-    assert_eq!((ran.code, &summary["passed"], &summary["unfollowed"]), (Some(0), &json!(1), &json!(1)), "{summary}");
-    assert!(summary["why_unfollowed"].as_str().unwrap().contains("no viewpoint graph"), "{summary}");
+    assert_eq!((ran.code, &summary["passed"], &summary["unfollowed"]), (Some(0), &json!(1), &json!(0)), "{summary}");
     let record = building.lines("run/instructions.jsonl").remove(0);
     let finding = record["findings"].as_array().unwrap().iter().find(|finding| finding["check"] == "route").unwrap();
-    assert_eq!((&finding["verdict"], &record["verdict"]), (&json!("unverified"), &json!("pass")), "{record}");
-    assert_eq!(record["ambiguity"]["ends"], Value::Null);
-    assert!(record["ambiguity"]["unverified"].as_str().unwrap().contains("no viewpoint graph"), "{record}");
-    let anyones = building.wayword(&["check", "run/instructions.jsonl", "--world", "open", "--json"]).json();
-    let route = of_check(&anyones, "route");
-    assert!(
-        matches!(&route[..], [[verdict, reason, _]] if verdict == "unverified" && reason.contains("no viewpoint graph"))
-    );
-    let ours = building.wayword(&["check", "run/instructions.jsonl", "--json"]).json();
-    assert_eq!((&ours["passed"], &ours["by_check"]["route"]["unverified"]), (&json!(1), &json!(1)), "{ours}");
+    assert_eq!((&finding["verdict"], &record["verdict"]), (&json!("pass"), &json!("pass")), "{record}");
+    assert!(record["ambiguity"]["ends"].as_u64().is_some_and(|ends| ends >= 1), "{record}");
+    for world in ["open", "closed"] {
+        let report = building.wayword(&["check", "run/instructions.jsonl", "--world", world, "--json"]).json();
+        assert_eq!(report["by_check"]["route"]["passed"], json!(1), "{world}: {report}");
+    }
 }
 
 #[test]

@@ -33,6 +33,8 @@ pub struct WalkMemory {
     eyes: Vec<DVec3>,
     /// The heading at each frame, before the turn of its move.
     headings: Vec<Heading>,
+    /// Whether the walk goes from viewpoint to viewpoint of a graph.
+    is_on_graph: bool,
 }
 
 impl WalkMemory {
@@ -55,7 +57,14 @@ impl WalkMemory {
             openings,
             eyes,
             headings,
+            is_on_graph: path.frames.iter().all(|frame| frame.viewpoint.is_some()),
         }
+    }
+
+    /// Whether the walk goes from viewpoint to viewpoint of a graph, which are farther apart than the frames of another walk.
+    #[must_use]
+    pub fn is_on_graph(&self) -> bool {
+        self.is_on_graph
     }
 
     /// The number of frames of the walk.
@@ -94,6 +103,14 @@ impl WalkMemory {
             Some(position) => Heading::towards(*eye, position).map(|to| heading.side_of(to)),
             None => thing.glimpse_from(frame)?.turn_rad.map(|turn_rad| heading.side_of(heading.turned_by(turn_rad))),
         }
+    }
+
+    /// The direction of a thing from the heading with which the walk arrives at a frame, radians in (-π, π], positive right, by
+    /// the thing's position.
+    #[must_use]
+    pub fn turn_towards(&self, thing: &RememberedThing, frame: usize) -> Option<f64> {
+        let (eye, heading) = (self.eyes.get(frame)?, self.headings.get(frame)?);
+        Some(heading.turn_to(Heading::towards(*eye, thing.position?)?))
     }
 
     /// Which one a thing is among those of its name that one passes on the same side in the same stay, the first being 1,

@@ -8,7 +8,7 @@ use wayword_language::{
         EventContent, TextReading,
         motion_words::{DESCRIBING, MOMENT},
     },
-    text::{TextToken, split_tokens},
+    text::TextToken,
 };
 
 /// A path that nowhere gains or loses this much goes up or down no step, metres.
@@ -22,15 +22,15 @@ const MIN_CLIMB_SHARE_BOTH_WAYS: f64 = 0.15;
 const MIN_CLIMB_SHARE_ONE_WAY: f64 = 0.45;
 
 /// The mistakes in the climbs and storeys of a text.
-pub(super) fn check_climbs(text: &str, reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
-    let tokens = split_tokens(text);
+pub(super) fn check_climbs(reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
+    let tokens = reading.tokens();
     let heights = PathHeights::from_subject(
         subject,
         if climbs_both_ways(reading) { MIN_CLIMB_SHARE_BOTH_WAYS } else { MIN_CLIMB_SHARE_ONE_WAY },
     );
     let mut found = Vec::new();
     for event in &reading.events {
-        let wording = climb_wording(&tokens, event.span);
+        let wording = climb_wording(tokens, event.span);
         let (verdict, climb) = match event.what {
             EventContent::Climb(climb) => (heights.verdict_on_climb(climb), climb),
             EventContent::Steps(climb) => (heights.verdict_on_steps(climb), climb),
@@ -48,7 +48,7 @@ pub(super) fn check_climbs(text: &str, reading: &TextReading, subject: CheckSubj
             Verdict::Fail => format!("the path nowhere goes {way}"),
             Verdict::Unverified => "the program cannot check whether the path goes up or down".to_owned(),
         };
-        found.push(new_finding(CheckKind::Floors, verdict, reason, Some(motion_span(&tokens, event.span, is_stairs))));
+        found.push(new_finding(CheckKind::Floors, verdict, reason, Some(motion_span(tokens, event.span, is_stairs))));
     }
     // People count storeys from the street or from the cellar, so a number alone contradicts no path.
     let numbers = floors::wrong_floors(reading, subject.evidence).map(|finding| CheckFinding {

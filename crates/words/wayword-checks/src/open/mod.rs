@@ -15,7 +15,7 @@ mod motions;
 mod phrase;
 mod places;
 mod relation;
-mod repeats;
+pub(crate) mod repeats;
 mod sides;
 mod stretches;
 #[cfg(test)]
@@ -37,18 +37,13 @@ pub use weights::{SilenceWeights, WeightTable};
 
 /// The mistakes in the places, the order, the turns and the storeys of another author's text. `whole` is the reading
 /// with its denied events, and `reading` the one without.
-pub(super) fn check_open(
-    text: &str,
-    whole: &TextReading,
-    reading: &TextReading,
-    subject: CheckSubject<'_>,
-) -> Vec<CheckFinding> {
+pub(super) fn check_open(whole: &TextReading, reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
     let mut findings = places::check_places(reading, subject);
-    findings.extend(climbs::check_climbs(text, reading, subject));
-    findings.extend(repeats::check_repeats(text, reading, subject));
+    findings.extend(climbs::check_climbs(reading, subject));
+    findings.extend(repeats::check_repeats(reading, subject));
     findings.extend(distances::check_distances(reading, subject.evidence));
     findings.extend(unjudged_turns(reading, subject));
-    findings.extend(unjudged::find_unjudged(text, whole, subject));
+    findings.extend(unjudged::find_unjudged(whole, subject));
     for check in [CheckKind::Landmarks, CheckKind::Order, CheckKind::Turns, CheckKind::Floors] {
         if findings.iter().all(|finding| finding.check != check) {
             findings.push(crate::pass_finding(check));

@@ -38,13 +38,10 @@ struct TextMotion<'a> {
 }
 
 /// The byte ranges of repeated motions, where the path has one stretch of them.
-pub(super) fn repeated_motions(
-    tokens: &[TextToken],
-    reading: &TextReading,
-    stretches: &PathStretches<'_>,
-) -> Vec<[usize; 2]> {
+pub(super) fn repeated_motions(reading: &TextReading, stretches: &PathStretches<'_>) -> Vec<[usize; 2]> {
+    let tokens = reading.tokens();
     let claims = read_claims(reading);
-    let motions = find_motions(tokens, reading, &claims);
+    let motions = find_motions(reading, &claims);
     let repeated_span = |(at, motion): (usize, &TextMotion<'_>)| {
         let climbs_alike = |before: &TextMotion<'_>| match (before.climb, motion.climb) {
             (Some(before), Some(again)) => before == again,
@@ -73,7 +70,8 @@ pub(super) fn repeated_motions(
 }
 
 /// The byte range of a motion past the place at which the text stops next: "walk past the sofa and stop by the sofa".
-pub(super) fn past_the_stop(tokens: &[TextToken], reading: &TextReading) -> Option<[usize; 2]> {
+pub(super) fn past_the_stop(reading: &TextReading) -> Option<[usize; 2]> {
+    let tokens = reading.tokens();
     let claims = read_claims(reading);
     let stop = claims.iter().rposition(|claim| claim.relation == WalkerRelation::Stop)?;
     let before = stop.checked_sub(1).filter(|at| claims[*at].relation == WalkerRelation::Past)?;
@@ -110,7 +108,8 @@ fn is_turn_or_climb(what: &EventContent) -> bool {
 }
 
 /// The motions of a text by its places, except by places of which the text counts several.
-fn find_motions<'a>(tokens: &'a [TextToken], reading: &TextReading, claims: &[PlaceClaim]) -> Vec<TextMotion<'a>> {
+fn find_motions<'a>(reading: &'a TextReading, claims: &[PlaceClaim]) -> Vec<TextMotion<'a>> {
+    let tokens = reading.tokens();
     let place = |claim: &PlaceClaim| match &reading.events[claim.event].what {
         EventContent::Place(place) => Some((place.ordinal.is_some() || place.several, place.going)),
         _ => None,

@@ -7,26 +7,25 @@ use std::collections::BTreeMap;
 use wayword_core::{CheckFinding, CheckKind, Verdict};
 use wayword_language::{
     reading::{EventContent, TextReading},
-    text::{TextToken, split_tokens},
+    text::TextToken,
 };
 
 /// A sentence of at least this many words fails where it is repeated, however many stretches of it the path has.
 const LONG_SENTENCE_WORDS: usize = 8;
 
 /// The repetitions of a text: whole sentences, and the same motion by the same place.
-pub(super) fn check_repeats(text: &str, reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
+pub(crate) fn check_repeats(reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
     if !subject.evidence.motion.is_known() {
         return Vec::new();
     }
     let stretches = PathStretches::from_subject(subject);
-    let tokens = split_tokens(text);
-    let mut found = repeated_sentences(&tokens, reading, &stretches);
+    let mut found = repeated_sentences(reading, &stretches);
     let repeated: Vec<[usize; 2]> = found.iter().filter_map(|finding| finding.span).collect();
     let outside = |span: [usize; 2]| repeated.iter().all(|other| span[1] <= other[0] || other[1] <= span[0]);
     let twice = "the text says this a second time, and the path has one stretch of it";
     let past = "the text goes past the place at which it stops";
-    let motions = motions::repeated_motions(&tokens, reading, &stretches).into_iter().map(|span| (span, twice));
-    let motions = motions.chain(motions::past_the_stop(&tokens, reading).map(|span| (span, past)));
+    let motions = motions::repeated_motions(reading, &stretches).into_iter().map(|span| (span, twice));
+    let motions = motions.chain(motions::past_the_stop(reading).map(|span| (span, past)));
     let motions = motions.filter(|(span, _)| outside(*span));
     let wrong = |(span, reason)| new_finding(CheckKind::Order, Verdict::Fail, reason, Some(span));
     found.extend(motions.map(wrong).collect::<Vec<_>>());
@@ -34,12 +33,12 @@ pub(super) fn check_repeats(text: &str, reading: &TextReading, subject: CheckSub
 }
 
 /// Sentences that occur twice in the same words.
-fn repeated_sentences(tokens: &[TextToken], reading: &TextReading, stretches: &PathStretches<'_>) -> Vec<CheckFinding> {
+fn repeated_sentences(reading: &TextReading, stretches: &PathStretches<'_>) -> Vec<CheckFinding> {
     let mut sentence_counts: BTreeMap<Vec<&str>, usize> = BTreeMap::new();
     let mut before: Vec<&str> = Vec::new();
     let mut found = Vec::new();
     let claims = read_claims(reading);
-    for sentence in tokens.split(TextToken::ends_sentence) {
+    for sentence in reading.tokens().split(TextToken::ends_sentence) {
         let words: Vec<&TextToken> = sentence.iter().filter(|token| token.is_word()).collect();
         let (Some(first), Some(last)) = (words.first(), words.last()) else { continue };
         let span = [first.span[0], last.span[1]];

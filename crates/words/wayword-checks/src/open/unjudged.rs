@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use wayword_core::{CheckFinding, CheckKind, Side, Verdict};
 use wayword_language::{
     reading::{EventContent, PlaceMention, PlaceOrdinal, TextEvent, TextReading, cardinal_number, ordinal_word},
-    text::{TextToken, split_tokens},
+    text::TextToken,
 };
 
 /// From this number on, which one of several is meant, or how many there are, is a claim by itself. People say "the first
@@ -17,15 +17,15 @@ const MIN_COUNTED_NUMBER: u32 = 3;
 const NUMBER_REACH_WORDS: usize = 2;
 
 /// The statements of a text that cannot be checked; `reading` still has its denied events.
-pub(super) fn find_unjudged(text: &str, reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
-    let tokens = split_tokens(text);
+pub(super) fn find_unjudged(reading: &TextReading, subject: CheckSubject<'_>) -> Vec<CheckFinding> {
+    let tokens = reading.tokens();
     let unverified = |check, reason: &str, span| new_finding(check, Verdict::Unverified, reason, Some(span));
     let mut found = find_missing_turns(reading, subject);
     found.extend(stay_on_moving_path(reading, subject));
     let (mut clauses, mut turns) = (BTreeSet::new(), BTreeSet::new());
     for event in &reading.events {
         if event.denied {
-            let check = check_for_content(&event.what).filter(|_| !is_moment_too_far(&tokens, event.span));
+            let check = check_for_content(&event.what).filter(|_| !is_moment_too_far(tokens, event.span));
             let reason = "the program does not check what a text denies";
             let first = check.filter(|_| clauses.insert(event.clause));
             found.extend(first.map(|check| unverified(check, reason, event.span)));
@@ -36,7 +36,7 @@ pub(super) fn find_unjudged(text: &str, reading: &TextReading, subject: CheckSub
                 let reason = "the program does not count which one of several this is, or how many there are";
                 found.push(unverified(CheckKind::Landmarks, reason, event.span));
             }
-            EventContent::Turn(_) if turns.insert(event.span) && is_numbered(&tokens, event.span) => {
+            EventContent::Turn(_) if turns.insert(event.span) && is_numbered(tokens, event.span) => {
                 found.push(unverified(CheckKind::Turns, "the program does not count which turn this is", event.span));
             }
             EventContent::Compass { goes, .. } => {
@@ -47,7 +47,7 @@ pub(super) fn find_unjudged(text: &str, reading: &TextReading, subject: CheckSub
         }
     }
     let often =
-        repetition_spans(&tokens).filter(|span| turns.iter().all(|turn| span[1] <= turn[0] || turn[1] <= span[0]));
+        repetition_spans(tokens).filter(|span| turns.iter().all(|turn| span[1] <= turn[0] || turn[1] <= span[0]));
     found.extend(
         often.map(|span| unverified(CheckKind::Order, "the program does not count how often this is done", span)),
     );

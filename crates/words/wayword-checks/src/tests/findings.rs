@@ -29,17 +29,6 @@ fn verdict_is_the_worst_finding_and_unverified_without_any() {
 }
 
 #[test]
-fn verdict_leaves_out_only_the_unverified_route_of_a_closed_world() {
-    let verdict = |world, check, verdict| {
-        checked(world, vec![finding(CheckKind::Form, Verdict::Pass, None), finding(check, verdict, None)]).verdict()
-    };
-    assert_eq!(verdict(CheckWorld::Closed, CheckKind::Route, Verdict::Unverified), Verdict::Pass);
-    assert_eq!(verdict(CheckWorld::Open, CheckKind::Route, Verdict::Unverified), Verdict::Unverified);
-    assert_eq!(verdict(CheckWorld::Closed, CheckKind::Route, Verdict::Fail), Verdict::Fail);
-    assert_eq!(verdict(CheckWorld::Closed, CheckKind::Coverage, Verdict::Unverified), Verdict::Unverified);
-}
-
-#[test]
 fn add_findings_replaces_the_pass_of_its_check_alone() {
     let mut found = checked(CheckWorld::Open, vec![pass_finding(CheckKind::Turns), pass_finding(CheckKind::Order)]);
     found.add_findings([finding(CheckKind::Turns, Verdict::Unverified, Some([2, 5]))]);

@@ -15,6 +15,7 @@ mod weights;
 
 pub use learn::{AlignmentLearner, AlignmentSlope};
 pub use parts::{PartedText, TextPart};
+pub(crate) use places::walk_places;
 pub use weights::{AlignmentWeights, PartReading};
 
 use crate::{

@@ -105,7 +105,7 @@ impl PartedText {
     /// before it, and so does a step that nothing is understood of.
     #[must_use]
     pub fn from_reading(text: &str, reading: &TextReading) -> Self {
-        let guide = Guide::from_reading(text, reading);
+        let guide = Guide::from_reading(reading);
         let mut ranges: Vec<Range<usize>> = Vec::new();
         for (number, step) in guide.steps.iter().enumerate() {
             let joins = matches!(step.kind, GuideStepKind::Condition | GuideStepKind::Other);

@@ -12,7 +12,7 @@ const SPACING_M: f64 = 2.2;
 const MIN_SPACING_M: f64 = 0.4;
 
 /// The indices into a walk of the places where it may be cut, with its first and its last.
-pub(super) fn walk_places(building: &KnownBuilding, walk: &[usize]) -> Vec<usize> {
+pub(crate) fn walk_places(building: &KnownBuilding, walk: &[usize]) -> Vec<usize> {
     let hops: Vec<f64> = walk.windows(2).map(|hop| building.distance_m(hop[0], hop[1])).collect();
     let length_m: f64 = hops.iter().sum();
     if walk.len() < 3 || length_m >= MIN_MEAN_HOP_M * hops.len() as f64 {

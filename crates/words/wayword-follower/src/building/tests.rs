@@ -28,7 +28,11 @@ fn along_path_joins_each_place_with_the_next_and_puts_things_in_their_direction(
     let place = |north: f64, up: f64, things: &[(&str, Option<f64>)]| PathPlace {
         position: DVec3::new(0.0, north, up),
         room: Some("attic".to_owned()),
-        things: things.iter().map(|(name, rad)| ((*name).to_owned(), *rad)).collect(),
+        level: None,
+        things: things
+            .iter()
+            .map(|(name, rad)| PathThing { name: (*name).to_owned(), position: None, direction_rad: *rad })
+            .collect(),
     };
     let path = vec![place(0.0, 0.0, &[("Sofa", Some(0.5))]), place(2.0, 0.0, &[]), place(4.0, 2.0, &[("lamp", None)])];
     let building = KnownBuilding::along_path(path);

@@ -39,9 +39,8 @@ pub fn doubts_from_ambiguity(
         alternatives,
     };
     let mut doubts = Vec::new();
-    if let Some((ends, span)) =
-        ambiguity.ends.filter(|ends| *ends > 1).zip(end_words(&TokenisedText::from_text(text), guide))
-    {
+    let spelt = TokenisedText::from_reading(text, reading);
+    if let Some((ends, span)) = ambiguity.ends.filter(|ends| *ends > 1).zip(end_words(&spelt, guide)) {
         let apart = ambiguity.told_apart_by.as_deref().zip(text.get(span[0]..span[1]));
         let apart = apart.map(|(by, words)| {
             let joined = if is_room(by) { "in" } else { "by" };

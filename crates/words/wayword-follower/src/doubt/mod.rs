@@ -139,13 +139,13 @@ impl DoubtSite {
 /// decide, with suggestions. They may overlap.
 #[must_use]
 pub fn find_doubts(
-    text: &str,
+    spelt: &TokenisedText<'_>,
     guide: &Guide,
     known: KnownWalk<'_>,
     weights: &FeatureWeights,
     (bounds, findings): (&DoubtBounds, &[CheckFinding]),
 ) -> Vec<TextDoubt> {
-    let sites = find_sites(text, guide, known, weights);
+    let sites = find_sites(spelt, guide, known, weights);
     let mut doubts = from_checks::doubts_from_findings(findings);
     for doubt in &mut doubts {
         let is_wrong = doubt.cause == DoubtCause::Wrong;
@@ -161,7 +161,7 @@ pub fn find_doubts(
         }
         for site in &sites {
             if let Some(weaker) = offered_doubt(site, doubt) {
-                doubt.take_over(text, &weaker);
+                doubt.take_over(spelt.text(), &weaker);
             }
         }
     }
@@ -202,16 +202,20 @@ pub fn is_too_long(guide: &Guide) -> bool {
 
 /// The gains of single changes of a text for a walk; empty if the text has too many steps.
 #[must_use]
-pub fn find_sites(text: &str, guide: &Guide, known: KnownWalk<'_>, weights: &FeatureWeights) -> Vec<DoubtSite> {
+pub fn find_sites(
+    spelt: &TokenisedText<'_>,
+    guide: &Guide,
+    known: KnownWalk<'_>,
+    weights: &FeatureWeights,
+) -> Vec<DoubtSite> {
     if guide.is_empty() || is_too_long(guide) {
         return Vec::new();
     }
-    let spelt = TokenisedText::from_text(text);
     let walk = OneWalk::new(known.building, known.walk, known.heading_rad, weights);
-    let mut sites = step_sites(&spelt, guide, known, weights);
-    sites.extend(ways::way_sites(&spelt, guide, &walk));
-    sites.extend(other_places::other_place_sites(&spelt, guide, known, &walk));
-    sites.extend(swap_sites(&spelt, guide, known, weights));
+    let mut sites = step_sites(spelt, guide, known, weights);
+    sites.extend(ways::way_sites(spelt, guide, &walk));
+    sites.extend(other_places::other_place_sites(spelt, guide, known, &walk));
+    sites.extend(swap_sites(spelt, guide, known, weights));
     sites
 }
 

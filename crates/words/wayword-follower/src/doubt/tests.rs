@@ -8,7 +8,8 @@ const WALK: [usize; 5] = [0, 1, 2, 5, 6];
 fn found(text: &str, bounds: &DoubtBounds) -> Vec<TextDoubt> {
     let building = KnownBuilding::from_survey(&surveyed());
     let known = KnownWalk { building: &building, walk: &WALK, heading_rad: 0.0 };
-    separate_doubts(text, find_doubts(text, &Guide::read_text(text), known, FeatureWeights::fitted(), (bounds, &[])))
+    let (spelt, guide) = (TokenisedText::from_text(text), Guide::read_text(text));
+    separate_doubts(text, find_doubts(&spelt, &guide, known, FeatureWeights::fitted(), (bounds, &[])))
 }
 
 /// The doubted words, each with what may stand there; "-" where they may be left out.
@@ -44,7 +45,7 @@ fn failed_words_may_be_left_out_and_unverified_ones_get_names() {
         finding(CheckKind::Landmarks, Verdict::Unverified, "bed"),
     ];
     let doubts = find_doubts(
-        text,
+        &TokenisedText::from_text(text),
         &Guide::read_text(text),
         known,
         FeatureWeights::fitted(),
@@ -85,7 +86,7 @@ fn of_findings_ignores_form_and_unknown_words() {
 fn of_ambiguity_suggests_a_name_that_identifies_the_end() {
     let text = "Walk on and stop at the door. Then clean the lamp.";
     let reading = wayword_language::reading::read_instruction(text, &std::collections::BTreeSet::new());
-    let guide = Guide::from_reading(text, &reading);
+    let guide = Guide::from_reading(&reading);
     let ambiguity =
         TextAmbiguity { ends: Some(2), objects: 3, told_apart_by: Some("kitchen".into()), unverified: None };
     let doubts = from_checks::doubts_from_ambiguity(text, &guide, &reading, &ambiguity);
@@ -107,8 +108,8 @@ fn a_turn_that_a_check_found_wrong_is_doubted_as_a_whole_and_the_other_side_come
         span: Some([from, from + 4]),
     };
     let found = (&DoubtBounds::default(), &[finding][..]);
-    let doubts =
-        separate_doubts(&text, find_doubts(&text, &Guide::read_text(&text), known, FeatureWeights::fitted(), found));
+    let (spelt, guide) = (TokenisedText::from_text(&text), Guide::read_text(&text));
+    let doubts = separate_doubts(&text, find_doubts(&spelt, &guide, known, FeatureWeights::fitted(), found));
     let told = told(&text, &doubts);
     assert_eq!((told[0].0, told[0].1.first()), ("turn left", Some(&"turn right")), "{told:?}");
     assert_eq!(doubts[0].cause, DoubtCause::Wrong);
@@ -149,7 +150,8 @@ fn site(source: DoubtSource, span: [usize; 2], gains: &[f64]) -> DoubtSite {
 fn sites_of(text: &str, source: DoubtSource) -> Vec<(&str, Vec<(String, f64)>)> {
     let building = KnownBuilding::from_survey(&surveyed());
     let known = KnownWalk { building: &building, walk: &WALK, heading_rad: 0.0 };
-    let sites = find_sites(text, &Guide::read_text(text), known, FeatureWeights::fitted());
+    let spelt = TokenisedText::from_text(text);
+    let sites = find_sites(&spelt, &Guide::read_text(text), known, FeatureWeights::fitted());
     let words = |one: DoubtAlternative| (one.words.unwrap_or_else(|| "-".to_owned()), one.gain.unwrap());
     sites
         .into_iter()
@@ -284,8 +286,8 @@ fn find_sites_finds_none_in_an_empty_or_too_long_text() {
     let building = KnownBuilding::from_survey(&surveyed());
     let known = KnownWalk { building: &building, walk: &WALK, heading_rad: 0.0 };
     let count = |text: &str| {
-        let guide = Guide::read_text(text);
-        (is_too_long(&guide), find_sites(text, &guide, known, FeatureWeights::fitted()).is_empty())
+        let (spelt, guide) = (TokenisedText::from_text(text), Guide::read_text(text));
+        (is_too_long(&guide), find_sites(&spelt, &guide, known, FeatureWeights::fitted()).is_empty())
     };
     assert_eq!(count(""), (false, true));
     assert_eq!(count(&"Turn left. ".repeat(60)), (false, false));
@@ -383,7 +385,8 @@ fn a_turn_that_a_check_could_not_decide_keeps_its_words_and_is_not_left_out() {
             span: Some([from, from + words.len()]),
         };
         let (bounds, guide) = (DoubtBounds::default(), Guide::read_text(text));
-        let doubts = find_doubts(text, &guide, known, FeatureWeights::fitted(), (&bounds, &[finding]));
+        let spelt = TokenisedText::from_text(text);
+        let doubts = find_doubts(&spelt, &guide, known, FeatureWeights::fitted(), (&bounds, &[finding]));
         let words = doubts[0].alternatives.iter().map(|one| one.words.clone()).collect::<Vec<_>>();
         (text[doubts[0].span[0]..doubts[0].span[1]].to_owned(), words)
     };
@@ -402,7 +405,7 @@ fn a_turn_that_a_check_could_not_decide_keeps_its_words_and_is_not_left_out() {
 fn doubts_from_ambiguity_mark_the_last_step_where_no_step_stops() {
     let doubts = |text: &str, ends, by: Option<&str>| {
         let reading = wayword_language::reading::read_instruction(text, &std::collections::BTreeSet::new());
-        let guide = Guide::from_reading(text, &reading);
+        let guide = Guide::from_reading(&reading);
         let ambiguity = TextAmbiguity { ends, objects: 1, told_apart_by: by.map(str::to_owned), unverified: None };
         let doubts = from_checks::doubts_from_ambiguity(text, &guide, &reading, &ambiguity);
         assert!(doubts.iter().all(|doubt| doubt.reason.contains("3 places") && doubt.cause == DoubtCause::Ambiguous));
@@ -432,7 +435,8 @@ fn words_about_a_place_keep_their_range_beside_a_turn_and_only_wrong_ones_may_be
             span: Some([from, from + words.len()]),
         };
         let (bounds, guide) = (DoubtBounds::default(), Guide::read_text(TO_KITCHEN));
-        let doubts = find_doubts(TO_KITCHEN, &guide, known, FeatureWeights::fitted(), (&bounds, &[finding]));
+        let spelt = TokenisedText::from_text(TO_KITCHEN);
+        let doubts = find_doubts(&spelt, &guide, known, FeatureWeights::fitted(), (&bounds, &[finding]));
         let [from, to] = doubts[0].span;
         (&TO_KITCHEN[from..to], doubts[0].alternatives.clone())
     };

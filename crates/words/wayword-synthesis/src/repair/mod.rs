@@ -25,6 +25,8 @@ pub struct InstructionOrder<'a> {
     pub memory: &'a WalkMemory,
     /// The evidence that the text is checked against.
     pub evidence: &'a Evidence,
+    /// The memory of the walk by that evidence: each claim is held against its own stretch of it.
+    pub evidence_memory: &'a WalkMemory,
     /// The style to write in.
     pub style: &'a InstructionStyle,
     /// The measured properties of the style's references.
@@ -139,7 +141,7 @@ fn write_until_good(
         // Attempts by rules are free, so they go on until every check passes. A model only writes again what failed a
         // check.
         let good_enough = if writer.name() == RulesWriter.name() { Verdict::Pass } else { Verdict::Unverified };
-        if instruction.verdict <= good_enough {
+        if verdict_on_words(&instruction.findings) <= good_enough {
             return Ok(WritingOutcome::Accepted(instruction));
         }
         complaints.push(TextComplaint { text: instruction.text.clone(), findings: instruction.findings.clone() });
@@ -151,6 +153,14 @@ fn write_until_good(
         Some(instruction) if instruction.verdict == Verdict::Unverified => WritingOutcome::Accepted(instruction),
         last => WritingOutcome::Rejected { reason: failure_reasons(last.as_ref(), &complaints), last },
     })
+}
+
+/// The verdict of the checks that other words could change: without a map, no words make a route known.
+fn verdict_on_words(findings: &[CheckFinding]) -> Verdict {
+    let is_route_unknown =
+        |finding: &&CheckFinding| finding.check == CheckKind::Route && finding.verdict == Verdict::Unverified;
+    let counted = findings.iter().filter(|finding| !is_route_unknown(finding));
+    counted.map(|finding| finding.verdict).max().unwrap_or(Verdict::Unverified)
 }
 
 /// The input of the writer for its next attempt, with the complaints about the texts before.
@@ -183,7 +193,9 @@ fn unusable_complaint(text: String, reason: String) -> TextComplaint {
 /// Checks a text, follows it if it passed, and makes an instruction of it with all findings.
 fn check_text(text: String, provenance: TextProvenance, order: InstructionOrder<'_>) -> Instruction {
     let target = order.walk.path.target.as_ref();
-    let subject = CheckSubject::closed_world(order.evidence, order.style, target).with_copies(&order.profile.copies);
+    let subject = CheckSubject::closed_world(order.evidence, order.style, target)
+        .with_copies(&order.profile.copies)
+        .with_memory(order.evidence_memory);
     let mut checked = check_own_text(&text, CheckSubject { writer_sees: !order.pictures.is_empty(), ..subject });
     // A failed text is written again anyway, so it is not followed.
     let follower = order.follower.filter(|_| checked.verdict() != Verdict::Fail);

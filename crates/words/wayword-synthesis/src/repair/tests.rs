@@ -75,6 +75,7 @@ pub(super) fn order<'a>(
         walk,
         memory,
         evidence,
+        evidence_memory: memory,
         style,
         profile,
         style_hash: "",

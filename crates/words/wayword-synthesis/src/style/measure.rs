@@ -13,18 +13,16 @@ use wayword_language::{
         TextReading, ordinal_word,
         vocabulary::{DETERMINERS, WALKING},
     },
-    text::split_words,
 };
 
 /// Measures the wording of reference texts for places and tasks.
-pub(super) fn measure_wording<'a>(texts: impl Iterator<Item = (&'a str, &'a TextReading)>) -> PlaceWording {
-    let (mut counts, mut number) = (WordingCounts::default(), 0.0);
-    for (text, reading) in texts {
-        number += 1.0;
-        count_text(text, reading, &mut counts);
+pub(super) fn measure_wording(readings: &[TextReading]) -> PlaceWording {
+    let mut counts = WordingCounts::default();
+    for reading in readings {
+        count_text(reading, &mut counts);
     }
     verbs::retain_common_verbs(&mut counts);
-    PlaceWording::from_counts(counts.0, number)
+    PlaceWording::from_counts(counts.0, readings.len() as f64)
 }
 
 /// A text split into the part with the way or the room and the part with the task.
@@ -39,8 +37,8 @@ struct PlaceTextParts {
 }
 
 /// Counts the constructions of one text.
-fn count_text(text: &str, reading: &TextReading, counts: &mut WordingCounts) {
-    let words = split_words(text);
+fn count_text(reading: &TextReading, counts: &mut WordingCounts) {
+    let words = reading.to_plain_words();
     let all = format!(" {} ", words.join(" "));
     let parts = split_text(&words, reading);
     counts.add("order", parts.order);

@@ -6,8 +6,8 @@ use std::{collections::BTreeSet, sync::Arc};
 use wayword_checks::ReferenceRuns;
 use wayword_core::InstructionStyle;
 use wayword_language::{
-    reading::{EventContent, read_instruction},
-    text::{sentence_count, word_count},
+    reading::{EventContent, TextReading, read_instruction},
+    text::word_count,
 };
 
 /// Properties that were measured on the reference texts of a style; shares are of texts, from 0 to 1.
@@ -53,28 +53,28 @@ impl StyleProfile {
     #[must_use]
     pub fn from_references(references: &[String]) -> Self {
         let texts: Vec<&String> = references.iter().filter(|text| word_count(text) > 0).collect();
-        let readings: Vec<_> = texts.iter().map(|text| read_instruction(text, &BTreeSet::new())).collect();
+        let readings: Vec<TextReading> = texts.iter().map(|text| read_instruction(text, &BTreeSet::new())).collect();
         let count = texts.len().max(1) as f64;
         let share = |holds: &dyn Fn(usize) -> bool| (0..texts.len()).filter(|at| holds(*at)).count() as f64 / count;
         let events = |is: &dyn Fn(&EventContent) -> bool| {
             readings.iter().flat_map(|reading| &reading.events).filter(|event| is(&event.what)).count() as f64 / count
         };
-        let sorted = |measure: &dyn Fn(&str) -> usize| {
-            let mut values: Vec<usize> = texts.iter().map(|text| measure(text)).collect();
+        let sorted = |measure: &dyn Fn(usize) -> usize| {
+            let mut values: Vec<usize> = (0..texts.len()).map(measure).collect();
             values.sort_unstable();
             values
         };
         Self {
-            words: sorted(&word_count),
-            sentences: sorted(&sentence_count),
+            words: sorted(&|at| word_count(texts[at])),
+            sentences: sorted(&|at| readings[at].count_sentences()),
             turns: events(&|what| matches!(what, EventContent::Turn(_))),
             places: events(&|what| matches!(what, EventContent::Place(_))),
             tasks: share(&|at| readings[at].task.is_some()),
             floors: share(&|at| readings[at].events.iter().any(|event| matches!(event.what, EventContent::Floor(_)))),
             full_stops: share(&|at| texts[at].trim_end().ends_with(['.', '!'])),
             way: WayWording::from_texts(texts.iter().map(|text| text.as_str()).zip(&readings)),
-            wording: measure_wording(texts.iter().map(|text| text.as_str()).zip(&readings)),
-            copies: Arc::new(ReferenceRuns::from_references(references)),
+            wording: measure_wording(&readings),
+            copies: Arc::new(ReferenceRuns::from_readings(&readings)),
         }
     }
 

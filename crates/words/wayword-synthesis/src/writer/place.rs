@@ -19,7 +19,7 @@ use rand_chacha::ChaCha8Rng;
 use room::GoalRoom;
 use wayword_checks::TextTopic;
 use wayword_core::ClimbDirection;
-use wayword_language::text::{capitalise_first, word_count};
+use wayword_language::text::{capitalise_first, split_tokens, word_count};
 
 /// Number of drafts for each plan.
 const DRAFTS_PER_PLAN: usize = 30;
@@ -56,9 +56,9 @@ pub(super) fn write_place_text(brief: &WritingBrief<'_>, dice: TextDice) -> Resu
         let plan = PlaceTextPlan::draw_plan(brief, &goal, words, rng);
         for _ in 0..DRAFTS_PER_PLAN {
             let text = draft_text(brief, &goal, &object, plan, rng);
-            let count = word_count(&text);
-            let copied_cost = if copies.find_copy(&text, topic).is_some() { NEVER_FAULT_WORDS } else { 0.0 };
-            let shared_cost = if copies.find_avoidable_copy(&text).is_some() { AVOIDED_FAULT_WORDS } else { 0.0 };
+            let (count, tokens) = (word_count(&text), split_tokens(&text));
+            let copied_cost = if copies.find_copy(&tokens, topic).is_some() { NEVER_FAULT_WORDS } else { 0.0 };
+            let shared_cost = if copies.find_avoidable_copy(&tokens).is_some() { AVOIDED_FAULT_WORDS } else { 0.0 };
             let over_limit_cost = if count < limit { 0.0 } else { NEVER_FAULT_WORDS };
             let fault = count.abs_diff(words) as f64 + copied_cost + shared_cost + over_limit_cost;
             if best.as_ref().is_none_or(|(least, _)| fault < *least) {

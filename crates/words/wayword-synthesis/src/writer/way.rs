@@ -20,7 +20,7 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
 use wayword_checks::TextTopic;
-use wayword_language::text::word_count;
+use wayword_language::text::{split_tokens, word_count};
 
 /// Tolerance around the drawn length while a plan is filled or cut, words.
 const LENGTH_SLACK_WORDS: f64 = 2.0;
@@ -56,7 +56,8 @@ pub(super) fn write_way_text(brief: &WritingBrief<'_>, task: Option<&(String, St
         let mut draft = plan.draft_for_plan(brief, task, dice);
         for _ in 0..MAX_REWORDINGS {
             let (text, starts) = draft.text_and_starts();
-            let (copied, shared) = (copies.find_copy(&text, topic), copies.find_avoidable_copy(&text));
+            let tokens = split_tokens(&text);
+            let (copied, shared) = (copies.find_copy(&tokens, topic), copies.find_avoidable_copy(&tokens));
             let is_over = word_count(&text) >= limit;
             let cost = [(copied.is_some(), COPIED_COST), (shared.is_some(), SHARED_COST), (is_over, OVER_LIMIT_COST)];
             let cost = cost.iter().filter(|(is_so, _)| *is_so).map(|(_, cost)| cost).sum();

@@ -27,7 +27,7 @@ pub(super) fn split_instruction(instruction: &Instruction, frame_steps: &[usize]
     let mut all: Vec<InstructionPart> = Vec::new();
     // Where the words without evidence before the first part begin; the first part takes them.
     let mut waiting_begin: Option<usize> = None;
-    for step in read_steps(text, &read_instruction(text, &std::collections::BTreeSet::new())) {
+    for step in read_steps(&read_instruction(text, &std::collections::BTreeSet::new())) {
         let begin = waiting_begin.take().unwrap_or(step.span[0]);
         let span = [begin, step.span[1]];
         match (part_from_span(instruction, span, last), all.last_mut()) {

@@ -11,10 +11,10 @@ use wayword_language::{
     answers::{BRINGS_IN, MATERIALS, NO_OBJECTS, NUMBERS, OTHERS, PERCEIVING, QUALITIES, TELLS_NOTHING},
     lexicon::{find_thing, means_several, names_agree, normalise_name, to_singular},
     reading::{
-        EventContent, read_instruction,
+        EventContent, TextReading, read_instruction,
         vocabulary::{ABSTRACT, BREAKERS, COLOURS},
     },
-    text::{TextToken, split_tokens},
+    text::TextToken,
 };
 
 /// Something that a text names.
@@ -47,11 +47,11 @@ const MAX_TEXT_BYTES: usize = 16_384;
 /// Finds the mentions of a text. `known` contains names, in normal spelling, that the lexicon may lack.
 pub(in crate::dialogue) fn find_mentions(text: &str, known: &BTreeSet<String>) -> Vec<AnswerMention> {
     let text = &text[..text.floor_char_boundary(MAX_TEXT_BYTES)].replace('’', "'");
-    let tokens = split_tokens(text);
-    let words: Vec<&str> = tokens.iter().map(|token| token.word.as_str()).collect();
-    let nouns = find_nouns(text, &tokens, &words, known);
+    let reading = read_instruction(text, known);
+    let words: Vec<&str> = reading.tokens().iter().map(|token| token.word.as_str()).collect();
+    let nouns = find_nouns(&reading, &words, known);
     let mut found = Vec::new();
-    for sentence in sentence_ranges(text, &tokens) {
+    for sentence in sentence_ranges(text, reading.tokens()) {
         let within: Vec<&NounMention> =
             nouns.iter().filter(|noun| sentence.contains(&noun.at.start) && noun.at.end <= sentence.end).collect();
         if !within.is_empty() {
@@ -232,10 +232,11 @@ struct NounMention {
     colour: Option<String>,
 }
 
-/// The things and rooms that a text names, in order. `known` contains names, in normal spelling, that the lexicon may
-/// lack.
-fn find_nouns(text: &str, tokens: &[TextToken], words: &[&str], known: &BTreeSet<String>) -> Vec<NounMention> {
-    let places = read_instruction(text, known).events.into_iter().filter_map(|event| match event.what {
+/// The things and rooms that a text names, in order. `words` are those of its tokens; `known` contains names, in normal
+/// spelling, that the lexicon may lack.
+fn find_nouns(reading: &TextReading, words: &[&str], known: &BTreeSet<String>) -> Vec<NounMention> {
+    let tokens = reading.tokens();
+    let places = reading.events.iter().filter_map(|event| match &event.what {
         EventContent::Place(place) => Some((event.span, place)),
         _ => None,
     });
@@ -254,7 +255,7 @@ fn find_nouns(text: &str, tokens: &[TextToken], words: &[&str], known: &BTreeSet
                 at: from..to,
                 is_thing: place.is_thing,
                 is_room: place.is_room,
-                colour: place.colour,
+                colour: place.colour.clone(),
             })
         })
         .collect()

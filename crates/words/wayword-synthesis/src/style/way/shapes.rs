@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use wayword_core::Side;
 use wayword_language::{
     reading::{EventContent, TextEvent, TextReading, read_instruction},
-    text::{self, TextToken},
+    text::TextToken,
 };
 
 /// Most words of a shape; a clause with more has no shape.
@@ -71,13 +71,12 @@ const JOINING_WORDS: &[&str] = &["and", "then", "next", "now"];
 
 /// The clauses of a text. A shape may consist only of `allowed` words.
 pub(super) fn shape_clauses(text: &str, reading: &TextReading, allowed: &BTreeSet<&str>) -> Vec<ShapedClause> {
-    let tokens = text::split_tokens(text);
     let (mut clauses, mut end, mut pending) = (Vec::new(), 0, Vec::<&str>::new());
     let mut is_first = true;
     for (number, clause) in reading.clauses.iter().enumerate() {
         let [from, to] = clause.span;
         let is_in_clause = |token: &&TextToken| token.span[0] >= from && token.span[1] <= to && token.is_word();
-        let words: Vec<&TextToken> = tokens.iter().filter(is_in_clause).collect();
+        let words: Vec<&TextToken> = reading.tokens().iter().filter(is_in_clause).collect();
         let links = words.iter().take_while(|token| JOINING_WORDS.contains(&token.word.as_str())).count();
         let between = if from >= end { text.get(end..from).unwrap_or_default() } else { "" };
         pending.push(between);

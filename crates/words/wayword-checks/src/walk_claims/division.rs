@@ -1,0 +1,81 @@
+//! Divides a walk among the steps of a text so that the fewest of their claims are false.
+
+use super::{
+    claims::{ClaimedFact, PlaceRole, StepClaim},
+    facts::WalkFacts,
+    judge::{ClaimOutcome, judge_claim},
+    untold::{untold_bends, untold_flights},
+};
+
+/// The cost of a turn that the stretch does not make.
+const FALSE_TURN_COST: f64 = 1.5;
+/// The cost of a climb that the stretch does not make.
+const FALSE_CLIMB_COST: f64 = 2.0;
+/// The cost of any other false claim.
+const FALSE_CLAIM_COST: f64 = 1.0;
+/// The cost of a claim that cannot be decided there, so that a stretch where it holds is preferred.
+const UNDECIDED_COST: f64 = 0.05;
+/// The cost of a motion by a place on no way at all, so that a stretch with a way is preferred.
+const NO_WAY_COST: f64 = 0.1;
+/// The cost of a turn that is left out, of one that a walker need not be told of, and of a flight of stairs.
+const UNTOLD_COSTS: [f64; 3] = [1.0, 0.3, 1.5];
+
+/// The stretch of each step, by its first and its last frame. The next step begins where one ends. Among equal divisions, each step
+/// ends as early as it can.
+pub(super) fn divide_walk(facts: &WalkFacts<'_>, claims: &[Vec<StepClaim<'_>>]) -> Vec<[usize; 2]> {
+    let frames = facts.last_frame() + 1;
+    // For each number of steps and each frame: the least cost with which these steps lead there, and where the last of them begins.
+    let mut best: Vec<Vec<(f64, usize)>> = vec![vec![(f64::INFINITY, 0); frames]; claims.len() + 1];
+    best[0][0].0 = 0.0;
+    for (step, claims) in claims.iter().enumerate() {
+        let (before, after) = best.split_at_mut(step + 1);
+        let (before, after) = (&before[step], &mut after[0]);
+        for (from, (reached, _)) in before.iter().enumerate().filter(|(_, (reached, _))| reached.is_finite()) {
+            for (to, least) in after.iter_mut().enumerate().skip(from) {
+                let cost = reached + stretch_cost(facts, claims, [from, to]);
+                if cost < least.0 {
+                    *least = (cost, from);
+                }
+            }
+        }
+    }
+    let mut to = frames - 1;
+    let mut division: Vec<[usize; 2]> = Vec::with_capacity(claims.len());
+    for step in (1..=claims.len()).rev() {
+        let from = best[step][to].1;
+        division.push([from, to]);
+        to = from;
+    }
+    division.reverse();
+    division
+}
+
+/// The cost of giving a stretch to a step.
+fn stretch_cost(facts: &WalkFacts<'_>, all: &[StepClaim<'_>], stretch: [usize; 2]) -> f64 {
+    let [untold, forced, flight] = UNTOLD_COSTS;
+    let bends = untold_bends(facts, all, stretch);
+    let turns: f64 = bends.iter().map(|bend| if facts.is_decision(bend) { untold } else { forced }).sum();
+    let flights = untold_flights(facts, all, stretch).len() as f64 * flight;
+    let claims: f64 = all.iter().map(|claim| claim_cost(facts, claim, stretch)).sum();
+    let is_motion = |claim: &StepClaim<'_>| {
+        matches!(
+            claim.what,
+            ClaimedFact::Place {
+                role: PlaceRole::Along | PlaceRole::Through | PlaceRole::Approached | PlaceRole::Passed,
+                ..
+            }
+        )
+    };
+    let stands = stretch[0] == stretch[1] && all.iter().any(is_motion);
+    turns + flights + claims + if stands { NO_WAY_COST } else { 0.0 }
+}
+
+fn claim_cost(facts: &WalkFacts<'_>, claim: &StepClaim<'_>, stretch: [usize; 2]) -> f64 {
+    match (judge_claim(facts, claim, stretch), claim.what) {
+        (ClaimOutcome::Holds(_) | ClaimOutcome::Unjudged, _) => 0.0,
+        (ClaimOutcome::Unknown(_), _) => UNDECIDED_COST,
+        (ClaimOutcome::Fails(_), ClaimedFact::Turn(_)) => FALSE_TURN_COST,
+        (ClaimOutcome::Fails(_), ClaimedFact::Climb(_)) => FALSE_CLIMB_COST,
+        (ClaimOutcome::Fails(_), _) => FALSE_CLAIM_COST,
+    }
+}

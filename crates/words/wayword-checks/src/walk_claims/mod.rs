@@ -1,0 +1,128 @@
+//! Holds each claim of a text against its own stretch of the walk, in a closed world where the labels and the poses of the path are
+//! known.
+//!
+//! The steps of the text divide the walk into consecutive stretches, one for each step. Of all divisions, the one is taken with the
+//! least cost: a sum of weights of its false claims and of the turns and flights that it leaves out. What is false or left out in that
+//! division is a mistake of the text: any other division costs at least as much.
+//!
+//! Frames have to lie close together. Between viewpoints of a graph, which are 2 m apart, it is not known what happens first.
+//!
+//! - `claims`: what each step claims of its stretch.
+//! - `facts`: what is known of the walk: distances, turns, rooms and doors along it.
+//! - `judge`: whether a claim holds on a stretch.
+//! - `untold`: turns and flights that a step leaves out.
+//! - `division`: the search for the best division.
+
+mod claims;
+mod division;
+mod facts;
+mod judge;
+#[cfg(test)]
+mod tests;
+mod untold;
+
+use crate::{Evidence, WalkMemory, new_finding, pass_finding};
+use claims::{ClaimedFact, StepClaim, claims_by_step};
+use division::divide_walk;
+use facts::WalkFacts;
+use judge::{ClaimOutcome, judge_claim};
+use untold::{untold_bends, untold_flights};
+use wayword_core::{CheckFinding, CheckKind, Side, Verdict};
+use wayword_language::reading::{TextReading, steps::InstructionStep};
+
+/// Largest product of the number of steps and the square of the number of frames: the search compares so many stretches.
+const MAX_STRETCHES: usize = 1_000_000;
+/// Walks with longer hops are not divided, metres.
+const MAX_MEAN_HOP_M: f64 = 1.3;
+
+/// The findings about a text on its walk.
+pub(super) struct WalkFindings {
+    pub(super) findings: Vec<CheckFinding>,
+    /// The frame of each event of the reading, where it has one.
+    pub(super) frames: Vec<Option<usize>>,
+}
+
+/// Checks the claims of a text, each at its stretch of the walk. `steps` are those of the reading; `object` is the event of the
+/// object of a task, which another check judges; `tells_way` says whether the text has to name each turn. `None` for a walk that has
+/// no moves, is too long, or has its frames too far apart.
+pub(super) fn check_walk_claims(
+    reading: &TextReading,
+    steps: &[InstructionStep],
+    (evidence, memory): (&Evidence, &WalkMemory),
+    object: Option<usize>,
+    tells_way: bool,
+) -> Option<WalkFindings> {
+    let work = steps.len() * evidence.frames.len() * evidence.frames.len();
+    let facts = WalkFacts::new(evidence, memory);
+    let mean_hop_m = facts.length_m([0, facts.last_frame()]) / evidence.moves.len().max(1) as f64;
+    let is_coarse = memory.is_on_graph() || mean_hop_m > MAX_MEAN_HOP_M;
+    if evidence.moves.is_empty() || steps.is_empty() || work > MAX_STRETCHES || is_coarse {
+        return None;
+    }
+    let claims = claims_by_step(&facts, reading, steps, object);
+    let division = divide_walk(&facts, &claims);
+    let mut found = WalkFindings { findings: Vec::new(), frames: vec![None; reading.events.len()] };
+    for ((step, claims), stretch) in steps.iter().zip(&claims).zip(&division) {
+        for claim in claims {
+            let outcome = judge_claim(&facts, claim, *stretch);
+            if let (ClaimOutcome::Holds(frame), Some(event)) = (&outcome, claim.event) {
+                found.frames[event] = Some(*frame);
+            }
+            found.findings.extend(claim_finding(&facts, claim, &outcome));
+        }
+        if tells_way {
+            found.findings.extend(untold_findings(&facts, claims, step, *stretch));
+        }
+    }
+    for check in [CheckKind::Order, CheckKind::Turns] {
+        if found.findings.iter().all(|finding| finding.check != check) {
+            found.findings.push(pass_finding(check));
+        }
+    }
+    Some(found)
+}
+
+/// The finding about a claim that does not hold, or cannot be decided.
+fn claim_finding(facts: &WalkFacts<'_>, claim: &StepClaim<'_>, outcome: &ClaimOutcome) -> Option<CheckFinding> {
+    let finding = |check, verdict, reason| Some(new_finding(check, verdict, reason, Some(claim.span)));
+    match outcome {
+        ClaimOutcome::Holds(_) | ClaimOutcome::Unjudged => None,
+        ClaimOutcome::Unknown(reason) => finding(CheckKind::Landmarks, Verdict::Unverified, reason.clone()),
+        ClaimOutcome::Fails(reason) => {
+            let whole = [0, facts.last_frame()];
+            let holds_on = |stretch| matches!(judge_claim(facts, claim, stretch), ClaimOutcome::Holds(_));
+            let holds_elsewhere = || holds_on(whole) || (0..=facts.last_frame()).any(|frame| holds_on([frame; 2]));
+            let check = match claim.what {
+                ClaimedFact::Turn(_) | ClaimedFact::Length { .. } => CheckKind::Turns,
+                ClaimedFact::Climb(_) | ClaimedFact::StairEnd { .. } => CheckKind::Floors,
+                ClaimedFact::Place { .. } if holds_elsewhere() => CheckKind::Order,
+                _ => CheckKind::Landmarks,
+            };
+            finding(check, Verdict::Fail, reason.clone())
+        }
+    }
+}
+
+/// Findings about turns and flights of a step's stretch that the step leaves out.
+fn untold_findings(
+    facts: &WalkFacts<'_>,
+    claims: &[StepClaim<'_>],
+    step: &InstructionStep,
+    stretch: [usize; 2],
+) -> Vec<CheckFinding> {
+    let span = Some(step.span);
+    let turns = untold_bends(facts, claims, stretch).into_iter().filter(|bend| facts.is_decision(bend)).map(|bend| {
+        let way = match bend.side() {
+            Side::Left => "left",
+            Side::Right => "right",
+            _ => "around",
+        };
+        let reason = format!("the path turns {way} in this stretch, and the text does not say so");
+        new_finding(CheckKind::Turns, Verdict::Fail, reason, span)
+    });
+    let flights = untold_flights(facts, claims, stretch).into_iter().map(|_| {
+        let reason = "the path climbs a flight of stairs in this stretch, and the text does not say so";
+        new_finding(CheckKind::Floors, Verdict::Fail, reason, span)
+    });
+    turns.chain(flights).collect()
+}

@@ -1,0 +1,224 @@
+//! Texts about one walk through an invented flat: each kind of claim where it holds, at another stretch, and left out.
+
+use crate::{
+    CheckSubject, EndSurroundings, Evidence, EvidenceSource, FrameEvidence, SeenThing, WalkMemory, check_text,
+};
+use wayword_core::{
+    CheckKind, DVec3, Heading, InstructionStyle, ObjectId, Path, PathMotion, SceneId, StyleConstraints, Verdict,
+    path::PathStop,
+};
+
+/// The walk: up a hallway, right through a door into a bedroom, left at its far wall, and on to the window.
+const STOPS: [[f64; 2]; 14] = [
+    [0.0, 0.0],
+    [0.0, 1.0],
+    [0.0, 2.0],
+    [0.0, 3.0],
+    [0.0, 4.0],
+    [0.0, 5.0],
+    [1.0, 5.0],
+    [2.0, 5.0],
+    [3.0, 5.0],
+    [4.0, 5.0],
+    [5.0, 5.0],
+    [5.0, 6.0],
+    [5.0, 7.0],
+    [5.0, 8.0],
+];
+
+/// The things of the flat, with their positions over the floor.
+const THINGS: [(&str, [f64; 2]); 11] = [
+    ("plant", [-1.0, 2.0]),
+    ("bookshelf", [1.0, 3.0]),
+    ("mirror", [-1.0, 4.0]),
+    ("painting", [0.5, 5.8]),
+    ("bed", [3.5, 6.2]),
+    ("dresser", [6.0, 5.0]),
+    ("rug", [5.0, 6.0]),
+    ("lamp", [4.2, 7.0]),
+    ("armchair", [6.0, 8.5]),
+    ("window", [5.0, 9.0]),
+    ("wardrobe", [2.0, 9.0]),
+];
+
+/// How far a thing is seen, metres.
+const SIGHT_M: f64 = 5.0;
+
+fn flat_walk() -> (Evidence, WalkMemory) {
+    let stop = |at: &[f64; 2]| PathStop { position: DVec3::new(at[0], at[1], 1.5), viewpoint: None, level: None };
+    let path = Path {
+        id: "p".into(),
+        scene: SceneId::new("s").unwrap(),
+        frames: Path::frames_along(STOPS.iter().map(stop).collect(), None),
+        motion: PathMotion::Known,
+        target: None,
+    };
+    let frames = path.frames.iter().map(|frame| {
+        let eye = frame.pose.position;
+        let seen = THINGS.iter().enumerate().map(|(number, (name, at))| {
+            let position = DVec3::new(at[0], at[1], 1.0);
+            SeenThing {
+                name: (*name).to_owned(),
+                object: Some(ObjectId::new(number.to_string()).unwrap()),
+                position: Some(position),
+                distance_m: Some((position - eye).length()),
+                turn_rad: Heading::towards(eye, position).map(|to| frame.pose.heading.turn_to(to)),
+                ..SeenThing::default()
+            }
+        });
+        FrameEvidence {
+            rooms: vec![if eye.x < 1.5 { "hallway" } else { "bedroom" }.to_owned()],
+            things: seen.filter(|thing| thing.distance_m.is_some_and(|far_m| far_m <= SIGHT_M)).collect(),
+            knows_things: true,
+            ..FrameEvidence::default()
+        }
+    });
+    let evidence = Evidence {
+        frames: frames.collect(),
+        moves: path.moves(),
+        motion: path.motion,
+        source: EvidenceSource::Labels,
+        beyond: EndSurroundings::default(),
+    };
+    let memory = WalkMemory::from_path(&evidence, &path);
+    (evidence, memory)
+}
+
+/// The mistakes in a text about the walk: the check, the verdict, the words and the reason of each.
+fn mistakes(text: &str) -> Vec<(CheckKind, Verdict, String, String)> {
+    let (evidence, memory) = flat_walk();
+    let style = InstructionStyle {
+        constraints: StyleConstraints { ends_in_task: false, ..StyleConstraints::default() },
+        ..InstructionStyle::default()
+    };
+    let checked = check_text(text, CheckSubject::closed_world(&evidence, &style, None).with_memory(&memory));
+    let wrong = checked.findings.into_iter().filter(|finding| finding.verdict != Verdict::Pass);
+    wrong
+        .map(|finding| {
+            let words = finding.span.map_or("", |[from, to]| &text[from..to]).to_owned();
+            (finding.check, finding.verdict, words, finding.reason)
+        })
+        .collect()
+}
+
+fn holds(text: &str) {
+    assert_eq!(mistakes(text), [], "{text}");
+}
+
+/// Checks that exactly these words of a text are wrong.
+fn fails(text: &str, check: CheckKind, words: &str) {
+    let found = mistakes(text);
+    let wrong: Vec<_> = found.iter().map(|found| (found.0, found.1, found.2.as_str())).collect();
+    assert_eq!(wrong, [(check, Verdict::Fail, words)], "{text}: {found:?}");
+}
+
+const WHOLE: &str = "Walk down the hallway past the bookshelf on your right. Turn right and enter the bedroom. Walk past the bed, \
+                     turn left at the dresser and stop by the armchair.";
+
+#[test]
+fn a_text_that_says_the_walk_in_its_order_holds() {
+    holds(WHOLE);
+    holds(
+        "Pass the plant and the mirror. Turn right into the bedroom. Turn left before the dresser. Stop at the window.",
+    );
+    holds(
+        "Go past the plant on the left, take a right, go past the bed on your left and turn left. Walk over the rug and wait near the armchair.",
+    );
+    holds(
+        "Walk toward the mirror. Turn right at the painting, walk to the dresser and go left. Stop in the bedroom by the window.",
+    );
+}
+
+#[test]
+fn a_turn_to_the_other_side_fails() {
+    for (turn, flipped) in [("Turn right", "Turn left"), ("turn left", "turn right")] {
+        let found = mistakes(&WHOLE.replace(turn, flipped));
+        let words = flipped.split(' ').next_back().unwrap();
+        let wrong = found.iter().filter(|found| found.0 == CheckKind::Turns && found.2 == words);
+        assert_eq!(wrong.count(), 1, "{found:?}");
+        assert!(found.iter().all(|found| (found.0, found.1) == (CheckKind::Turns, Verdict::Fail)), "{found:?}");
+    }
+}
+
+#[test]
+fn a_room_before_the_turn_into_it_fails() {
+    fails(
+        &WHOLE.replace("Turn right and enter the bedroom", "Enter the bedroom and turn right"),
+        CheckKind::Order,
+        "bedroom",
+    );
+}
+
+#[test]
+fn a_turn_told_a_part_too_early_or_too_late_fails() {
+    let early = "Walk down the hallway. Turn right. Walk past the bookshelf and enter the bedroom. Turn left and stop by the armchair.";
+    fails(early, CheckKind::Order, "bookshelf");
+    let late = "Walk down the hallway. Turn right and enter the bedroom. Turn left. Walk past the bed and stop by the armchair.";
+    fails(late, CheckKind::Order, "bed");
+}
+
+#[test]
+fn a_turn_that_is_left_out_fails_at_the_step_that_goes_over_it() {
+    let found =
+        mistakes("Walk down the hallway and enter the bedroom. Walk past the bed, turn left and stop by the armchair.");
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!((found[0].0, found[0].1), (CheckKind::Turns, Verdict::Fail));
+    assert_eq!(found[0].3, "the path turns right in this stretch, and the text does not say so");
+}
+
+#[test]
+fn two_parts_in_the_wrong_order_fail() {
+    let swapped =
+        "Walk past the mirror, then past the plant. Turn right into the bedroom, turn left and stop by the armchair.";
+    let found = mistakes(swapped);
+    // Either of them is in the wrong place.
+    assert!(
+        matches!(&found[..], [(CheckKind::Order, Verdict::Fail, words, _)] if words == "mirror" || words == "plant"),
+        "{found:?}"
+    );
+    fails(
+        "Walk past the bed. Walk down the hallway, turn right into the bedroom, turn left and stop by the armchair.",
+        CheckKind::Order,
+        "bed",
+    );
+}
+
+#[test]
+fn a_thing_on_the_other_side_fails() {
+    fails(&WHOLE.replace("on your right", "on your left"), CheckKind::Landmarks, "bookshelf");
+}
+
+#[test]
+fn an_end_that_is_far_fails_whatever_else_the_clause_says() {
+    let wardrobe = |end: &str| WHOLE.replace("stop by the armchair", end);
+    fails(&wardrobe("stop by the wardrobe"), CheckKind::Landmarks, "wardrobe");
+    fails(&wardrobe("stop in the bedroom next to the wardrobe"), CheckKind::Landmarks, "wardrobe");
+    fails(&wardrobe("stop by the plant"), CheckKind::Landmarks, "plant");
+}
+
+#[test]
+fn relations_counts_lengths_and_ends_of_rooms_are_decided_or_unverified() {
+    let end = |end: &str| WHOLE.replace("stop by the armchair", end);
+    holds(&end("stop between the armchair and the lamp"));
+    fails(&end("stop between the armchair and the plant"), CheckKind::Landmarks, "armchair");
+    fails(&end("stop by the armchair next to the bed"), CheckKind::Landmarks, "bed");
+    fails(&end("stop by the four armchairs"), CheckKind::Landmarks, "armchairs");
+    fails(
+        &WHOLE.replace("Walk down the hallway", "Walk twenty meters down the hallway"),
+        CheckKind::Turns,
+        "twenty meters",
+    );
+    let extent = mistakes(&WHOLE.replace("Walk down the hallway", "Walk to the end of the hallway"));
+    assert!(extent.iter().all(|found| found.1 == Verdict::Unverified) && !extent.is_empty(), "{extent:?}");
+}
+
+#[test]
+fn a_text_said_twice_fails() {
+    let twice = mistakes(&format!("{WHOLE} {WHOLE}"));
+    assert!(twice.iter().any(|found| found.1 == Verdict::Fail), "{twice:?}");
+    let sentence = mistakes(&WHOLE.replace(
+        "Turn right and enter the bedroom.",
+        "Turn right and enter the bedroom. Turn right and enter the bedroom.",
+    ));
+    assert!(sentence.iter().any(|found| found.1 == Verdict::Fail), "{sentence:?}");
+}
