@@ -7,8 +7,8 @@ use std::{path::PathBuf, process::ExitCode};
 use wayword_fit::{fit_alignment, fit_evidence, fit_follower};
 use wayword_quality::{
     budget, checked_texts, claims, corrupt_people, corruption_findings, corruptions, coverage, critics, detector,
-    doubts, eye, house_views, people, reader_figures, reuse, sample, skeleton, stage, steps, study_coverage, sweep,
-    tell_apart, texts, walker,
+    doubts, eye, house_faults, house_views, people, reader_figures, reuse, sample, skeleton, stage, steps,
+    study_coverage, sweep, tell_apart, texts, walker,
 };
 use wayword_run::{error::CommandError, output::CommandOutput};
 
@@ -149,6 +149,8 @@ enum Measurement {
     TellApart(tell_apart::TellApartArgs),
     /// Compare texts about generated houses with their plans: the room at the end, the thing at the stop, the target.
     Houses(texts::houses::HouseTextsArgs),
+    /// Plant faults into texts about generated houses, as the plans prove, and count how many the checks find.
+    HouseFaults(house_faults::HouseFaultsArgs),
     /// Count the views on walks through generated houses of which half or more is bare wall, and measure the time that a view takes.
     HouseViews(house_views::HouseViewsArgs),
     /// Simulate studies with people, and count how often the intervals of their figures cover the truth.
@@ -166,6 +168,7 @@ fn main() -> ExitCode {
         Measurement::TellApart(flags) => flags.json,
         Measurement::Texts(flags) => flags.json,
         Measurement::Houses(flags) => flags.json,
+        Measurement::HouseFaults(flags) => flags.json,
         Measurement::HouseViews(flags) => flags.json,
         Measurement::StudyCoverage(flags) => flags.json,
         Measurement::Align(flags) => flags.json,
@@ -213,6 +216,7 @@ fn run_measurement(what: Measurement, output: &CommandOutput) -> Result<(), Comm
         Measurement::Sweep(flags) => sweep::sweep_settings(&flags, output),
         Measurement::TellApart(flags) => tell_apart::measure_tell_apart(&flags, output),
         Measurement::Houses(flags) => texts::houses::measure_house_texts(&flags, output),
+        Measurement::HouseFaults(flags) => house_faults::measure_house_faults(&flags, output),
         Measurement::HouseViews(flags) => house_views::measure_house_views(&flags, output),
         Measurement::Texts(flags) => texts::measure_texts(&flags, output),
         Measurement::Sample { run, count, seed } => sample::show_sample(&run, count, seed, output),

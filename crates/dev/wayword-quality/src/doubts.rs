@@ -7,7 +7,7 @@ use crate::{
 };
 use clap::Args;
 use rayon::prelude::*;
-use std::path::PathBuf;
+use std::{collections::BTreeSet, path::PathBuf};
 use wayword_core::{DoubtGrade, doubt::spans_overlap, seeded_rng};
 use wayword_fit::fit_follower::texts::{FollowerScene, WalkedText, read_texts};
 use wayword_follower::{
@@ -15,6 +15,7 @@ use wayword_follower::{
     doubt::{DoubtBounds, DoubtSite, DoubtSource, find_sites},
     route::KnownWalk,
 };
+use wayword_language::{reading::read_instruction, rewording::TokenisedText};
 use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// The table shows, for each of these shares, the gain that this share of the words exceeds.
@@ -63,19 +64,21 @@ pub fn measure_doubts(flags: &DoubtsArgs, output: &CommandOutput) -> Result<(), 
 
 /// The sites of a text, and the grade of a turn that is flipped in it. `at`: the number of the text, for the seed.
 fn find_doubt_sites(scenes: &[FollowerScene], text: &WalkedText, at: usize, seed: u64) -> TextDoubtSites {
-    let sites_in = |words: &str, guide: &Guide| {
+    let sites_in = |spelt: &TokenisedText<'_>, guide: &Guide| {
         let building = &scenes[text.scene].building;
         let known = KnownWalk { building, walk: &text.walk, heading_rad: text.heading_rad };
-        find_sites(words, guide, known, FeatureWeights::fitted())
+        find_sites(spelt, guide, known, FeatureWeights::fitted())
     };
     let turned = flip_one_turn(&text.words, &mut seeded_rng(seed, &["doubts", "turn", &at.to_string()]));
     let flipped = turned.map(|turned| {
         let place = text.words.bytes().zip(turned.bytes()).position(|(a, b)| a != b).unwrap_or_default();
-        let sites = sites_in(&turned, &Guide::read_text(&turned));
+        let reading = read_instruction(&turned, &BTreeSet::new());
+        let sites = sites_in(&TokenisedText::from_reading(&turned, &reading), &Guide::from_reading(&reading));
         let here = sites.iter().filter(|site| spans_overlap(site.span, [place, place + 1]));
         here.filter_map(|site| DoubtBounds::default().grade_gain(site.source, site.best_gain())).max()
     });
-    TextDoubtSites { scene: text.scene, sites: sites_in(&text.words, &text.guide), flipped }
+    let sites = sites_in(&TokenisedText::from_text(&text.words), &text.guide);
+    TextDoubtSites { scene: text.scene, sites, flipped }
 }
 
 fn report_lines(judged: &[TextDoubtSites], seed: u64) -> Vec<String> {

@@ -6,6 +6,8 @@
 //!   errors of the reader.
 //! - [`corruptions`], [`corruption_findings`], [`claims`], [`doubts`], [`people`]: which wrong texts the checks and the follower find,
 //!   and which true ones they refuse.
+//! - [`house_faults`]: faults in our own texts about generated houses, proved by the plan of the house. Like [`corrupt_people`], it
+//!   has word lists of its own (`word_lists.rs`); `locate.rs` decides whether an edited text is wrong.
 //! - [`texts`], [`tell_apart`]: figures of texts, and a classifier that separates generated ones from people's; `texts/listener/` finds a target by labels.
 //! - [`detector`], [`eye`]: what a detector or a flawed eye with given figures does to texts.
 //! - [`reader_figures`], [`critics`], [`sweep`], [`walker`]: followers, critics and agents.
@@ -23,6 +25,7 @@ pub mod critics;
 pub mod detector;
 pub mod doubts;
 pub mod eye;
+pub mod house_faults;
 pub mod house_views;
 pub mod key;
 pub mod people;
