@@ -89,8 +89,8 @@ enum FollowedPlace<'a> {
     JoinedGraph {
         /// The building with its viewpoint graph, on which the path was put.
         building: KnownBuilding,
-        /// The path alone, with a viewpoint at each of its frames. The parts of a text are aligned with it.
-        frames: KnownBuilding,
+        /// The frames of the path. The parts of a text are aligned with them alone.
+        frames: Vec<PathPlace>,
     },
     /// The path alone: there is no graph, so no other walk is known.
     PathAlone(KnownBuilding),
@@ -168,7 +168,7 @@ impl<'a> FollowedPath<'a> {
             false => from.distance(to) <= ASSUMED_STRAIGHT_M && (from.z - to.z).abs() <= ASSUMED_LEVEL_M,
         };
         let WalkOnGraph { building, walk } = WalkOnGraph::new(&scene.building, &places, &can_walk);
-        let place = FollowedPlace::JoinedGraph { building, frames: KnownBuilding::along_path(places) };
+        let place = FollowedPlace::JoinedGraph { building, frames: places };
         Ok(Self { place, walk, heading_rad })
     }
 
@@ -195,11 +195,12 @@ impl<'a> FollowedPath<'a> {
     pub(crate) fn align_text(&self, text: &str, tag: Option<&str>) -> Result<WalkAlignment, &'static str> {
         let (_, reading) = read_followable(text, tag)?;
         let parted = PartedText::from_reading(text, &reading);
-        let frame_numbers: Vec<usize>;
+        let (alone, frame_numbers): (KnownBuilding, Vec<usize>);
         let known = match &self.place {
             FollowedPlace::JoinedGraph { frames, .. } => {
+                alone = KnownBuilding::along_path(frames.clone());
                 frame_numbers = (0..frames.len()).collect();
-                KnownWalk { building: frames, walk: &frame_numbers, heading_rad: self.heading_rad }
+                KnownWalk { building: &alone, walk: &frame_numbers, heading_rad: self.heading_rad }
             }
             FollowedPlace::Graph(_) | FollowedPlace::PathAlone(_) => self.known_path(),
         };

@@ -11,7 +11,7 @@ use wayword_language::{
 
 /// "Stop by the sofa" fails where the sofa's centre is farther than this from the eye at the end, metres. For things on
 /// the floor that is 2 m along the floor.
-const MAX_STOP_DISTANCE_M: f64 = 2.5;
+pub(crate) const MAX_STOP_DISTANCE_M: f64 = 2.5;
 
 /// The mistake at the end of a text, if there is one. The event `object` is left out: it names the object of the
 /// task, which has a check of its own.
@@ -80,15 +80,18 @@ fn wrong_room(name: &str, near: &[FrameEvidence]) -> Option<(Verdict, String)> {
     })
 }
 
+/// Whether the centre of such a thing may be far from a walker that is near it.
+pub(crate) fn is_wide(name: &str) -> bool {
+    let class = find_thing(name).map_or(ThingClass::Unknown, |thing| thing.class);
+    matches!(class, ThingClass::Stairs | ThingClass::Fabric | ThingClass::Floor | ThingClass::Unknown)
+}
+
 /// The thing at which a text stops, where the nearest of its name is known to be far from the end.
 fn find_distant_stop(name: &str, last: &FrameEvidence, reading: &TextReading) -> Option<(Verdict, String)> {
     let stops = reading.events.iter().any(|event| event.what == EventContent::Stop);
-    let class = find_thing(name).map_or(ThingClass::Unknown, |thing| thing.class);
-    // A wide thing is near though its centre is far.
-    let is_wide = matches!(class, ThingClass::Stairs | ThingClass::Fabric | ThingClass::Floor | ThingClass::Unknown);
     let alike = last.things.iter().filter(|thing| names_agree(&thing.name, name));
     let far_m = alike.map(|thing| thing.distance_m.unwrap_or(0.0)).min_by(f64::total_cmp)?;
-    let is_far = stops && !is_wide && far_m > MAX_STOP_DISTANCE_M;
+    let is_far = stops && !is_wide(name) && far_m > MAX_STOP_DISTANCE_M;
     is_far.then(|| (Verdict::Fail, format!("the nearest {name:?} is {far_m:.1} m from where the path ends")))
 }
 

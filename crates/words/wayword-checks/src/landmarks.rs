@@ -148,7 +148,7 @@ struct SightingIndex<'a> {
 }
 
 /// Whether a name means an opening between rooms. A change of rooms shows it, even if labels do not list it.
-fn is_door(name: &str) -> bool {
+pub(crate) fn is_door(name: &str) -> bool {
     matches!(name, "door" | "doorway" | "opening" | "entrance" | "exit" | "threshold")
 }
 

@@ -44,8 +44,15 @@ pub(super) fn is_side_unknown(place: &PlaceMention, evidence: &Evidence) -> bool
 fn turns_to(place: &PlaceMention, at: usize, evidence: &Evidence) -> Vec<f64> {
     let leaving_rad = evidence.moves.get(at).map_or(0.0, |step| step.turn_rad);
     let things = evidence.frames[at].things.iter().filter(|thing| names_agree(&thing.name, &place.name));
-    let wrap = |rad: f64| (rad + PI).rem_euclid(TAU) - PI;
-    things.filter_map(|thing| thing.turn_rad).flat_map(|turn_rad| [turn_rad, wrap(turn_rad - leaving_rad)]).collect()
+    things
+        .filter_map(|thing| thing.turn_rad)
+        .flat_map(|turn_rad| [turn_rad, wrap_angle(turn_rad - leaving_rad)])
+        .collect()
+}
+
+/// An angle in [-π, π).
+pub(super) fn wrap_angle(rad: f64) -> f64 {
+    (rad + PI).rem_euclid(TAU) - PI
 }
 
 #[cfg(test)]

@@ -119,15 +119,11 @@ fn check_with_lookout(
     let check_styles = CheckStyles::for_style(how.style)?;
     let walks = read_path_texts(file, platform.as_ref())?;
     let checking = TextChecker {
-        platform: platform.as_ref(),
-        styles: &check_styles,
-        how,
         lookout,
         sources,
         calibration: calibration.as_ref(),
         captions: how.captions.map(run_texts::read_captions).transpose()?.unwrap_or_default(),
-        scenes: KnownScenes::new(),
-        is_own_run: false,
+        ..TextChecker::new(platform.as_ref(), &check_styles, how)
     };
     checking.check_walks(&walks, output)
 }
@@ -143,17 +139,8 @@ pub fn find_text_doubts(
     output: &CommandOutput,
 ) -> Result<Vec<Vec<TextDoubt>>, CommandError> {
     let how = CheckOptions { doubts: true, ..CheckOptions::default() };
-    let checking = TextChecker {
-        platform,
-        styles: &CheckStyles::for_style(None)?,
-        how,
-        lookout: None,
-        sources: EvidenceSources::default(),
-        calibration: None,
-        captions: BTreeMap::new(),
-        scenes: KnownScenes::new(),
-        is_own_run: false,
-    };
+    let check_styles = CheckStyles::for_style(None)?;
+    let checking = TextChecker::new(platform, &check_styles, how);
     let report = checking.check_walks(&path_texts::gather_by_path(texts), output)?;
     Ok(report.doubted.into_iter().map(|text| text.doubts).collect())
 }
@@ -182,8 +169,8 @@ struct TextChecker<'a> {
 }
 
 impl<'a> TextChecker<'a> {
-    /// Checks the texts of a run whose evidence were the labels of its platform.
-    fn for_own_texts(platform: &'a dyn Platform, styles: &'a CheckStyles, how: CheckOptions<'a>) -> Self {
+    /// Checks texts against the labels of a platform.
+    fn new(platform: &'a dyn Platform, styles: &'a CheckStyles, how: CheckOptions<'a>) -> Self {
         Self {
             platform,
             styles,
@@ -193,7 +180,7 @@ impl<'a> TextChecker<'a> {
             calibration: None,
             captions: BTreeMap::new(),
             scenes: KnownScenes::new(),
-            is_own_run: true,
+            is_own_run: false,
         }
     }
 
@@ -248,7 +235,8 @@ impl<'a> TextChecker<'a> {
             (AskedWorld::Auto, true) if source == EvidenceSource::Labels => CheckWorld::Closed,
             (asked, _) => choose_world(text, asked, platform.name(), source),
         };
-        let memory = WalkMemory::from_path(&evidence, &walk.path);
+        let some_are_closed = walk.texts.iter().any(|text| text_world(text) == CheckWorld::Closed);
+        let memory = some_are_closed.then(|| WalkMemory::from_path(&evidence, &walk.path));
         let some_are_open = walk.texts.iter().any(|text| text_world(text) == CheckWorld::Open);
         let scene = Some(self.scenes.get_or_survey(platform, &walk.path.scene)?);
         evidence.beyond = scene.as_ref().map(|scene| scene.inventory.beyond_end(&walk.path)).unwrap_or_default();
@@ -272,9 +260,10 @@ impl<'a> TextChecker<'a> {
             // People name a target as they like, so any object of the final viewpoint is accepted.
             let target = walk.path.target.as_ref().filter(|_| self.is_own_run);
             let subject = match text_world(text) {
-                CheckWorld::Closed => {
-                    CheckSubject::closed_world(&evidence, &check_style.style, target).with_memory(&memory)
-                }
+                CheckWorld::Closed => CheckSubject {
+                    memory: memory.as_ref(),
+                    ..CheckSubject::closed_world(&evidence, &check_style.style, target)
+                },
                 CheckWorld::Open => CheckSubject::open_world(&evidence, &check_style.style, reach),
             };
             let turns =

@@ -57,7 +57,8 @@ pub(super) fn check_file(
             Ok(platform) => {
                 let walks: Vec<PathTexts> =
                     walks.into_iter().map(|(walk, texts)| PathTexts { path: walk.path, texts }).collect();
-                return TextChecker::for_own_texts(platform.as_ref(), &styles, how).check_walks(&walks, output);
+                let checking = TextChecker { is_own_run: true, ..TextChecker::new(platform.as_ref(), &styles, how) };
+                return checking.check_walks(&walks, output);
             }
             Err(error) => output
                 .say(format!("the platform of the run cannot be opened, so its captions are the evidence: {error}")),

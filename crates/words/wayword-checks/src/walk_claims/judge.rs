@@ -5,19 +5,18 @@ use super::{
     facts::{WalkFacts, is_stairs},
 };
 use crate::{
+    goal::{MAX_STOP_DISTANCE_M as STOP_M, is_wide},
+    landmarks::is_door,
     memory::{RememberedThing, RoomOpening, ThingGlimpse},
-    sides::{lies_on, side_word},
+    sides::{lies_on, side_word, wrap_angle},
 };
-use std::f64::consts::{PI, TAU};
 use wayword_core::{ClimbDirection, DVec3, Side, motion};
 use wayword_language::{
     lexicon::{ThingClass, find_thing, is_fabric},
     reading::{PlaceMention, PlaceOrdinal},
 };
 
-/// "Stop by the sofa" holds up to this far from the thing's centre, metres along the floor.
-const STOP_M: f64 = 2.5;
-/// The same for things whose centre may be far although they are near: stairs, rugs, curtains.
+/// How far "stop by the stairs" holds: as [`STOP_M`], for things whose centre may be far although they are near: stairs, rugs, curtains.
 const WIDE_STOP_M: f64 = 4.0;
 /// A turn "at the sofa" is at most this far from it, and a walker "by the sofa" as well, metres.
 const NEAR_M: f64 = 3.0;
@@ -87,10 +86,10 @@ fn judge_turn(facts: &WalkFacts<'_>, side: Side, stretch: [usize; 2]) -> ClaimOu
     if let Some(bend) = facts.told_bend(side, stretch) {
         return Holds(bend.first);
     }
-    let (way, sign) = match side {
-        Side::Left => ("left", -1.0),
-        Side::Right => ("right", 1.0),
-        Side::Ahead | Side::Behind => ("around", 0.0),
+    let sign = match side {
+        Side::Left => -1.0,
+        Side::Right => 1.0,
+        Side::Ahead | Side::Behind => 0.0,
     };
     // A long curve of small turns.
     if facts.bends_on(stretch).next().is_none()
@@ -98,7 +97,15 @@ fn judge_turn(facts: &WalkFacts<'_>, side: Side, stretch: [usize; 2]) -> ClaimOu
     {
         return Holds(stretch[0]);
     }
-    Fails(format!("no move of the path turns {way} here"))
+    Fails(format!("no move of the path turns {} here", turn_word(side)))
+}
+
+/// The word for a turn to a side.
+pub(super) fn turn_word(side: Side) -> &'static str {
+    match side {
+        Side::Left | Side::Right => side_word(side),
+        Side::Ahead | Side::Behind => "around",
+    }
 }
 
 fn judge_climb(facts: &WalkFacts<'_>, climb: ClimbDirection, stretch: [usize; 2]) -> ClaimOutcome {
@@ -221,21 +228,9 @@ fn judge_between(
     Fails(format!("the walk is not between {:?} and {:?} here", one.name, other.name))
 }
 
-/// An angle in [-π, π).
-fn wrap_angle(rad: f64) -> f64 {
-    (rad + PI).rem_euclid(TAU) - PI
-}
-
-/// Whether the centre of such a thing may be far from a walker that is at it.
-fn is_wide(name: &str) -> bool {
-    let class = find_thing(name).map_or(ThingClass::Unknown, |thing| thing.class);
-    matches!(class, ThingClass::Stairs | ThingClass::Fabric | ThingClass::Floor | ThingClass::Unknown)
-}
-
-/// Whether a name means an opening between rooms.
-fn is_door(name: &str) -> bool {
-    find_thing(name).is_some_and(|thing| thing.class == ThingClass::Door)
-        || matches!(name, "doorway" | "opening" | "entrance" | "exit" | "threshold")
+/// Whether a name means an opening between rooms, of whatever kind.
+fn is_any_door(name: &str) -> bool {
+    is_door(name) || find_thing(name).is_some_and(|thing| thing.class == ThingClass::Door)
 }
 
 /// The judge of one place on one stretch.
@@ -257,7 +252,7 @@ impl PlaceJudge<'_, '_> {
         if is_stairs(name) && self.facts.flights_on(self.wider()).next().is_some() && self.role != PlaceRole::Passed {
             return Holds(self.stretch[0]);
         }
-        if is_door(name) {
+        if is_any_door(name) {
             return self.judge_door();
         }
         let things = &self.claim.things[0];

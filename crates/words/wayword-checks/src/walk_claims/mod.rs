@@ -25,9 +25,9 @@ use crate::{Evidence, WalkMemory, new_finding, pass_finding};
 use claims::{ClaimedFact, StepClaim, claims_by_step};
 use division::divide_walk;
 use facts::WalkFacts;
-use judge::{ClaimOutcome, judge_claim};
+use judge::{ClaimOutcome, judge_claim, turn_word};
 use untold::{untold_bends, untold_flights};
-use wayword_core::{CheckFinding, CheckKind, Side, Verdict};
+use wayword_core::{CheckFinding, CheckKind, Verdict};
 use wayword_language::reading::{TextReading, steps::InstructionStep};
 
 /// Largest product of the number of steps and the square of the number of frames: the search compares so many stretches.
@@ -112,11 +112,7 @@ fn untold_findings(
 ) -> Vec<CheckFinding> {
     let span = Some(step.span);
     let turns = untold_bends(facts, claims, stretch).into_iter().filter(|bend| facts.is_decision(bend)).map(|bend| {
-        let way = match bend.side() {
-            Side::Left => "left",
-            Side::Right => "right",
-            _ => "around",
-        };
+        let way = turn_word(bend.side());
         let reason = format!("the path turns {way} in this stretch, and the text does not say so");
         new_finding(CheckKind::Turns, Verdict::Fail, reason, span)
     });
