@@ -3,7 +3,8 @@
 use super::{
     claims::{ClaimedFact, PlaceRole, StepClaim},
     facts::WalkFacts,
-    judge::{ClaimOutcome, judge_claim},
+    judge::judge_claim,
+    outcome::ClaimOutcome,
     untold::{untold_bends, untold_flights},
 };
 

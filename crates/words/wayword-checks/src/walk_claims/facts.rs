@@ -14,6 +14,9 @@ use wayword_language::{
 /// A turn that no step names is a mistake from this angle on, degrees. People leave out one in four that are wider than 55.
 const DECISION_DEG: f64 = 40.0;
 
+/// A turn "at the sofa" is at most this far from it, and a walker "by the sofa" as well, metres.
+pub(super) const NEAR_M: f64 = 3.0;
+
 /// The facts of a walk.
 pub(super) struct WalkFacts<'a> {
     pub(super) evidence: &'a Evidence,

@@ -9,7 +9,7 @@
 //!
 //! - `claims`: what each step claims of its stretch.
 //! - `facts`: what is known of the walk: distances, turns, rooms and doors along it.
-//! - `judge`: whether a claim holds on a stretch.
+//! - `judge`: whether a claim holds on a stretch; `places` and `relations` decide those about places. `outcome`: what is found.
 //! - `untold`: turns and flights that a step leaves out.
 //! - `division`: the search for the best division.
 
@@ -17,6 +17,9 @@ mod claims;
 mod division;
 mod facts;
 mod judge;
+mod outcome;
+mod places;
+mod relations;
 #[cfg(test)]
 mod tests;
 mod untold;
@@ -25,7 +28,8 @@ use crate::{Evidence, WalkMemory, new_finding, pass_finding};
 use claims::{ClaimedFact, StepClaim, claims_by_step};
 use division::divide_walk;
 use facts::WalkFacts;
-use judge::{ClaimOutcome, judge_claim, turn_word};
+use judge::{judge_claim, turn_word};
+use outcome::ClaimOutcome;
 use untold::{untold_bends, untold_flights};
 use wayword_core::{CheckFinding, CheckKind, Verdict};
 use wayword_language::reading::{TextReading, steps::InstructionStep};

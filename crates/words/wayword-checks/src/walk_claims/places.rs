@@ -1,0 +1,368 @@
+//! Decides whether a place has the role on a stretch that the text gives it: rooms, doors and things.
+
+use super::{
+    claims::{PlaceRole, StepClaim},
+    facts::{NEAR_M, WalkFacts, is_stairs},
+    outcome::ClaimOutcome::{self, Fails, Holds, Unjudged, Unknown},
+};
+use crate::{
+    goal::{MAX_STOP_DISTANCE_M as STOP_M, is_wide},
+    landmarks::is_door,
+    memory::{RememberedThing, RoomOpening, ThingGlimpse},
+    sides::{lies_on, side_word, wrap_angle},
+};
+use wayword_core::Side;
+use wayword_language::{
+    lexicon::{ThingClass, find_thing, is_fabric},
+    reading::{PlaceMention, PlaceOrdinal},
+};
+
+/// How far "stop by the stairs" holds: as [`STOP_M`], for things whose centre may be far although they are near: stairs, rugs, curtains.
+const WIDE_STOP_M: f64 = 4.0;
+/// A thing that the walker goes to may still be this far away at the end of the stretch, metres.
+const APPROACHED_M: f64 = 3.5;
+/// A thing that the walk comes so near to was passed, metres.
+const TOUCHED_M: f64 = 1.3;
+/// A walk goes through a door whose middle it comes so near to, metres: between two frames lies half a metre.
+const THROUGH_M: f64 = 0.9;
+/// A door between two frames lies at most so far from one of them, metres.
+const DOOR_M: f64 = 1.4;
+/// What lies behind a walker at the end has to be so near, metres: it was passed else.
+const BEHIND_STOP_M: f64 = 1.5;
+/// From this angle on a thing is behind the walker, degrees.
+const BEHIND_DEG: f64 = 110.0;
+/// A picture ahead shows what lies within this angle of the heading, degrees.
+const AHEAD_DEG: f64 = 50.0;
+/// A thing is known to the walker who saw it ahead at most this many frames before the stretch.
+const AHEAD_FRAMES: usize = 4;
+/// A thing that the walk passes is at most so far away there, metres.
+const PASSED_M: f64 = 3.5;
+/// A thing counts as in sight where a frame up to this many frames away shows it.
+const SIGHT_FRAMES: usize = 3;
+/// The way into a doorway "on the right" turns by at least this angle, degrees.
+const SIDEWAYS_DEG: f64 = 15.0;
+
+/// Whether a name means an opening between rooms, of whatever kind.
+fn is_any_door(name: &str) -> bool {
+    is_door(name) || find_thing(name).is_some_and(|thing| thing.class == ThingClass::Door)
+}
+
+/// The judge of one place on one stretch.
+pub(super) struct PlaceJudge<'f, 'a> {
+    pub(super) facts: &'f WalkFacts<'a>,
+    pub(super) claim: &'f StepClaim<'a>,
+    pub(super) place: &'f PlaceMention,
+    pub(super) role: PlaceRole,
+    /// Its first and its last frame.
+    pub(super) stretch: [usize; 2],
+}
+
+impl PlaceJudge<'_, '_> {
+    pub(super) fn judge_place(&self) -> ClaimOutcome {
+        let name = self.name();
+        let as_room = self.place.is_room.then(|| self.judge_room());
+        if let Some(holds @ Holds(_)) = as_room {
+            return holds;
+        }
+        if is_stairs(name) && self.facts.flights_on(self.wider()).next().is_some() && self.role != PlaceRole::Passed {
+            return Holds(self.stretch[0]);
+        }
+        if is_any_door(name) {
+            return self.judge_door();
+        }
+        let things = &self.claim.things[0];
+        match (things.is_empty(), as_room) {
+            (false, _) => self.judge_count(things).unwrap_or_else(|| self.judge_things(things)),
+            (true, Some(outcome)) if !self.place.is_thing => outcome,
+            (true, None) if self.role == PlaceRole::Stopped && self.facts.lists_things() && !is_fabric(name) => {
+                Fails(format!("{name:?} is not seen from the end of the path"))
+            }
+            (true, _) => Unjudged,
+        }
+    }
+
+    fn name(&self) -> &str {
+        &self.place.name
+    }
+
+    /// The stretch with one more frame at either end.
+    fn wider(&self) -> [usize; 2] {
+        let around = self.facts.around(self.stretch);
+        [*around.start(), *around.end()]
+    }
+
+    /// The mistake in a number of things, if the text names more than can be seen on the stretch.
+    fn judge_count(&self, things: &[&RememberedThing]) -> Option<ClaimOutcome> {
+        let count = self.place.count.filter(|count| *count > 1)? as usize;
+        let around = self.facts.around(self.stretch);
+        let is_there = |thing: &&&RememberedThing| around.clone().any(|frame| thing.glimpse_from(frame).is_some());
+        let seen = things.iter().filter(is_there).count();
+        (seen < count).then(|| Fails(format!("the path shows {seen} of {:?} here, and not {count}", self.name())))
+    }
+
+    /// Whether a change of rooms whose first frame behind it is `behind` belongs to the stretch. A turn just before it may belong to the
+    /// step before; a turn at the end of the stretch comes before a change behind it.
+    fn changes_room_at(&self, behind: usize) -> bool {
+        let [from, to] = self.stretch;
+        let turns_at =
+            |frame: usize| self.facts.memory.bends.iter().any(|bend| (bend.first..=bend.last).contains(&frame));
+        match behind {
+            _ if (from + 1..=to).contains(&behind) => true,
+            _ if behind == from => behind > 0 && turns_at(behind - 1),
+            _ => behind == to + 1 && !turns_at(to),
+        }
+    }
+
+    /// Decides a room.
+    fn judge_room(&self) -> ClaimOutcome {
+        let [from, to] = self.stretch;
+        let (facts, name, last) = (self.facts, self.name(), self.facts.last_frame());
+        let stays = || self.claim.stays.iter();
+        let entered = || stays().map(|stay| stay.entered).filter(|entered| *entered > 0);
+        let overlap =
+            || stays().find(|stay| stay.entered <= to && stay.left >= from).map(|stay| stay.entered.max(from));
+        let is_last_in = || facts.is_in_room(last, name).then_some(last);
+        let found = match self.role {
+            PlaceRole::Entered => entered().find(|entered| self.changes_room_at(*entered)),
+            // One can go to a room and turn into it afterwards, or be in it already.
+            PlaceRole::Approached | PlaceRole::Reached => entered()
+                .find(|entered| self.changes_room_at(*entered) || (to + 1..=to + 2).contains(entered))
+                .or_else(|| is_last_in().filter(|_| to == last)),
+            PlaceRole::Left => {
+                stays().map(|stay| stay.left).find(|left| *left < last && self.changes_room_at(left + 1))
+            }
+            PlaceRole::Stopped | PlaceRole::Within { at_stop: true } => is_last_in(),
+            PlaceRole::TurnedAt | PlaceRole::Passed | PlaceRole::Near | PlaceRole::InSight => {
+                facts.around(self.stretch).find(|frame| facts.is_in_room(*frame, name))
+            }
+            PlaceRole::Through | PlaceRole::Along | PlaceRole::Within { at_stop: false } => overlap(),
+        };
+        match found {
+            Some(frame) => self.room_on_side(frame),
+            None if stays().next().is_none() || !facts.knows_rooms() => Unjudged,
+            None => Fails(match self.role {
+                PlaceRole::Entered => format!("the path does not enter {name:?} here"),
+                PlaceRole::Left => format!("the path does not leave {name:?} here"),
+                PlaceRole::Stopped | PlaceRole::Within { at_stop: true } => {
+                    format!("the path does not end in {name:?}")
+                }
+                _ => format!("the path is not at {name:?} here"),
+            }),
+        }
+    }
+
+    /// A room that is entered on a side: the walk has to turn to it.
+    fn room_on_side(&self, frame: usize) -> ClaimOutcome {
+        if !matches!(self.role, PlaceRole::Entered | PlaceRole::Approached | PlaceRole::Through) {
+            return Holds(frame);
+        }
+        self.way_on_side(frame.saturating_sub(1), frame)
+    }
+
+    /// Whether the way through a change of rooms turns to the side that the text gives it.
+    fn way_on_side(&self, before: usize, behind: usize) -> ClaimOutcome {
+        let Some(side @ (Side::Left | Side::Right)) = self.place.side else { return Holds(behind) };
+        let sign = if side == Side::Left { -1.0 } else { 1.0 };
+        let around = self.facts.around([before, behind]);
+        let has_bend = self.facts.told_bend(side, [*around.start(), *around.end()]).is_some();
+        let net_deg = self.facts.net_turn_deg(around) * sign;
+        match net_deg {
+            _ if has_bend || net_deg >= SIDEWAYS_DEG => Holds(behind),
+            deg if deg <= -SIDEWAYS_DEG => {
+                Fails(format!("{:?} is not on the {} where the path enters it", self.name(), side_word(side)))
+            }
+            _ => Unknown(format!("the program cannot check on which side {:?} is", self.name())),
+        }
+    }
+
+    /// Decides a door or doorway.
+    fn judge_door(&self) -> ClaimOutcome {
+        let (facts, name, last) = (self.facts, self.name(), self.facts.last_frame());
+        let around = facts.around(self.stretch);
+        let far_m =
+            |thing: &RememberedThing, frame: usize| facts.memory.distance_m(thing, frame).unwrap_or(f64::INFINITY);
+        let doors = || self.claim.things[0].iter();
+        let unknown = || Unknown(format!("the program cannot check which {name:?} is meant"));
+        if matches!(self.place.ordinal, Some(PlaceOrdinal::Last))
+            || matches!(self.place.ordinal, Some(PlaceOrdinal::Number(number)) if number > 1)
+        {
+            return unknown();
+        }
+        let mut openings = facts.memory.openings.iter();
+        match self.role {
+            PlaceRole::Entered | PlaceRole::Through | PlaceRole::Left => {
+                let has_door = |opening: &&RoomOpening| {
+                    [opening.before, opening.behind]
+                        .iter()
+                        .any(|frame| doors().any(|door| far_m(door, *frame) <= DOOR_M))
+                };
+                if let Some(opening) = openings.filter(has_door).find(|opening| self.changes_room_at(opening.behind)) {
+                    return self.way_on_side(opening.before, opening.behind);
+                }
+                // Two rooms of one name have no change of rooms between them.
+                let [from, to] = self.stretch;
+                let through = (from..=to).find(|frame| doors().any(|door| far_m(door, *frame) <= THROUGH_M));
+                match through {
+                    Some(frame) => self.way_on_side(frame, (frame + 1).min(last)),
+                    None if facts.knows_rooms() => Fails(format!("the path does not go through a {name} here")),
+                    None => unknown(),
+                }
+            }
+            PlaceRole::Stopped | PlaceRole::Within { .. } => {
+                let ends_in_door = openings.any(|opening| opening.behind + 1 >= last && opening.before <= last);
+                match ends_in_door || doors().any(|door| far_m(door, last) <= STOP_M) {
+                    true => Holds(last),
+                    false => unknown(),
+                }
+            }
+            _ => {
+                let is_near = |frame: usize| doors().any(|door| far_m(door, frame) <= NEAR_M);
+                let opening =
+                    openings.find(|opening| around.contains(&opening.before) || around.contains(&opening.behind));
+                let found =
+                    opening.map(|opening| opening.before).or_else(|| around.clone().find(|frame| is_near(*frame)));
+                found.map_or_else(unknown, Holds)
+            }
+        }
+    }
+
+    /// Decides a thing, of which one of `things` may be meant.
+    fn judge_things(&self, things: &[&RememberedThing]) -> ClaimOutcome {
+        let there: Vec<(&RememberedThing, Vec<usize>)> = things
+            .iter()
+            .map(|thing| (*thing, self.frames_of(thing)))
+            .filter(|(_, frames)| !frames.is_empty())
+            .collect();
+        let Some(first) = there.first().and_then(|(_, frames)| frames.first()) else {
+            return self.missing_reason(things);
+        };
+        if let Some(PlaceOrdinal::Number(number)) =
+            self.place.ordinal.filter(|ordinal| *ordinal != PlaceOrdinal::Number(1))
+        {
+            let is_it = |thing: &RememberedThing| {
+                self.facts.memory.ordinal_among_alike(thing).is_some_and(|(place, _)| place == number as usize)
+            };
+            if !there.iter().any(|(thing, _)| is_it(thing)) {
+                return Unknown(format!("the program cannot check which {:?} is meant", self.name()));
+            }
+        }
+        let Some(side) = self.place.side else { return Holds(*first) };
+        let sides: Vec<(usize, Option<bool>)> = there
+            .iter()
+            .flat_map(|(thing, frames)| frames.iter().map(|frame| (*frame, self.is_on_side(thing, *frame, side))))
+            .collect();
+        if let Some((frame, _)) = sides.iter().find(|(_, is_there)| *is_there == Some(true)) {
+            return Holds(*frame);
+        }
+        if sides.iter().any(|(_, is_there)| is_there.is_none()) {
+            return Unknown(format!("the program cannot check on which side of the walker {:?} is", self.name()));
+        }
+        Fails(format!("{:?} is not on the {} where the path passes it", self.name(), side_word(side)))
+    }
+
+    /// The frames of the stretch at which a thing has the role that the text gives it.
+    fn frames_of(&self, thing: &RememberedThing) -> Vec<usize> {
+        let [from, to] = self.stretch;
+        let (facts, last) = (self.facts, self.facts.last_frame());
+        let far_m = |frame: usize| facts.memory.distance_m(thing, frame);
+        let is_seen = |frame: usize| thing.glimpse_from(frame).is_some();
+        let is_seen_near = |frame: usize| (frame.saturating_sub(SIGHT_FRAMES)..=frame + SIGHT_FRAMES).any(is_seen);
+        // Without a position, being seen is all that is known.
+        let within = |frame: usize, limit_m: f64| match far_m(frame) {
+            Some(far_m) => far_m <= limit_m && (is_seen_near(frame) || !facts.lists_things()),
+            None => is_seen(frame),
+        };
+        if !self.was_ahead(thing) {
+            return Vec::new();
+        }
+        let around = facts.around(self.stretch);
+        // A side is that of the stretch itself.
+        let frames = || if self.place.side.is_some() { from..=to } else { around.clone() };
+        let stop_m = if is_wide(self.name()) { WIDE_STOP_M } else { STOP_M };
+        match self.role {
+            PlaceRole::Passed => {
+                let passed = thing.passed.map(|passed| passed.frame).filter(|frame| (from..=to + 1).contains(frame));
+                let passed = passed.filter(|frame| within(*frame, PASSED_M));
+                passed.into_iter().chain((from..=to).filter(|frame| within(*frame, TOUCHED_M))).collect()
+            }
+            PlaceRole::Approached => {
+                let (start_m, end_m) = (far_m(from), far_m(to));
+                let comes_nearer = start_m.zip(end_m).is_none_or(|(start_m, end_m)| end_m < start_m - 0.3);
+                let is_ahead = facts.is_ahead(thing, to);
+                let is_toward = comes_nearer && (within(to, APPROACHED_M) || is_ahead) && (from..=to).any(is_seen);
+                (within(to, stop_m) || is_toward).then_some(to).into_iter().collect()
+            }
+            PlaceRole::Reached => (to..=(to + 1).min(last)).filter(|frame| within(*frame, stop_m)).collect(),
+            PlaceRole::Stopped | PlaceRole::Within { at_stop: true } => {
+                let is_behind =
+                    facts.direction_rad(thing, last).is_some_and(|rad| rad.abs() >= BEHIND_DEG.to_radians());
+                let limit_m = if is_behind { BEHIND_STOP_M } else { stop_m };
+                let is_there = within(last, limit_m) && (is_seen(last) || within(last, TOUCHED_M));
+                is_there.then_some(last).into_iter().collect()
+            }
+            PlaceRole::TurnedAt => {
+                let mut bends = facts.bends_on(self.stretch).peekable();
+                match bends.peek().is_none() {
+                    true => frames().filter(|frame| within(*frame, NEAR_M)).collect(),
+                    false => bends
+                        .flat_map(|bend| bend.first..=bend.last + 1)
+                        .filter(|frame| within(*frame, NEAR_M))
+                        .collect(),
+                }
+            }
+            PlaceRole::Entered | PlaceRole::Left | PlaceRole::Through => {
+                frames().filter(|frame| within(*frame, stop_m)).collect()
+            }
+            PlaceRole::Along | PlaceRole::Near | PlaceRole::Within { at_stop: false } => {
+                frames().filter(|frame| within(*frame, NEAR_M)).collect()
+            }
+            PlaceRole::InSight => frames().filter(|frame| is_seen(*frame)).collect(),
+        }
+    }
+
+    /// Whether the walker saw a thing ahead, on the stretch or not long before. Where directions are not known, being seen is enough.
+    fn was_ahead(&self, thing: &RememberedThing) -> bool {
+        let [from, to] = self.stretch;
+        let frames = from.saturating_sub(AHEAD_FRAMES)..=to + 1;
+        let is_ahead = |glimpse: &ThingGlimpse| glimpse.turn_rad.is_none_or(|rad| rad.abs() <= AHEAD_DEG.to_radians());
+        thing.glimpses.iter().any(|glimpse| frames.contains(&glimpse.frame) && is_ahead(glimpse))
+    }
+
+    /// Whether a thing is on a side of the walker at a frame; `None` where its direction is not known.
+    fn is_on_side(&self, thing: &RememberedThing, frame: usize, side: Side) -> Option<bool> {
+        if let (PlaceRole::Passed, Some(passed)) = (self.role, thing.passed.filter(|_| thing.position.is_some()))
+            && passed.frame == frame
+        {
+            return Some(passed.side == side);
+        }
+        let arriving_rad = self.facts.direction_rad(thing, frame)?;
+        let leaving_rad = self.facts.evidence.moves.get(frame).map_or(0.0, |step| step.turn_rad);
+        Some(lies_on(side, wrap_angle(arriving_rad)) || lies_on(side, wrap_angle(arriving_rad - leaving_rad)))
+    }
+
+    /// Why none of the things has the role.
+    fn missing_reason(&self, things: &[&RememberedThing]) -> ClaimOutcome {
+        let name = self.name();
+        let last = self.facts.last_frame();
+        Fails(match self.role {
+            PlaceRole::Passed => format!("the path does not pass {name:?} here"),
+            PlaceRole::Stopped | PlaceRole::Within { at_stop: true } => {
+                let far_m = things.iter().filter_map(|thing| self.facts.memory.distance_m(thing, last));
+                match far_m.min_by(f64::total_cmp) {
+                    Some(far_m) if far_m > STOP_M && !is_wide(name) => {
+                        format!("the nearest {name:?} is {far_m:.1} m from where the path ends")
+                    }
+                    _ => format!("{name:?} is not seen from the end of the path"),
+                }
+            }
+            PlaceRole::Approached | PlaceRole::Reached => format!("the path does not lead to {name:?} here"),
+            PlaceRole::TurnedAt => format!("the path does not turn at {name:?}"),
+            PlaceRole::Entered | PlaceRole::Through => format!("the path does not go through {name:?} here"),
+            PlaceRole::Left => format!("the path does not leave {name:?} here"),
+            PlaceRole::InSight => format!("{name:?} is not in sight here"),
+            PlaceRole::Along | PlaceRole::Near | PlaceRole::Within { at_stop: false } => {
+                format!("{name:?} is not near the path here")
+            }
+        })
+    }
+}
