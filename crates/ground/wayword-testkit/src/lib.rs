@@ -4,7 +4,7 @@
 //!
 //! There are stand-ins for services as well: [`provider`] serves models over HTTP that answer from scripts and fail in every
 //! way that real services fail; [`PlayedDetector`] detects things by script; [`PostgresServer`] starts a PostgreSQL server.
-//! [`documents`] extracts the commands that the repository's documents ask their readers to type.
+//! [`read_http_request`] is for the small servers of tests. [`documents`] extracts the commands that the repository's documents ask their readers to type.
 //!
 //! # Where things are
 //! - `test_house.rs`, `episodes.rs`: the building and its paths; a file each for the formats that they are written in.
@@ -16,6 +16,7 @@
 pub mod documents;
 mod episodes;
 mod house_file;
+mod http_request;
 mod played_detector;
 mod postgres;
 pub mod provider;
@@ -27,6 +28,7 @@ mod test_house;
 use serde_json::{Value, json};
 use std::{fs, io, path::Path};
 
+pub use http_request::read_http_request;
 pub use played_detector::PlayedDetector;
 pub use postgres::PostgresServer;
 pub use test_house::{SCAN, viewpoint_id};

@@ -5,11 +5,12 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::{
-    io::{Read, Write},
+    io::{BufReader, Write},
     net::TcpListener,
     process::Command,
 };
 use wayword_queue::cloud::{CloudBucket, CloudError};
+use wayword_testkit::read_http_request;
 
 const SECRET: &str = "hunter2hunter2";
 
@@ -40,7 +41,7 @@ fn server(status: &'static str, body: &'static str) -> String {
     std::thread::spawn(move || {
         for stream in listener.incoming() {
             let mut stream = stream.unwrap();
-            let _ = stream.read(&mut [0; 65536]);
+            read_http_request(&mut BufReader::new(&stream));
             let length = body.len();
             let _ = write!(stream, "HTTP/1.1 {status}\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n{body}");
         }

@@ -1,7 +1,7 @@
 //! A test server: a closure decides what each connection gets.
 
 use std::{
-    io::{BufRead, BufReader, Write},
+    io::{BufReader, Write},
     net::{TcpListener, TcpStream},
     sync::{
         Arc, Mutex,
@@ -10,6 +10,7 @@ use std::{
     thread,
     time::Duration,
 };
+use wayword_testkit::read_http_request;
 
 /// Listens on a port that the system chose, and remembers all requests.
 pub(crate) struct Server {
@@ -53,32 +54,13 @@ fn serve(
     stream.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
     stream.set_nodelay(true).unwrap();
     let mut reader = BufReader::new(stream.try_clone().unwrap());
-    while let Some(request) = read(&mut reader) {
+    while let Some((head, body)) = read_http_request(&mut reader) {
+        let request = head + &String::from_utf8_lossy(&body);
         seen.lock().unwrap().push(request.clone());
         if !act(count.fetch_add(1, Ordering::SeqCst), &request, &mut stream) {
             return;
         }
     }
-}
-
-fn read(reader: &mut impl BufRead) -> Option<String> {
-    let (mut head, mut length) = (String::new(), 0);
-    loop {
-        let mut line = String::new();
-        if reader.read_line(&mut line).ok()? == 0 {
-            return None;
-        }
-        if let Some(value) = line.to_ascii_lowercase().strip_prefix("content-length:") {
-            length = value.trim().parse().unwrap();
-        }
-        head.push_str(&line);
-        if line == "\r\n" {
-            break;
-        }
-    }
-    let mut body = vec![0; length];
-    reader.read_exact(&mut body).ok()?;
-    Some(head + &String::from_utf8_lossy(&body))
 }
 
 /// Writes a complete response.

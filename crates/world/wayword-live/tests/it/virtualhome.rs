@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::{
-    io::{Read, Write},
+    io::{BufReader, Write},
     net::TcpListener,
     thread,
     time::Duration,
@@ -14,6 +14,7 @@ use wayword_live::{
     LivePictureOptions, StandInHouses,
     virtualhome::{VirtualHomeClient, VirtualHomeOptions, VirtualHomePlatform, stand_in::VirtualHomeStandIn},
 };
+use wayword_testkit::read_http_request;
 
 fn start() -> (VirtualHomePlatform, VirtualHomeStandIn) {
     let simulator = VirtualHomeStandIn::start(([127, 0, 0, 1], 0).into()).unwrap();
@@ -210,7 +211,7 @@ fn answered(status: &'static str, announced: usize, content: &'static str) -> St
     let url = format!("http://{}", listener.local_addr().unwrap());
     let simulator = thread::spawn(move || {
         let (mut stream, _) = listener.accept().unwrap();
-        let _ = stream.read(&mut [0; 4096]);
+        read_http_request(&mut BufReader::new(&stream)).unwrap();
         let _ = write!(stream, "HTTP/1.1 {status}\r\nContent-Length: {announced}\r\n\r\n{content}");
     });
     let error = VirtualHomeClient::new(url, Duration::from_secs(5)).environment_graph().unwrap_err();

@@ -8,11 +8,12 @@ use opentelemetry_proto::tonic::{
 use prost::Message;
 use std::{
     collections::BTreeSet,
-    io::{BufRead, BufReader, Read, Write},
+    io::{BufReader, Write},
     net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream},
     sync::{Arc, Mutex},
     thread,
 };
+use wayword_testkit::read_http_request;
 
 #[derive(Default)]
 struct Received {
@@ -82,17 +83,7 @@ impl Collector {
 fn serve(stream: TcpStream, received: &Mutex<Received>) {
     let mut answers = stream.try_clone().unwrap();
     let mut requests = BufReader::new(stream);
-    loop {
-        let mut head = String::new();
-        while !head.ends_with("\r\n\r\n") {
-            if requests.read_line(&mut head).unwrap_or(0) == 0 {
-                return;
-            }
-        }
-        let length =
-            head.lines().find_map(|line| line.to_lowercase().strip_prefix("content-length:")?.trim().parse().ok());
-        let mut body = vec![0; length.unwrap()];
-        requests.read_exact(&mut body).unwrap();
+    while let Some((head, body)) = read_http_request(&mut requests) {
         let mut received = received.lock().unwrap();
         received.heads.push(head);
         received.bodies.push(body);
