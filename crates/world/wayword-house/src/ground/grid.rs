@@ -126,6 +126,13 @@ impl GroundGrid {
         (middle(self.x0_cm, column), middle(self.y0_cm, row))
     }
 
+    /// How many columns and rows lie between two cells.
+    pub(super) fn offset_between(&self, from: usize, to: usize) -> (i32, i32) {
+        let place = |index: usize| (index as i32 % self.columns, index as i32 / self.columns);
+        let ((from_column, from_row), (column, row)) = (place(from), place(to));
+        (column - from_column, row - from_row)
+    }
+
     /// The cell that lies `dx` columns and `dy` rows away.
     pub(super) fn offset_index(&self, index: usize, (dx, dy): (i32, i32)) -> Option<usize> {
         let (column, row) = (index as i32 % self.columns + dx, index as i32 / self.columns + dy);

@@ -94,3 +94,13 @@ fn the_way_up_climbs_a_storey_without_a_step() {
     assert!((way.places.last().unwrap().z - 3.0).abs() < 0.05 && way.places[0].z.abs() < 0.05);
     assert!(way.places.windows(2).all(|pair| (pair[1].z - pair[0].z).abs() < 0.06));
 }
+
+/// Two blocked cells that touch at a corner leave no gap between them.
+#[test]
+fn no_way_leads_between_two_things_that_touch_at_a_corner() {
+    let house = generate_house(1_451_638_221_406_018_528);
+    let ground = HouseGround::for_house(&house);
+    let [from, to] = [0, 2].map(|room| a_place_in(&house, &ground, room).unwrap());
+    let [way, back] = [(from, to), (to, from)].map(|(from, to)| ground.shortest_route(from, to).unwrap().length_m);
+    assert!((way - back).abs() < 0.2, "{way} {back}");
+}

@@ -33,6 +33,13 @@ impl HouseGround {
         self.march_straight(from, to, |_, _, _| {})
     }
 
+    /// Whether a diagonal step leads between two blocked cells that touch at a corner. A search from cell to cell does not go there either.
+    fn is_between_corners(&self, on: u8, from: usize, to: usize) -> bool {
+        let (columns, rows) = self.grid.offset_between(from, to);
+        let is_blocked = |step| self.grid.offset_index(from, step).is_none_or(|index| self.layers_at(on, index) == 0);
+        columns != 0 && rows != 0 && is_blocked((columns, 0)) && is_blocked((0, rows))
+    }
+
     /// Walks straight from one cell to another in small steps. `visit` gets the place of each step and the layers that are
     /// possible there. Returns whether the walk arrives.
     fn march_straight(&self, from: GroundCell, to: GroundCell, mut visit: impl FnMut(f64, f64, u8)) -> bool {
@@ -40,11 +47,13 @@ impl HouseGround {
         let (dx, dy) = (bx - ax, by - ay);
         let count = ((dx * dx + dy * dy).sqrt() / STEP_M).ceil().max(1.0) as usize;
         let mut on = self.layers_at(1 << from.layer, from.index);
+        let mut before = from.index;
         for step in 0..=count {
             let share = step as f64 / count as f64;
             let (x_m, y_m) = (ax + dx * share, ay + dy * share);
             match self.grid.index_at(x_m, y_m) {
-                Some(index) => on = self.layers_at(on, index),
+                Some(index) if self.is_between_corners(on, before, index) => return false,
+                Some(index) => (on, before) = (self.layers_at(on, index), index),
                 None => return false,
             }
             if on == 0 {
