@@ -3,25 +3,12 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ._call import PathLike, Progress, command, flags, opened
 from .checking import Texts, as_file
 from .platform import Platform
-from .run import Run
-
-
-@dataclass(frozen=True)
-class AlignedPart:
-    """A part of a text, with the frames that it describes."""
-
-    span: tuple[int, int]
-    """Its byte range in the text."""
-    frames: tuple[int, int]
-    """The frames where it begins and ends, the first of the path being 1. The next part begins where it ends."""
-    confidence: float
-    """The probability of exactly these frames, from 0 to 1."""
+from .run import AlignedPart, Run, parts_of
 
 
 @dataclass(frozen=True)
@@ -64,15 +51,8 @@ def align(
         AlignedText(
             text["path"],
             text["text"],
-            tuple(
-                AlignedPart(_pair(part["span"]), _pair(part["frames"]), part["confidence"]) for part in text["parts"]
-            ),
+            parts_of(text["parts"]),
             text.get("unaligned"),
         )
         for text in report["texts"]
     )
-
-
-def _pair(numbers: Sequence[int]) -> tuple[int, int]:
-    first, second = numbers
-    return first, second

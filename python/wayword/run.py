@@ -106,6 +106,18 @@ class Mention:
 
 
 @dataclass(frozen=True)
+class AlignedPart:
+    """A part of a text, with the frames that it describes."""
+
+    span: tuple[int, int]
+    """Its byte range in the text."""
+    frames: tuple[int, int]
+    """The frames where it begins and ends, numbered from 0. The next part begins where it ends."""
+    confidence: float | None
+    """The probability of exactly these frames, from 0 to 1; None where nothing is known of the motion along the path."""
+
+
+@dataclass(frozen=True)
 class Instruction:
     """A text for a path, with what was found in it and who made it. In a notebook it is shown as a card."""
 
@@ -117,6 +129,8 @@ class Instruction:
     path: Path
     findings: tuple[Finding, ...] = ()
     mentions: tuple[Mention, ...] = ()
+    parts: tuple[AlignedPart, ...] = ()
+    """Its parts in order; none in records of older versions."""
     ambiguity: Mapping[str, Any] | None = None
     """What the text may mean beside its path: `ends`, `objects`, `told_apart_by`."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
@@ -364,11 +378,22 @@ def instruction(
         path=path,
         findings=findings_of(line["findings"]),
         mentions=tuple(mentions),
+        parts=parts_of(line.get("parts", ())),
         ambiguity=line.get("ambiguity"),
         provenance=line["provenance"],
         split=line.get("split"),
         captions=tuple(captions),
         folder=folder,
+    )
+
+
+def parts_of(parts: Sequence[Mapping[str, Any]]) -> tuple[AlignedPart, ...]:
+    """Parts of a text from their JSON."""
+    return tuple(
+        AlignedPart(
+            (part["span"][0], part["span"][1]), (part["frames"][0], part["frames"][1]), part.get("confidence")
+        )
+        for part in parts
     )
 
 

@@ -22,6 +22,7 @@ pub(crate) fn test_instruction(style: &str, text: &str, mentions: &[(&str, Menti
         text: text.to_owned(),
         style: style.to_owned(),
         mentions: mentions.collect(),
+        parts: Vec::new(),
         verdict: Verdict::Pass,
         findings: Vec::new(),
         ambiguity: None,

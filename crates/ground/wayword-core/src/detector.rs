@@ -217,6 +217,7 @@ mod tests {
             distance_m: None,
             position: None,
             colour: None,
+            room: None,
         };
         let truth = GroundTruth { labels: outlines.iter().map(label).collect(), lists_objects: true, room: None };
         View::new(Pose::looking_level(DVec3::ZERO, heading), 1.5, None, Some(truth))

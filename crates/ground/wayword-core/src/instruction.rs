@@ -16,6 +16,10 @@ pub struct Instruction {
     pub style: String,
     /// The parts of the text that have evidence, in the order of the text.
     pub mentions: Vec<TextMention>,
+    /// The parts of the text in order, each with its frames of the path; none where the text was not aligned with its path, as in
+    /// records of older versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<InstructionPart>,
     /// All checks together.
     pub verdict: Verdict,
     /// Each check's outcome.
@@ -36,6 +40,19 @@ pub struct TextMention {
     pub kind: MentionKind,
     /// The frame that has the evidence.
     pub frame: usize,
+}
+
+/// A part of an instruction: words that belong to one stretch of the path.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct InstructionPart {
+    /// Byte range in the text.
+    pub span: [usize; 2],
+    /// The frames where its stretch begins and ends. The next part begins where it ends.
+    pub frames: [usize; 2],
+    /// How likely its stretch is exactly this, from 0 to 1; `None` where the motion along the path is unknown, so that only the places
+    /// that the text names decide.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub confidence: Option<f64>,
 }
 
 /// The kind of thing that words of an instruction name.

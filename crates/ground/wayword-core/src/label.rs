@@ -25,6 +25,9 @@ pub struct ObjectLabel {
     /// Its centre, metres, world frame.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub position: Option<DVec3>,
+    /// The room that it stands in.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub room: Option<String>,
     /// Word for its main colour.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colour: Option<String>,

@@ -15,6 +15,7 @@
 //! - [`condition`]: what can be known of a scene before a run.
 //! - [`depth`]: how far away a detector's find is.
 //! - [`doubt`]: what a doubt consists of, and how doubts about the same words are put together.
+//! - [`walk_cuts`]: all ways to divide a walk among the parts of a text.
 //! - [`id`]: which names from outside are refused.
 
 pub mod action;
@@ -48,6 +49,7 @@ pub mod style;
 pub mod survey;
 pub mod verdict;
 pub mod view;
+pub mod walk_cuts;
 
 pub use action::{AgentAction, NoAction};
 pub use ambiguity::TextAmbiguity;
@@ -71,7 +73,9 @@ pub use heading::{CompassPoint, Heading, Side};
 pub use hex::hex_text;
 pub use id::{ObjectId, SceneId, ViewpointId};
 pub use image::Image;
-pub use instruction::{ChosenBy, Instruction, MAX_TEXT_BYTES, MentionKind, TextMention, TextProvenance, TextSelection};
+pub use instruction::{
+    ChosenBy, Instruction, InstructionPart, MAX_TEXT_BYTES, MentionKind, TextMention, TextProvenance, TextSelection,
+};
 pub use label::ObjectLabel;
 pub use model::{
     ChatMessage, FinishReason, LanguageModel, MessageRole, ModelError, ModelReply, ModelRequest, ModelTool, ModelUsage,

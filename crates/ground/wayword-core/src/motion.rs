@@ -78,7 +78,11 @@ pub enum ClimbDirection {
 
 /// The smallest change of direction that an instruction mentions, degrees.
 pub const SLIGHT_DEG: f64 = 30.0;
-/// The smallest turn that is named without "slightly", degrees.
+/// The smallest turn that may be told without "slightly", and that a walker has to be told of, degrees.
+pub const TOLD_DEG: f64 = 40.0;
+/// The widest turn that may be told as a slight one, and the smallest that may be told as a sharp one, degrees.
+pub const MAX_SLIGHT_DEG: f64 = 70.0;
+/// The smallest turn that is no slight one, degrees.
 pub const FULL_DEG: f64 = 55.0;
 /// The smallest turn that is called turning around, degrees.
 pub const AROUND_DEG: f64 = 150.0;

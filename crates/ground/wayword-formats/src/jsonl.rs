@@ -11,7 +11,7 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path as FilePath,
 };
-use wayword_core::{Instruction, Path, SceneId};
+use wayword_core::{Instruction, InstructionPart, Path, SceneId};
 
 /// The value of `format`.
 const RECORD_FORMAT: &str = "wayword/1";
@@ -181,10 +181,15 @@ fn take_path(item: &mut DatasetItem<'_>) -> Result<Path, FormatError> {
 /// as indices later.
 fn take_instruction(item: &mut DatasetItem<'_>, frames: usize) -> Result<Instruction, FormatError> {
     let text = item.take_field("text")?;
-    let instruction = Instruction {
+    let mut instruction = Instruction {
         text: item.checked_instruction("text", &text)?,
         style: take_parsed(item, "style")?,
         mentions: take_parsed(item, "mentions")?,
+        parts: item
+            .take_optional("parts")
+            .map(|value| item.parse_value("parts", value))
+            .transpose()?
+            .unwrap_or_default(),
         verdict: take_parsed(item, "verdict")?,
         findings: take_parsed(item, "findings")?,
         ambiguity: item.take_optional("ambiguity").map(|value| item.parse_value("ambiguity", value)).transpose()?,
@@ -200,6 +205,12 @@ fn take_instruction(item: &mut DatasetItem<'_>, frames: usize) -> Result<Instruc
     if let Some(index) = findings.iter().position(|finding| finding.span.is_some_and(|span| !fits(span))) {
         let field = format!("findings[{index}].span");
         return Err(item.wrong_field(&field, "it points outside the text", "give a byte range within the text"));
+    }
+    let is_stretch = |[first, last]: [usize; 2]| first <= last && last < frames;
+    let is_part = |part: &InstructionPart| fits(part.span) && is_stretch(part.frames);
+    // Behind the end of the text there are no parts: somebody edited it.
+    if !instruction.parts.iter().all(is_part) {
+        instruction.parts.clear();
     }
     Ok(instruction)
 }

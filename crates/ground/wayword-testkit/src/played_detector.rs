@@ -100,6 +100,7 @@ mod tests {
             distance_m: None,
             position: None,
             colour: None,
+            room: None,
         };
         let truth = GroundTruth { labels: names.iter().map(label).collect(), lists_objects: true, room: None };
         View::new(Pose::looking_level(DVec3::new(at, 0.0, 1.5), Heading::NORTH), 1.5, None, Some(truth))

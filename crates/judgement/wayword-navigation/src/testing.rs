@@ -92,6 +92,7 @@ impl Cross {
             distance_m: Some(1.0),
             position: None,
             colour: None,
+            room: None,
         };
         self.things.get(node.as_str()).iter().map(|name| label(name)).collect()
     }

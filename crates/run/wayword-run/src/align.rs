@@ -14,9 +14,8 @@ use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::{fmt, path::PathBuf};
-use wayword_checks::Evidence;
-use wayword_core::Platform;
-use wayword_follower::alignment::WalkAlignment;
+use wayword_checks::{Evidence, WalkMemory};
+use wayword_core::{InstructionPart, Platform};
 
 /// `wayword align`.
 #[derive(Debug, Args)]
@@ -25,9 +24,10 @@ Examples:
   wayword align R2R_val_seen.json --platform matterport --data DATA
   wayword align runs/houses/instructions.jsonl --platform house --json
 
-A part is one or a few steps of the text, such as \"go past the sofa\". Its frames are those of the path in the file: the first is
-frame 1, and the next part begins where it ends. The confidence is the probability that it takes exactly these frames; it was
-fitted to people's texts on viewpoint graphs (docs/RESULTS.md).")]
+A part is one or a few steps of the text, such as \"go past the sofa\". Its frames are those of the path in the file, numbered from 0,
+and the next part begins where it ends. The confidence is the probability that it takes exactly these frames. On viewpoint graphs it
+was fitted to people's texts (docs/RESULTS.md); where frames lie close together and labels are known, the division counts in which the
+fewest claims of the text are false, and nothing is fitted.")]
 pub struct AlignArgs {
     /// File of instructions: R2R, REVERIE, RxR or Wayword.
     pub file: PathBuf,
@@ -53,21 +53,10 @@ pub struct AlignedText {
     /// Its words.
     pub text: String,
     /// Its parts in order; none if it could not be aligned.
-    pub parts: Vec<TextPartFrames>,
+    pub parts: Vec<InstructionPart>,
     /// Why it could not be aligned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unaligned: Option<&'static str>,
-}
-
-/// A part of a text, with the frames that it describes.
-#[derive(Debug, Serialize)]
-pub struct TextPartFrames {
-    /// Its byte range in the text.
-    pub span: [usize; 2],
-    /// The frames where it begins and ends, the first frame of the path being 1.
-    pub frames: [usize; 2],
-    /// The probability of exactly these frames, from 0 to 1.
-    pub confidence: f64,
 }
 
 /// Runs `wayword align`, and prints the parts.
@@ -116,26 +105,22 @@ fn align_walk(
     let is_on_graph = walk.path.frames.iter().all(|frame| frame.viewpoint.is_some());
     let scene = is_on_graph.then(|| scenes.get_or_survey(platform, &walk.path.scene)).transpose()?;
     let followed = FollowedPath::new(platform, scene.as_deref(), &walk.path, &evidence);
+    let memory = WalkMemory::from_path(&evidence, &walk.path);
     let align = |text: &FileText| {
-        let aligned = followed.as_ref().map_err(|why| *why);
-        let aligned = aligned.and_then(|followed| followed.align_text(&text.words, text.tag.as_deref()));
-        (text.at, AlignedText::new(text, aligned))
+        let known = (&evidence, &memory);
+        let align = |followed: &FollowedPath<'_>| followed.align_text(&text.words, text.tag.as_deref(), known);
+        (text.at, AlignedText::new(text, followed.as_ref().map_err(|why| *why).and_then(align)))
     };
     Ok(walk.texts.iter().map(align).collect())
 }
 
 impl AlignedText {
-    fn new(text: &FileText, aligned: Result<WalkAlignment, &'static str>) -> Self {
+    fn new(text: &FileText, aligned: Result<Vec<InstructionPart>, &'static str>) -> Self {
         let (parts, unaligned) = match aligned {
-            Ok(alignment) => (alignment.parts, None),
+            Ok(parts) => (parts, None),
             Err(why) => (Vec::new(), Some(why)),
         };
-        let parts = parts.into_iter().map(|part| TextPartFrames {
-            span: part.span,
-            frames: part.stretch.map(|place| place + 1),
-            confidence: part.confidence,
-        });
-        Self { path: text.path.clone(), text: text.words.clone(), parts: parts.collect(), unaligned }
+        Self { path: text.path.clone(), text: text.words.clone(), parts, unaligned }
     }
 }
 
@@ -149,9 +134,11 @@ impl fmt::Display for AlignReportText<'_> {
             if let Some(why) = text.unaligned {
                 writeln!(out, "  not aligned: {why}: {:?}", text.text)?;
             }
-            for TextPartFrames { span: [from, to], frames: [first, last], confidence } in &text.parts {
+            for InstructionPart { span: [from, to], frames, confidence } in &text.parts {
                 let words = text.text.get(*from..*to).unwrap_or_default();
-                writeln!(out, "  frames {first:>2} to {last:>2} ({:>3.0} %)  {words}", 100.0 * confidence)?;
+                let [first, last] = frames;
+                let percent = confidence.map_or_else(String::new, |share| format!(" ({:>3.0} %)", 100.0 * share));
+                writeln!(out, "  frames {first:>2} to {last:>2}{percent}  {words}")?;
             }
         }
         write!(out, "{} of {} texts aligned", self.0.aligned, self.0.texts.len())

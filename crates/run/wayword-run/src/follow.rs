@@ -7,14 +7,16 @@ use std::{
     collections::BTreeSet,
     sync::{Arc, LazyLock},
 };
-use wayword_checks::{CheckWorld, Evidence, FrameEvidence, TextFindings, TurnJudge, count_objects_meant};
+use wayword_checks::{
+    CheckWorld, Evidence, FrameEvidence, TextFindings, TurnJudge, WalkMemory, align_with_walk, count_objects_meant,
+};
 use wayword_core::{
-    CheckFinding, CheckKind, DVec3, Frame, Heading, Path, Platform, Pose, RecentCache, SceneId, TextAmbiguity, Verdict,
-    ViewpointSurvey,
+    CheckFinding, CheckKind, DVec3, Frame, Heading, InstructionPart, Path, Platform, Pose, RecentCache, SceneId,
+    TextAmbiguity, Verdict, ViewpointSurvey,
 };
 use wayword_follower::{
     FeatureWeights, Guide, KnownBuilding, PathPlace, PathThing, WalkOnGraph, WalkPrior,
-    alignment::{AlignmentCase, AlignmentWeights, PartReading, PartedText, WalkAlignment},
+    alignment::{AlignmentCase, AlignmentWeights, PartReading, PartedText},
     route::{GainThresholds, KnownWalk, RouteVerdict, UnfollowedReason, goal_probability, judge_route, judge_steps},
 };
 use wayword_language::{
@@ -188,15 +190,24 @@ impl<'a> FollowedPath<'a> {
         followed
     }
 
-    /// Aligns a text with the path: its parts, each with the places of the path (numbers of frames from 0) that it describes.
+    /// Aligns a text with the path: its parts, each with the frames that it describes. Where the path is known well enough, the claims of
+    /// the text decide; else the weights of the follower.
     ///
     /// # Errors
     /// With the reason, where the text cannot be followed.
-    pub(crate) fn align_text(&self, text: &str, tag: Option<&str>) -> Result<WalkAlignment, &'static str> {
+    pub(crate) fn align_text(
+        &self,
+        text: &str,
+        tag: Option<&str>,
+        known: (&Evidence, &WalkMemory),
+    ) -> Result<Vec<InstructionPart>, &'static str> {
         let (_, reading) = read_followable(text, tag)?;
+        if let Some(parts) = align_with_walk(text, known) {
+            return Ok(parts);
+        }
         let parted = PartedText::from_reading(text, &reading);
         let (alone, frame_numbers): (KnownBuilding, Vec<usize>);
-        let known = match &self.place {
+        let path = match &self.place {
             FollowedPlace::JoinedGraph { frames, .. } => {
                 alone = KnownBuilding::along_path(frames.clone());
                 frame_numbers = (0..frames.len()).collect();
@@ -204,8 +215,25 @@ impl<'a> FollowedPath<'a> {
             }
             FollowedPlace::Graph(_) | FollowedPlace::PathAlone(_) => self.known_path(),
         };
-        let case = AlignmentCase::new(&parted, known.building, known.walk, known.heading_rad, FeatureWeights::fitted());
-        Ok(case.align_parts(AlignmentWeights::fitted(PartReading::Words)))
+        let case = AlignmentCase::new(&parted, path.building, path.walk, path.heading_rad, FeatureWeights::fitted());
+        Ok(case.align_parts(AlignmentWeights::fitted(PartReading::Words)).into_parts())
+    }
+
+    /// Whether another way than that of the path is open at a frame. Where no graph says so, one may be.
+    pub(crate) fn has_other_way(&self, frame: usize) -> bool {
+        /// Ways in directions that differ by less are one way, radians.
+        const SAME_WAY_RAD: f64 = 0.6;
+        let FollowedPlace::Graph(scene) = &self.place else { return true };
+        let all = scene.survey.viewpoints();
+        let at = |frame: usize| all.get(*self.walk.get(frame)?);
+        let (Some(here), Some(next)) = (at(frame), at(frame + 1)) else { return true };
+        let before = frame.checked_sub(1).and_then(at);
+        let towards = |to: DVec3| Heading::towards(here.position, to);
+        let known: Vec<Heading> =
+            [Some(next), before].into_iter().flatten().filter_map(|place| towards(place.position)).collect();
+        let neighbours = here.neighbours.iter().filter_map(|neighbour| all.get(*neighbour));
+        let mut ways = neighbours.filter_map(|neighbour| towards(neighbour.position));
+        ways.any(|way| known.iter().all(|known| known.turn_to(way).abs() >= SAME_WAY_RAD))
     }
 
     /// Only judges where a text leads, without its single turns.
@@ -315,7 +343,7 @@ fn is_understood(reading: &TextReading, tag: Option<&str>) -> bool {
 }
 
 /// The reason that is given for a path without poses, which cannot be followed.
-pub(crate) const UNKNOWN_MOTION_REASON: &str = "it is not known how its path goes";
+const UNKNOWN_MOTION_REASON: &str = "it is not known how its path goes";
 
 fn unknown_route(why: &str) -> CheckFinding {
     let reason = format!("the program cannot check whether the text leads elsewhere: {why}");

@@ -2,7 +2,7 @@
 
 use crate::{
     error::CommandError,
-    follow::{FollowedPath, FollowerFindings, KnownScenes, UNKNOWN_MOTION_REASON, ambiguity_rejection},
+    follow::{FollowedPath, FollowerFindings, KnownScenes, ambiguity_rejection},
     item::RunItem,
     lookout::DetectorLookout,
     parallel::make_in_parallel,
@@ -14,8 +14,11 @@ use crate::{
     team::RoleTeam,
 };
 use std::collections::BTreeMap;
-use wayword_checks::{Evidence, EvidenceSource, TextFindings, WalkMemory};
-use wayword_core::{Caption, Frame, ModelError, Path, Platform, PlatformError, SceneId, TextAmbiguity, View, ViewGaze};
+use wayword_checks::{Evidence, EvidenceSource, TextFindings, WalkMemory, parts_from_mentions};
+use wayword_core::{
+    Caption, Frame, Instruction, InstructionPart, ModelError, Path, Platform, PlatformError, SceneId, TextAmbiguity,
+    View, ViewGaze,
+};
 use wayword_ledger::CallContext;
 use wayword_synthesis::{
     detection::{detector_evidence, seek_along_path},
@@ -139,12 +142,15 @@ pub fn write_item(
     if let Some(scene) = &scene {
         evidence.beyond = scene.inventory.beyond_end(&walk.path);
     }
-    let followed = match scene.as_deref() {
-        None if evidence.motion.is_known() => Err("the texts are not checked against labels"),
-        None => Err(UNKNOWN_MOTION_REASON),
-        scene => FollowedPath::new(platform, scene, &walk.path, &evidence),
+    let followed = FollowedPath::new(platform, scene.as_deref(), &walk.path, &evidence);
+    let knows_scene = scene.is_some();
+    let follower = PathFollower {
+        followed,
+        knows_scene,
+        evidence: &evidence,
+        memory: &evidence_memory,
+        rejects_ambiguous: settings.reject_ambiguous,
     };
-    let follower = PathFollower { followed, evidence: &evidence, rejects_ambiguous: settings.reject_ambiguous };
     let ahead = views_ahead(&world, &walk.path)?;
     let shown =
         if settings.roles.write_sees { shown_pictures(&ahead, settings.roles.write.as_str())? } else { Vec::new() };
@@ -169,7 +175,13 @@ pub fn write_item(
     };
     let ends = |texts: &Result<Vec<WritingOutcome>, ModelError>| texts.as_ref().is_err_and(ModelError::ends_run);
     let outcomes = make_in_parallel(styles, threads, write_style, ends).into_iter().collect::<Result<Vec<_>, _>>()?;
-    Ok(WrittenItem { walk, outcomes: outcomes.into_iter().flatten().collect(), ahead })
+    let mut outcomes: Vec<WritingOutcome> = outcomes.into_iter().flatten().collect();
+    for instruction in outcomes.iter_mut().filter_map(WritingOutcome::instruction_mut) {
+        if instruction.parts.is_empty() {
+            instruction.parts = follower.parts(instruction, walk.path.frames.len());
+        }
+    }
+    Ok(WrittenItem { walk, outcomes, ahead })
 }
 
 /// The texts of one walk in one style. Each has to differ from those before it.
@@ -216,7 +228,11 @@ fn shown_pictures(ahead: &[View], writer: &str) -> Result<Vec<FramePicture>, Mod
 struct PathFollower<'a> {
     /// The path, or the reason why it cannot be followed.
     followed: Result<FollowedPath<'a>, &'static str>,
+    /// Whether the scene was surveyed. It is for texts that are checked against labels; others cannot be compared with other walks.
+    knows_scene: bool,
     evidence: &'a Evidence,
+    /// The memory of the walk by that evidence.
+    memory: &'a WalkMemory,
     /// Whether an ambiguous text fails (`--reject-ambiguous`).
     rejects_ambiguous: bool,
 }
@@ -224,7 +240,8 @@ struct PathFollower<'a> {
 impl TextFollower for PathFollower<'_> {
     fn follow(&self, text: &str, checked: &mut TextFindings) -> TextAmbiguity {
         let findings = match &self.followed {
-            Ok(followed) => followed.judge_route(text),
+            Ok(followed) if self.knows_scene => followed.judge_route(text),
+            Ok(_) => FollowerFindings::not_followed("the texts are not checked against labels"),
             Err(why) => FollowerFindings::not_followed(why),
         };
         findings.add_to(checked);
@@ -234,7 +251,20 @@ impl TextFollower for PathFollower<'_> {
     }
 
     fn leads_there(&self, text: &str) -> Option<f64> {
-        self.followed.as_ref().ok()?.leads_there(text)
+        self.followed.as_ref().ok().filter(|_| self.knows_scene)?.leads_there(text)
+    }
+}
+
+impl PathFollower<'_> {
+    /// The parts of a text with their frames: by its alignment with the path, or by its mentions alone where the motion is unknown. None
+    /// for a text that is not understood.
+    fn parts(&self, instruction: &Instruction, frames: usize) -> Vec<InstructionPart> {
+        match &self.followed {
+            Ok(followed) => {
+                followed.align_text(&instruction.text, None, (self.evidence, self.memory)).unwrap_or_default()
+            }
+            Err(_) => parts_from_mentions(&instruction.text, &instruction.mentions, frames),
+        }
     }
 }
 

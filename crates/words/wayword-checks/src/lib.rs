@@ -14,7 +14,9 @@
 //! - [`detection`]: what a detector's finds and misses prove, by its measured figures.
 //! - [`memory`]: what stays in mind of a walk. Writers and prompts get it.
 //! - `walk_claims/`: each claim at its own stretch of the walk, where labels and poses are known and frames lie close together.
+//! - `walk_coverage`: which decisions of a walk a text tells.
 //! - `align`, `order`, `goal`: the order and the end of a text where `walk_claims` does not judge them.
+//! - `mentioned_parts`: the parts of a text by its mentions alone, where the motion along its path is unknown.
 //! - `coverage`: what was not understood. `leak`: what was copied from a style's references.
 //! - `world`: whether a text is held against a closed or an open world.
 //! - `open/claims.rs`, `relation.rs`: what a text of another author claims; `features.rs` and `claim_sight.rs`: how far the labels confirm it.
@@ -31,6 +33,7 @@ mod goal;
 mod landmarks;
 mod leak;
 pub mod memory;
+mod mentioned_parts;
 pub mod open;
 mod order;
 mod sides;
@@ -40,10 +43,13 @@ mod testimony;
 mod tests;
 mod unknown_motion;
 mod walk_claims;
+mod walk_coverage;
 mod world;
 
 use std::collections::BTreeSet;
-use wayword_core::{CheckFinding, CheckKind, InstructionStyle, MentionKind, PathTarget, TextMention, Verdict};
+use wayword_core::{
+    CheckFinding, CheckKind, InstructionPart, InstructionStyle, MentionKind, PathTarget, TextMention, Verdict,
+};
 use wayword_language::{
     lexicon::{names_agree, normalise_name, same_colour},
     reading::{EventContent, TextEvent, TextReading, read_instruction, steps::read_steps},
@@ -55,7 +61,9 @@ pub use evidence::{
 };
 pub use leak::{FORMULA_REFERENCES, LONG_RUN, ReferenceRuns, SHARED_RUN, TextTopic};
 pub use memory::WalkMemory;
+pub use mentioned_parts::parts_from_mentions;
 pub use testimony::{Testimony, lift_confirmed};
+pub use walk_coverage::{CoveredDecision, DecisionTold, WalkDecision, cover_walk};
 pub use world::{CheckWorld, TurnJudge, WorldReach};
 
 /// A text's evidence, style and world: everything that it is checked against.
@@ -128,6 +136,8 @@ pub struct TextFindings {
     pub findings: Vec<CheckFinding>,
     /// The landmarks, rooms, turns, storeys and target that the text mentions, each with its frame.
     pub mentions: Vec<TextMention>,
+    /// The parts of the text with their frames, where each claim was held against its own stretch of the walk; else none.
+    pub parts: Vec<InstructionPart>,
     /// The world that it was checked in.
     pub world: CheckWorld,
 }
@@ -165,13 +175,14 @@ fn check_against(
     let places = landmarks::check_landmarks(&reading, subject.evidence, object, from_captions_alone);
     let on_walk = check_on_walk(&reading, subject, object);
     let walk = order::check_order(&reading, subject.evidence, &places.shown);
-    let mut frames = walk.frames;
+    let (mut frames, mut parts) = (walk.frames, Vec::new());
     match (subject.world, on_walk) {
         (CheckWorld::Closed, Some(on_walk)) => {
             findings.extend(places.findings);
             findings.extend(floors::check_floors(&reading, subject.evidence));
             on_walk.findings.into_iter().for_each(|finding| add_worse(&mut findings, finding));
             findings.extend(open::repeats::check_repeats(&reading, subject));
+            parts = on_walk.parts;
             // The check of the order knows a frame for places that this one does not judge.
             for (frame, judged) in frames.iter_mut().zip(on_walk.frames) {
                 *frame = judged.or(*frame);
@@ -190,7 +201,18 @@ fn check_against(
     findings.extend(coverage::check_coverage(&reading, reading.language.or_tagged(subject.tag)));
     findings.push(leak::check_leak(text, whole.tokens(), subject));
     findings.sort_by_key(|finding| finding.check);
-    TextFindings { mentions: collect_mentions(&reading, &frames), findings, world: subject.world }
+    TextFindings { mentions: collect_mentions(&reading, &frames), findings, parts, world: subject.world }
+}
+
+/// The parts of a text, each with the frames of its stretch of the walk: the division of the walk in which the fewest claims of the text
+/// are false. `None` where the labels or the motion of the walk are unknown, or its frames lie far apart.
+#[must_use]
+pub fn align_with_walk(text: &str, known: (&Evidence, &WalkMemory)) -> Option<Vec<InstructionPart>> {
+    let (evidence, _) = known;
+    let reading = || read_instruction(text, &known_names(evidence)).into_claims();
+    (evidence.source == EvidenceSource::Labels)
+        .then(reading)
+        .and_then(|reading| walk_claims::align_steps_with_walk(&reading, known))
 }
 
 /// The findings about each claim at its own stretch of the walk, where the labels and the poses of the walk are known.

@@ -109,8 +109,12 @@ mod tests {
         let span = Some([from, from + words.len()]);
         let failed = CheckFinding { check, verdict: Verdict::Fail, reason: "wrong".into(), span };
         let passed = CheckFinding { verdict: Verdict::Pass, ..failed.clone() };
-        let mut checked =
-            TextFindings { findings: vec![failed, passed], mentions: Vec::new(), world: CheckWorld::Open };
+        let mut checked = TextFindings {
+            findings: vec![failed, passed],
+            mentions: Vec::new(),
+            parts: Vec::new(),
+            world: CheckWorld::Open,
+        };
         let witnesses: Vec<Testimony> = others.iter().map(|text| Testimony::from_text(text, &evidence)).collect();
         lift_confirmed(&mut checked, &Testimony::from_text(text, &evidence), &witnesses.iter().collect::<Vec<_>>());
         assert_eq!(checked.findings[1].verdict, Verdict::Pass);

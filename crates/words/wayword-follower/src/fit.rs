@@ -8,6 +8,7 @@ use crate::{
     tree::WalkTree,
     weights::FeatureWeights,
 };
+use wayword_core::walk_cuts::log_sum;
 
 /// Largest product of the number of a text's steps and the number of walks. Beyond it the text should not be followed, because the
 /// tables would fill the memory.
@@ -144,12 +145,6 @@ pub(crate) const NEGLIGIBLE_SHARE: f64 = 1e-6;
 /// The index in [`WalkFit::stretches`] of a step over the stretch of `hops` hops that ends at the node `end`.
 fn stretch_index(nodes: usize, step: usize, end: usize, hops: usize) -> usize {
     (step * nodes + end) * (MAX_STEP_HOPS + 1) + hops
-}
-
-/// The log of the sum of two numbers, from their logs.
-pub(crate) fn log_sum(a: f64, b: f64) -> f64 {
-    let (high, low) = if a > b { (a, b) } else { (b, a) };
-    if low == f64::NEG_INFINITY { high } else { high + (low - high).exp().ln_1p() }
 }
 
 #[cfg(test)]

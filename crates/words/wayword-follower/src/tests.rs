@@ -41,6 +41,7 @@ fn label(name: &str, east: f64, north: f64, eye: DVec3) -> ObjectLabel {
         distance_m: None,
         position: Some(position),
         colour: None,
+        room: None,
     }
 }
 

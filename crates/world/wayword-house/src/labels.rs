@@ -1,6 +1,7 @@
 //! Finds the labels of a view from its pixels: each pixel carries the number of the object that it shows.
 
 use super::{
+    model::HouseRoom,
     objects::{NumberedObject, ObjectRole},
     scene::HouseScene,
 };
@@ -32,16 +33,18 @@ pub(super) fn visible_labels(
         let object = scene.objects.get(&each.id).filter(|object| object.role != ObjectRole::Shell)?;
         let (low, high) = object.bounds_m;
         let is_sliver = each.is_sliver(&camera, &box_corners(low, high));
-        (!is_sliver).then(|| label_for_object(&camera, each, object, scale)).flatten()
+        // A door belongs to two rooms.
+        let room = scene.house.rooms.get(object.room).filter(|_| object.role == ObjectRole::Furniture);
+        (!is_sliver).then(|| label_for_object(&camera, each, (object, room), scale)).flatten()
     });
     Ok(labels.filter(|label| gaze.holds_heading(label.heading)).collect())
 }
 
-/// The label of an object. `scale` leads from the pixels of the drawing, across and down, to those of the picture.
+/// The label of an object in a room. `scale` leads from the pixels of the drawing, across and down, to those of the picture.
 fn label_for_object(
     camera: &PinholeCamera,
     seen: &VisibleObject,
-    object: &NumberedObject,
+    (object, room): (&NumberedObject, Option<&HouseRoom>),
     [across, down]: [f64; 2],
 ) -> Option<ObjectLabel> {
     let centre = object.centre_m();
@@ -57,6 +60,7 @@ fn label_for_object(
         distance_m: Some(offset.length()),
         position: Some(centre),
         colour: object.colour.map(str::to_owned),
+        room: room.map(|room| room.kind.word().to_owned()),
     })
 }
 

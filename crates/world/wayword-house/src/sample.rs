@@ -12,13 +12,15 @@ use wayword_world::open_ground::{OpenGroundScene, no_such_walk, sample_open_path
 const MIN_CORNER_DISTANCE_M: f64 = 0.4;
 /// Upper bound of the length of a route over the length of the exact shortest way.
 const MAX_ROUTE_EXCESS_FACTOR: f64 = 1.03;
+/// A place this near to the height of a floor lies on it, metres.
+const ON_FLOOR_M: f64 = 0.05;
 /// Largest distance of a target from the last frame, to the nearest side of its box along the floor, metres.
 const TARGET_REACH_M: f64 = 2.5;
 
 /// Draws a path of a length that `request` allows, with frames at most `interval_m` apart and at every corner.
 ///
 /// Both ends are the places of random viewpoints. The path does not end in an opening, because a walker there is in no
-/// room. The target is in the room where the path ends. The first frame looks along the first move.
+/// room, nor on stairs. The target is in the room where the path ends. The first frame looks along the first move.
 pub(super) fn sample_house_path(
     scene: &SceneId,
     home: &PreparedHouse,
@@ -54,12 +56,21 @@ impl OpenGroundScene for HouseWalker<'_> {
     }
 
     fn stops_between(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<PathStop>>, PlatformError> {
+        if !is_on_floor(to) {
+            return Ok(None);
+        }
         Ok(self.home.ground.shortest_route(from, to).ok().map(|way| stops_along(&way, self.interval_m)))
     }
 
     fn target_at(&mut self, last: &Frame) -> Result<Option<PathTarget>, PlatformError> {
         choose_target(self.home, &mut self.dice, last.pose)
     }
+}
+
+/// Whether a place lies on the floor of a storey, and not on stairs.
+fn is_on_floor(place: DVec3) -> bool {
+    let storey_m = f64::from(super::model::STOREY_CM) / 100.0;
+    (place.z - storey_m * (place.z / storey_m).round()).abs() < ON_FLOOR_M
 }
 
 /// The places of the frames along a way: at both ends, at corners, and between them at equal distances of at most

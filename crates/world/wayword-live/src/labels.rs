@@ -82,6 +82,7 @@ fn label_object(camera: &PinholeCamera, seen: &VisibleObject, thing: &SimulatorO
         distance_m: Some(offset.length()),
         position: Some(thing.centre),
         colour: None,
+        room: None,
     })
 }
 

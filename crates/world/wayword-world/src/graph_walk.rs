@@ -132,6 +132,7 @@ mod tests {
             distance_m: None,
             position: None,
             colour: None,
+            room: None,
         }
     }
 

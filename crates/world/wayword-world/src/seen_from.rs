@@ -48,6 +48,7 @@ mod tests {
             distance_m: Some(2.0),
             position: None,
             colour: None,
+            room: None,
         };
         let whole = |_, heading: Heading| Ok(if heading == Heading::NORTH { Vec::new() } else { vec![label.clone()] });
         assert_eq!(seen_from(&graph, whole).unwrap()[&sofa], BTreeSet::from([viewpoint]));

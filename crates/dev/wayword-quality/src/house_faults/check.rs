@@ -43,6 +43,7 @@ fn make_text_record(number: usize, record: &InstructionRecord, text: &str) -> In
     text.clone_into(&mut copy.instruction.text);
     // They point into the old text.
     copy.instruction.mentions.clear();
+    copy.instruction.parts.clear();
     copy.instruction.findings.clear();
     copy.instruction.ambiguity = None;
     copy

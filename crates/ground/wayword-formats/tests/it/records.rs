@@ -123,6 +123,26 @@ fn a_record_of_a_later_format_is_refused_with_the_version_that_wrote_it() {
 }
 
 #[test]
+fn parts_of_a_text_are_kept_until_it_is_edited() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = records(folder.path(), "house", &[1]);
+    let mut records = jsonl::read_records(&file).unwrap();
+    let text = records[0].instruction.text.len();
+    let part = |span, frames| wayword_core::InstructionPart { span, frames, confidence: Some(0.5) };
+    for (part, is_kept) in [
+        (part([0, text], [0, 1]), true),
+        (part([0, text + 1], [0, 1]), false),
+        (part([0, text], [0, 99]), false),
+        (part([0, text], [1, 0]), false),
+    ] {
+        records[0].instruction.parts = vec![part.clone()];
+        jsonl::write_records(&file, &records).unwrap();
+        let read = jsonl::read_records(&file).unwrap().remove(0).instruction.parts;
+        assert_eq!(read, if is_kept { vec![part] } else { Vec::new() });
+    }
+}
+
+#[test]
 fn records_come_to_one_episode_per_path() {
     let folder = tempfile::tempdir().unwrap();
     let file = records(folder.path(), "house", &[1, 2]);

@@ -139,6 +139,7 @@ mod tests {
                 distance_m: None,
                 position: None,
                 colour: None,
+                room: None,
             };
             let truth = GroundTruth {
                 labels: vec![label("lamp", 0.0), label("bed", 0.7)],

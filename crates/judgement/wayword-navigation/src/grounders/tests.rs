@@ -35,6 +35,7 @@ fn view(things: &[(&str, f64)], room: Option<&str>) -> View {
         distance_m: Some(*distance_m),
         position: None,
         colour: None,
+        room: None,
     };
     let labels = things.iter().enumerate().map(label).collect();
     let truth = GroundTruth { labels, lists_objects: true, room: room.map(str::to_owned) };

@@ -147,6 +147,7 @@ impl PathLabels {
             distance_m: None,
             position: Some(position),
             colour: None,
+            room: None,
         };
         let frames = seen_from.iter().map(|at| path.frames[*at].clone()).collect();
         let added = ThingAddition { scene: path.scene.clone(), object: label, seen_from: frames };

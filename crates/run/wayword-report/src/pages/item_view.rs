@@ -6,7 +6,7 @@ use super::{
     link_targets::{LinkTargets, item_anchor},
     map::{BADGE_RADIUS, MapView},
     pictures::PagePictures,
-    texts::{TextView, text_views},
+    texts::{PartView, TextView, text_views},
 };
 use serde::Serialize;
 use wayword_core::{ObjectDistinction, PathTarget};
@@ -43,6 +43,13 @@ impl ItemView {
         let (path, anchor) = (&record.walk.path, item_anchor(number));
         let shown = path.frames.len().min(MAX_ITEM_FRAMES);
         let map = MapView::new(path, &record.walk.map, shown);
+        let texts = text_views(record, LinkTargets { item: &anchor, frames: path.frames.len(), shown });
+        let mut frames = frame_views(&record.walk, &anchor, shown, pictures);
+        for frame in &mut frames {
+            let has_frame = |part: &&PartView| (part.frames[0]..=part.frames[1]).contains(&frame.number);
+            let parts = texts.iter().flat_map(|text| &text.parts).filter(has_frame);
+            frame.parts = parts.filter_map(|part| part.key).collect();
+        }
         let length_m = path.length_m().map(|length_m| format!("{length_m:.1}"));
         Self {
             number,
@@ -57,9 +64,9 @@ impl ItemView {
             map,
             map_radius: BADGE_RADIUS,
             map_stop: "Frame",
-            texts: text_views(record, LinkTargets { item: &anchor, frames: path.frames.len(), shown }),
+            texts,
             originals: record.walk.originals.clone(),
-            frames: frame_views(&record.walk, &anchor, shown, pictures),
+            frames,
             frames_left_out: path.frames.len() - shown,
             anchor,
         }

@@ -225,6 +225,8 @@ fn load_templates() -> Result<Environment<'static>, minijinja::Error> {
     templates.add_template("open.html", include_str!("open.html"))?;
     templates.add_template("head.html", include_str!("head.html"))?;
     templates.add_template("rows.html", include_str!("rows.html"))?;
+    templates.add_global("lit_parts", texts::MAX_LIT_PARTS);
+    templates.add_template("parts.css", include_str!("parts.css"))?;
     templates.add_template("rows.css", include_str!("rows.css"))?;
     templates.add_template("filter.css", include_str!("filter.css"))?;
     templates.add_template("leaf.html", include_str!("leaf.html"))?;

@@ -3,7 +3,7 @@
 //! Spans come from files that anyone may have written: they may overlap, be outside the text or cut a character in two.
 
 use std::collections::BTreeSet;
-use wayword_core::{CheckFinding, TextMention, Verdict};
+use wayword_core::{CheckFinding, InstructionPart, TextMention, Verdict};
 
 /// Most mentions that are shown, and most marked flaws.
 const MAX_MARKED_SPANS: usize = 200;
@@ -17,23 +17,33 @@ pub(super) struct TextSegment<'a> {
     pub(super) mention: Option<&'a TextMention>,
     /// Mentions that end with it, in their order.
     pub(super) ends: Vec<&'a TextMention>,
+    /// The number of the part that it belongs to.
+    pub(super) part: Option<usize>,
     /// Whether a failed check is about it.
     pub(super) is_flawed: bool,
 }
 
-/// Cuts a text into segments. Mentions with a span or frame that does not exist are left out.
-pub(super) fn cut_segments<'a>(
-    text: &'a str,
-    mentions: &'a [TextMention],
-    findings: &[CheckFinding],
-    frames: usize,
-) -> Vec<TextSegment<'a>> {
+/// The marks of a text.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct TextMarks<'a> {
+    pub(super) mentions: &'a [TextMention],
+    pub(super) parts: &'a [InstructionPart],
+    pub(super) findings: &'a [CheckFinding],
+}
+
+/// Cuts a text into segments. Marks with a span or frame that does not exist are left out.
+pub(super) fn cut_segments<'a>(text: &'a str, marks: TextMarks<'a>, frames: usize) -> Vec<TextSegment<'a>> {
+    let TextMarks { mentions, parts, findings } = marks;
     let fits = |span: [usize; 2]| text.get(span[0]..span[1]).is_some_and(|words| !words.is_empty());
     let mentions: Vec<&TextMention> =
         mentions.iter().filter(|mention| fits(mention.span) && mention.frame < frames).take(MAX_MARKED_SPANS).collect();
     let flaws = findings.iter().filter(|finding| finding.verdict == Verdict::Fail).filter_map(|finding| finding.span);
     let flaws: Vec<[usize; 2]> = flaws.filter(|span| fits(*span)).take(MAX_MARKED_SPANS).collect();
+    let parts = parts.iter().take(MAX_MARKED_SPANS).enumerate();
+    let parts: Vec<(usize, [usize; 2])> =
+        parts.map(|(number, part)| (number, part.span)).filter(|(_, span)| fits(*span)).collect();
     let spans = mentions.iter().map(|mention| mention.span).chain(flaws.iter().copied());
+    let spans = spans.chain(parts.iter().map(|(_, span)| *span));
     let cuts: BTreeSet<usize> = spans.flatten().chain([0, text.len()]).collect();
     let cuts: Vec<usize> = cuts.into_iter().collect();
     let between = |pair: &[usize]| {
@@ -47,6 +57,7 @@ pub(super) fn cut_segments<'a>(
                 .min_by_key(|mention| mention_length(mention))
                 .copied(),
             ends: mentions.iter().filter(|mention| mention.span[1] == to).copied().collect(),
+            part: parts.iter().find(|(_, span)| covers(*span)).map(|(number, _)| *number),
             is_flawed: flaws.iter().any(|span| covers(*span)),
         }
     };
@@ -71,10 +82,24 @@ mod tests {
         CheckFinding { check: CheckKind::Turns, verdict: Verdict::Fail, reason: "wrong way".into(), span: Some(span) }
     }
 
+    fn marks<'a>(mentions: &'a [TextMention], findings: &'a [CheckFinding]) -> TextMarks<'a> {
+        TextMarks { mentions, findings, parts: &[] }
+    }
+
+    #[test]
+    fn segments_know_their_part() {
+        let part = |span| InstructionPart { span, frames: [0, 0], confidence: None };
+        let parts = [part([0, 4]), part([5, 19]), part([40, 50])];
+        let mentions = [mention([5, 9], 1)];
+        let segments = cut_segments("Pass sofa, the door.", TextMarks { parts: &parts, ..marks(&mentions, &[]) }, 3);
+        let cut: Vec<_> = segments.iter().map(|segment| (segment.text, segment.part)).collect();
+        assert_eq!(cut, [("Pass", Some(0)), (" ", None), ("sofa", Some(1)), (", the door", Some(1)), (".", None)]);
+    }
+
     #[test]
     fn words_are_cut_out_with_their_frames() {
         let mentions = [mention([5, 9], 1), mention([15, 19], 2)];
-        let segments = cut_segments("Pass sofa, the door.", &mentions, &[], 3);
+        let segments = cut_segments("Pass sofa, the door.", marks(&mentions, &[]), 3);
         let told: Vec<_> = segments.iter().map(|part| (part.text, part.mention.map(|mention| mention.frame))).collect();
         assert_eq!(told, [("Pass ", None), ("sofa", Some(1)), (", the ", None), ("door", Some(2)), (".", None)]);
     }
@@ -82,7 +107,7 @@ mod tests {
     #[test]
     fn of_overlapping_mentions_each_ends_once_and_the_shorter_one_covers() {
         let mentions = [mention([0, 10], 0), mention([4, 6], 1)];
-        let segments = cut_segments("0123456789", &mentions, &[], 2);
+        let segments = cut_segments("0123456789", marks(&mentions, &[]), 2);
         let told: Vec<_> = segments
             .iter()
             .map(|part| (part.text, part.mention.map(|mention| mention.frame), part.ends.len()))
@@ -92,7 +117,8 @@ mod tests {
 
     #[test]
     fn a_flaw_is_marked() {
-        let segments = cut_segments("turn left now", &[], &[flaw([0, 9])], 1);
+        let flaws = [flaw([0, 9])];
+        let segments = cut_segments("turn left now", marks(&[], &flaws), 1);
         assert_eq!(
             segments.iter().map(|part| (part.text, part.is_flawed)).collect::<Vec<_>>(),
             [("turn left", true), (" now", false)]
@@ -112,7 +138,9 @@ mod tests {
                 mention.frame < frames
                     && text.get(mention.span[0]..mention.span[1]).is_some_and(|words| !words.is_empty())
             });
-            let segments = cut_segments(text, &mentions, &flaws, frames);
+            let parts = [span(), span()].map(|span| InstructionPart { span, frames: [0, 9], confidence: None });
+            let marks = TextMarks { parts: &parts, ..marks(&mentions, &flaws) };
+            let segments = cut_segments(text, marks, frames);
             assert_eq!(segments.iter().map(|part| part.text).collect::<String>(), *text);
             assert_eq!(segments.iter().map(|part| part.ends.len()).sum::<usize>(), shown.count());
             for part in &segments {

@@ -4,8 +4,8 @@ use super::*;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{
     Caption, CaptionedView, CheckFinding, CheckKind, DVec3, DialogueExchange, FrameObservation, Heading, Instruction,
-    MentionKind, ObjectSighting, Path as WalkPath, PathMotion, PathTarget, SceneId, TextMention, TextProvenance,
-    Verdict, ViewGaze, ViewThird, WitnessAnswer, path::PathStop,
+    InstructionPart, MentionKind, ObjectSighting, Path as WalkPath, PathMotion, PathTarget, SceneId, TextMention,
+    TextProvenance, Verdict, ViewGaze, ViewThird, WitnessAnswer, path::PathStop,
 };
 use wayword_formats::jsonl::InstructionRecord;
 use wayword_run::{
@@ -82,6 +82,7 @@ fn instruction(text: &str, words: &[(&str, MentionKind, usize)], findings: Vec<C
         text: text.into(),
         style: "r2r".into(),
         mentions: words.iter().map(mention).collect(),
+        parts: Vec::new(),
         verdict: Verdict::from_findings(&findings),
         findings,
         ambiguity: None,
@@ -257,6 +258,26 @@ fn mentions_are_links_to_their_frames() {
             .any(|rest| rest.split_once("<span class=\"told\">").is_some_and(|(_, rest)| rest.starts_with(word)))
     };
     assert!(link("landmark", "w2-f1", "mirror") && link("turn", "w2-f1", "right") && link("target", "w2-f2", "lamp"));
+}
+
+#[test]
+fn parts_name_their_frames_and_light_them_up() {
+    let part = |span, frames, confidence| InstructionPart { span, frames, confidence };
+    let parts = vec![part([0, 31], [0, 1], Some(0.75)), part([32, 49], [1, 2], None)];
+    let run = run_of(&walk("a"), &Instruction { parts: parts.clone(), ..good() });
+    let (page, _) = page_of(run.path(), 100);
+    let (_, page) = page.split_once("<article id=\"w2\"").unwrap();
+    assert!(page.contains("<bdi>Pass the mirror and turn right.</bdi> <a href=\"#w2-f0\">frames 0 to 1</a>"), "{page}");
+    assert!(page.contains("75 %") && page.contains("<span class=\"part-1\">"), "{page}");
+    for frame in ["frame lit-0\" id=\"w2-f0", "frame lit-0 lit-1\" id=\"w2-f1", "frame lit-1\" id=\"w2-f2"] {
+        assert!(page.contains(frame), "{frame}: {page}");
+    }
+    // A part with a frame that the path does not have could come from a damaged file: then no part is shown.
+    let wrong = vec![parts[0].clone(), part([32, 49], [1, 7], None)];
+    let run = run_of(&walk("a"), &Instruction { parts: wrong, ..good() });
+    let (page, _) = page_of(run.path(), 100);
+    let (_, page) = page.split_once("<article id=\"w2\"").unwrap();
+    assert!(!page.contains("part-") && !page.contains("lit-"), "{page}");
 }
 
 #[test]

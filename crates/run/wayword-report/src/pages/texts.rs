@@ -4,15 +4,22 @@ use super::{
     item_record::{ItemRecord, TextState, state_from_verdict},
     link_targets::{LinkTargets, frame_anchor},
     palette::{FrameColour, frame_colour},
-    spans::cut_segments,
+    spans::{TextMarks, TextSegment, cut_segments},
 };
 use serde::Serialize;
 use wayword_core::{
-    CheckFinding, ChosenBy, Instruction, MentionKind, TextMention, TextProvenance, TextSelection, Verdict,
+    CheckFinding, ChosenBy, Instruction, InstructionPart, MentionKind, TextMention, TextProvenance, TextSelection,
+    Verdict,
 };
 
 /// Most findings of an instruction that are shown.
 const MAX_SHOWN_FINDINGS: usize = 100;
+
+/// Most parts of an instruction that are shown.
+const MAX_SHOWN_PARTS: usize = 100;
+
+/// How many parts of an item light up with their frames. The style sheet has rules for so many.
+pub(super) const MAX_LIT_PARTS: usize = 64;
 
 /// An instruction.
 #[derive(Debug, Serialize)]
@@ -22,7 +29,8 @@ pub(super) struct TextView {
     /// Why it was rejected.
     reason: Option<String>,
     /// Empty if no text could be written.
-    parts: Vec<PartView>,
+    segments: Vec<SegmentView>,
+    pub(super) parts: Vec<PartView>,
     findings: Vec<FindingView>,
     /// How many of its claims could not be decided.
     unverified: usize,
@@ -31,10 +39,25 @@ pub(super) struct TextView {
     provenance: Option<String>,
 }
 
+/// A part of an instruction with its frames.
+#[derive(Debug, Serialize)]
+pub(super) struct PartView {
+    /// Its number among the parts of all texts of the item, by which a style sheet finds its frames; `None` beyond
+    /// [`MAX_LIT_PARTS`].
+    pub(super) key: Option<usize>,
+    words: String,
+    pub(super) frames: [usize; 2],
+    /// The anchor of its first frame; `None` if the page does not show it.
+    anchor: Option<String>,
+    percent: Option<u8>,
+}
+
 /// A segment of an instruction's text.
 #[derive(Debug, Serialize)]
-struct PartView {
+struct SegmentView {
     text: String,
+    /// The key of its part.
+    part: Option<usize>,
     is_flawed: bool,
     link: Option<LinkView>,
     /// Whether the mention of `link` ends here.
@@ -72,6 +95,7 @@ pub(super) fn text_views(record: &ItemRecord, places: LinkTargets<'_>) -> Vec<Te
         style: instruction.style.clone(),
         state: state_from_verdict(instruction.verdict),
         reason: None,
+        segments: segment_views(instruction, places),
         parts: part_views(instruction, places),
         findings: finding_views(instruction),
         unverified: count_unverified(instruction),
@@ -82,6 +106,7 @@ pub(super) fn text_views(record: &ItemRecord, places: LinkTargets<'_>) -> Vec<Te
         style: rejected.style.clone(),
         state: TextState::Rejected,
         reason: Some(rejected.reason.clone()),
+        segments: rejected.last.as_ref().map(|last| segment_views(last, places)).unwrap_or_default(),
         parts: rejected.last.as_ref().map(|last| part_views(last, places)).unwrap_or_default(),
         findings: rejected.last.as_ref().map(finding_views).unwrap_or_default(),
         unverified: rejected.last.as_ref().map_or(0, count_unverified),
@@ -90,18 +115,50 @@ pub(super) fn text_views(record: &ItemRecord, places: LinkTargets<'_>) -> Vec<Te
     });
     let mut texts: Vec<TextView> = accepted.chain(rejected).collect();
     texts.sort_by(|a, b| a.style.cmp(&b.style));
+    number_parts(&mut texts);
     texts
+}
+
+/// Gives the parts of all texts of an item their keys.
+fn number_parts(texts: &mut [TextView]) {
+    let mut first = 0;
+    for text in texts {
+        let key = |number: usize| Some(first + number).filter(|key| *key < MAX_LIT_PARTS);
+        text.parts.iter_mut().enumerate().for_each(|(number, part)| part.key = key(number));
+        text.segments.iter_mut().for_each(|segment| segment.part = segment.part.and_then(key));
+        first += text.parts.len();
+    }
+}
+
+fn part_views(instruction: &Instruction, places: LinkTargets<'_>) -> Vec<PartView> {
+    let view = |part: &InstructionPart| PartView {
+        key: None,
+        words: instruction.text.get(part.span[0]..part.span[1]).unwrap_or_default().to_owned(),
+        frames: part.frames,
+        anchor: (part.frames[0] < places.shown).then(|| frame_anchor(places.item, part.frames[0])),
+        percent: part.confidence.map(|share| (100.0 * share.clamp(0.0, 1.0)).round() as u8),
+    };
+    shown_parts(instruction, places).iter().map(view).collect()
+}
+
+/// The parts that the page shows: all if each has frames of the path, else none, so that a segment finds its part by its number.
+fn shown_parts<'a>(instruction: &'a Instruction, places: LinkTargets<'_>) -> &'a [InstructionPart] {
+    let fits = |part: &InstructionPart| part.frames[0] <= part.frames[1] && part.frames[1] < places.frames;
+    let parts = &instruction.parts[..instruction.parts.len().min(MAX_SHOWN_PARTS)];
+    if parts.iter().all(fits) { parts } else { &[] }
 }
 
 fn count_unverified(instruction: &Instruction) -> usize {
     instruction.findings.iter().filter(|finding| finding.verdict == Verdict::Unverified).count()
 }
 
-fn part_views(instruction: &Instruction, places: LinkTargets<'_>) -> Vec<PartView> {
+fn segment_views(instruction: &Instruction, places: LinkTargets<'_>) -> Vec<SegmentView> {
     let Instruction { text, mentions, findings, .. } = instruction;
+    let parts = shown_parts(instruction, places);
     let view = |mention: &TextMention| link_view(mention, text, places);
-    let part = |segment: super::spans::TextSegment<'_>| PartView {
+    let segment_view = |segment: TextSegment<'_>| SegmentView {
         text: segment.text.to_owned(),
+        part: segment.part,
         is_flawed: segment.is_flawed,
         link: segment.mention.map(view),
         is_last: segment.mention.is_some_and(|mention| segment.ends.contains(&mention)),
@@ -112,7 +169,8 @@ fn part_views(instruction: &Instruction, places: LinkTargets<'_>) -> Vec<PartVie
             .map(|mention| view(mention))
             .collect(),
     };
-    cut_segments(text, mentions, findings, places.frames).into_iter().map(part).collect()
+    let marks = TextMarks { mentions, parts, findings };
+    cut_segments(text, marks, places.frames).into_iter().map(segment_view).collect()
 }
 
 fn link_view(mention: &TextMention, text: &str, places: LinkTargets<'_>) -> LinkView {

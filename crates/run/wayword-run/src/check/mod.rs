@@ -29,7 +29,7 @@ use std::{collections::BTreeMap, path::Path as FilePath};
 use styles::CheckStyles;
 use wayword_checks::{
     CheckSubject, CheckWorld, Evidence, EvidenceSource, PathSurroundings, Testimony, TurnJudge, WalkMemory, WorldReach,
-    check_own_text, check_text, lift_confirmed, open::Calibration,
+    check_own_text, check_text, cover_walk, lift_confirmed, memory::WalkBend, open::Calibration,
 };
 use wayword_core::{CheckFinding, Platform};
 #[cfg(feature = "study")]
@@ -235,8 +235,7 @@ impl<'a> TextChecker<'a> {
             (AskedWorld::Auto, true) if source == EvidenceSource::Labels => CheckWorld::Closed,
             (asked, _) => choose_world(text, asked, platform.name(), source),
         };
-        let some_are_closed = walk.texts.iter().any(|text| text_world(text) == CheckWorld::Closed);
-        let memory = some_are_closed.then(|| WalkMemory::from_path(&evidence, &walk.path));
+        let memory = WalkMemory::from_path(&evidence, &walk.path);
         let some_are_open = walk.texts.iter().any(|text| text_world(text) == CheckWorld::Open);
         let scene = Some(self.scenes.get_or_survey(platform, &walk.path.scene)?);
         evidence.beyond = scene.as_ref().map(|scene| scene.inventory.beyond_end(&walk.path)).unwrap_or_default();
@@ -261,7 +260,7 @@ impl<'a> TextChecker<'a> {
             let target = walk.path.target.as_ref().filter(|_| self.is_own_run);
             let subject = match text_world(text) {
                 CheckWorld::Closed => CheckSubject {
-                    memory: memory.as_ref(),
+                    memory: Some(&memory),
                     ..CheckSubject::closed_world(&evidence, &check_style.style, target)
                 },
                 CheckWorld::Open => CheckSubject::open_world(&evidence, &check_style.style, reach),
@@ -282,6 +281,17 @@ impl<'a> TextChecker<'a> {
             let ambiguity = follower.as_ref().map(|follower| follower.text_ambiguity(&text.words, &evidence));
             checked.add_findings(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(ambiguity_rejection));
             let mut shown = CheckedText::from_text(text, &checked);
+            if let Some(Ok(followed)) = &followed {
+                if shown.parts.is_empty() {
+                    shown.parts =
+                        followed.align_text(&text.words, text.tag.as_deref(), (&evidence, &memory)).unwrap_or_default();
+                }
+                // A text that is not understood leaves nothing out.
+                if !shown.parts.is_empty() {
+                    let is_open = |bend: &WalkBend| (bend.first..=bend.last).any(|frame| followed.has_other_way(frame));
+                    shown.coverage_of_walk = cover_walk(&text.words, &shown.parts, (&evidence, &memory), is_open);
+                }
+            }
             if how.doubts {
                 let words = (text.words.as_str(), text.tag.as_deref());
                 shown.doubted = Some(find_doubts(followed.as_ref(), words, &checked, ambiguity.as_ref()));

@@ -4,8 +4,8 @@ use super::path_texts::FileText;
 use crate::{count::count_phrase, doubts::TextDoubts, follow::RouteShares};
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt};
-use wayword_checks::TextFindings;
-use wayword_core::{CheckFinding, CheckKind, DoubtGrade, TextAmbiguity, TextDoubt, Verdict};
+use wayword_checks::{CoveredDecision, DecisionTold, TextFindings};
+use wayword_core::{CheckFinding, CheckKind, DoubtGrade, InstructionPart, TextAmbiguity, TextDoubt, Verdict};
 
 /// The result of checking a file.
 #[derive(Debug, Default, Serialize)]
@@ -35,6 +35,11 @@ pub struct CheckReport {
     pub ambiguous: usize,
     /// Each of them, whether it passed or not.
     pub ambiguous_texts: Vec<AmbiguousText>,
+    /// The decisions of the walks by kind, `turn` (where another way is open, as far as a graph says so), `climb` and `room`, and how many of them their texts tell
+    /// in each way: `told`, `early`, `late`, `merged` (only the place where the way leads is named) or `left_out`. It counts against no
+    /// text.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub coverage_of_walk: BTreeMap<&'static str, BTreeMap<&'static str, usize>>,
     /// Every text that did not pass, with its findings.
     pub not_passed: Vec<CheckedText>,
     /// With `--doubts`: every text with the words that a reader should doubt, in the order of the file.
@@ -86,6 +91,12 @@ pub struct CheckedText {
     /// The places and objects that the text may mean. Ambiguity makes a text fail only where `--reject-ambiguous` asks for it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ambiguity: Option<TextAmbiguity>,
+    /// Its parts with their frames of the path, where it could be aligned.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<InstructionPart>,
+    /// The decisions of its walk, and how it tells them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub coverage_of_walk: Vec<CoveredDecision>,
     /// The words that a reader should doubt, where that was asked for. A report lists them in [`CheckReport::doubted`].
     #[serde(skip)]
     pub doubted: Option<TextDoubts>,
@@ -135,7 +146,21 @@ impl CheckedText {
         let (verdict, world) = (checked.verdict(), checked.world.name());
         let style = text.style.as_ref().map(|style| style.name.clone());
         let (route, turn_gain, ambiguity, doubted) = (None, None, None, None);
-        Self { path, text: words, verdict, world, findings, route, turn_gain, ambiguity, doubted, style }
+        let (parts, coverage_of_walk) = (checked.parts.clone(), Vec::new());
+        Self {
+            path,
+            text: words,
+            verdict,
+            world,
+            findings,
+            route,
+            turn_gain,
+            ambiguity,
+            parts,
+            coverage_of_walk,
+            doubted,
+            style,
+        }
     }
 }
 
@@ -165,6 +190,10 @@ impl CheckReport {
             }
         }
         *self.worlds.entry(text.world).or_default() += 1;
+        for covered in &text.coverage_of_walk {
+            let kind = self.coverage_of_walk.entry(covered.decision.kind_name()).or_default();
+            *kind.entry(covered.told.name()).or_default() += 1;
+        }
         if let Some(ambiguity) = text.ambiguity.as_ref().filter(|ambiguity| ambiguity.is_ambiguous()) {
             let (path, words) = (text.path.clone(), text.text.clone());
             self.ambiguous += 1;
@@ -219,6 +248,12 @@ impl fmt::Display for CheckReportText<'_> {
         write!(f, "checked against: {}\nworld: {worlds}", report.checked_against.join(", "))?;
         if report.ambiguous > 0 {
             write!(f, "\nambiguous: {} may mean several places or objects", count_phrase(report.ambiguous, "text"))?;
+        }
+        for (kind, counts) in &report.coverage_of_walk {
+            let count = |told: DecisionTold| counts.get(told.name()).copied().unwrap_or(0);
+            let all: usize = counts.values().sum();
+            let ways = DecisionTold::ALL.map(|told| format!("{} {}", count(told), told.name().replace('_', " ")));
+            write!(f, "\n{kind}s of the walks: {all}, {}", ways.join(", "))?;
         }
         if !report.doubted.is_empty() {
             let count_grade = |grade: DoubtGrade| {

@@ -22,6 +22,7 @@ impl Evidence {
                     turn_rad: Some(frame.pose.heading.turn_to(label.heading)),
                     distance_m: label.distance_m.or_else(|| Some(label.position?.distance(frame.pose.position))),
                     position: label.position.or_else(|| label_position(label, frame.pose.position)),
+                    room: label.room.clone(),
                     ..SeenThing::default()
                 }));
             }

@@ -86,6 +86,8 @@ pub struct SeenThing {
     pub distance_m: Option<f64>,
     /// Its centre, metres, world frame, where it is known.
     pub position: Option<DVec3>,
+    /// The room that it stands in, where that is known.
+    pub room: Option<String>,
 }
 
 impl FrameEvidence {

@@ -29,6 +29,7 @@ fn label(name: &str, object: &str, position: Option<[f64; 3]>) -> ObjectLabel {
         distance_m: None,
         position: position.map(|[x, y, z]| DVec3::new(x, y, z)),
         colour: None,
+        room: None,
     }
 }
 

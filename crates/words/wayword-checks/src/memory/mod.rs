@@ -7,7 +7,7 @@ mod stays_and_bends;
 mod tests;
 mod things;
 
-pub(crate) use openings::frames_at_doors;
+pub(crate) use openings::{IN_DOOR_M, frames_at_doors, is_any_door};
 pub use openings::{RoomOpening, leads_through_a_door};
 pub use stays_and_bends::{RoomStay, StairFlight, WalkBend};
 pub use things::{RememberedThing, ThingGlimpse, ThingPassing};
@@ -47,11 +47,15 @@ impl WalkMemory {
             false => Vec::new(),
         };
         let headings: Vec<Heading> = path.frames.iter().map(|frame| frame.pose.heading).collect();
-        let stays = stays_and_bends::find_stays(evidence);
+        let things = things::remember_things(evidence, &eyes, &headings);
+        let bends = stays_and_bends::find_bends(&evidence.moves);
+        let mut stays = stays_and_bends::find_stays(evidence);
+        let doors = openings::doors_of_hops(&things, &eyes);
+        stays_and_bends::turn_before_rooms(&mut stays, &bends, |hop| doors.contains(&hop));
         let openings = openings::find_openings(&stays, evidence);
         Self {
-            things: things::remember_things(evidence, &eyes, &headings),
-            bends: stays_and_bends::find_bends(&evidence.moves),
+            things,
+            bends,
             flights: stays_and_bends::find_flights(evidence),
             stays,
             openings,
@@ -65,6 +69,12 @@ impl WalkMemory {
     #[must_use]
     pub fn is_on_graph(&self) -> bool {
         self.is_on_graph
+    }
+
+    /// Whether a bend lies within a flight of stairs.
+    #[must_use]
+    pub fn is_on_stairs(&self, bend: &WalkBend) -> bool {
+        self.flights.iter().any(|flight| flight.from < bend.first && bend.last < flight.to)
     }
 
     /// The number of frames of the walk.
@@ -93,6 +103,13 @@ impl WalkMemory {
             (Some(position), Some(eye)) => Some((position - *eye).truncate().length()),
             _ => glimpsed(),
         }
+    }
+
+    /// The hops at which the walk comes nearest to a thing, by the floor, and how near that is, metres; `None` where the positions are not
+    /// known. A hop is named by the frame at its start; at a corner of the walk these are two hops.
+    #[must_use]
+    pub fn nearest_hops(&self, thing: &RememberedThing) -> Option<(Vec<usize>, f64)> {
+        things::nearest_hops(&self.eyes, thing.position?)
     }
 
     /// The side of a walker at a frame on which a thing lies, looking along the frame's heading.

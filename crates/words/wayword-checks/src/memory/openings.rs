@@ -1,7 +1,9 @@
 //! Finds the places where a walk goes from one room to another, and whether there is a door.
 
-use super::{RoomStay, stays_and_bends};
+use super::{RememberedThing, RoomStay, stays_and_bends, things::nearest_hops};
 use crate::Evidence;
+use std::collections::BTreeSet;
+use wayword_core::DVec3;
 use wayword_language::lexicon::{ThingClass, find_thing, room_name};
 
 /// A change of rooms between two frames in a row.
@@ -76,13 +78,30 @@ pub(crate) fn frames_at_doors(evidence: &Evidence) -> Vec<usize> {
     through.flat_map(|opening| [opening.before, opening.behind]).collect()
 }
 
+/// Whether a name means an opening between rooms, of whatever kind.
+pub(crate) fn is_any_door(name: &str) -> bool {
+    find_thing(name).is_some_and(|thing| thing.class == ThingClass::Door)
+}
+
+/// The hops of a walk that lead through a door or doorway, where one hop alone does.
+pub(super) fn doors_of_hops(things: &[RememberedThing], eyes: &[DVec3]) -> BTreeSet<usize> {
+    let doors = things.iter().filter(|thing| is_any_door(&thing.name)).filter_map(|thing| thing.position);
+    let hop = |door: DVec3| match nearest_hops(eyes, door)? {
+        (hops, near_m) if near_m <= IN_DOOR_M && hops.len() == 1 => hops.first().copied(),
+        _ => None,
+    };
+    doors.filter_map(hop).collect()
+}
+
 /// Whether a door is seen from a frame, near where that is known.
 fn shows_door(evidence: &Evidence, frame: usize) -> bool {
-    let is_door = |name: &str| find_thing(name).is_some_and(|thing| thing.class == ThingClass::Door);
     let is_near = |distance_m: Option<f64>| distance_m.is_none_or(|distance_m| distance_m <= DOOR_M);
     let things = evidence.frames.get(frame).into_iter().flat_map(|frame| &frame.things);
-    things.into_iter().any(|seen| is_door(&seen.name) && is_near(seen.distance_m))
+    things.into_iter().any(|seen| is_any_door(&seen.name) && is_near(seen.distance_m))
 }
+
+/// A hop that comes so near to the middle of a door leads through it, metres.
+pub(crate) const IN_DOOR_M: f64 = 0.5;
 
 /// A door up to this far from one of the two frames is taken to be the one between them, metres.
 const DOOR_M: f64 = 2.5;

@@ -51,7 +51,7 @@ impl WalkBend {
         }
     }
 
-    /// Whether it is less than a turn that is named without "slightly".
+    /// Whether it is a slight turn.
     #[must_use]
     pub fn is_slight(&self) -> bool {
         self.turn_rad.to_degrees().abs() < motion::FULL_DEG
@@ -70,6 +70,23 @@ pub(super) fn find_stays(evidence: &Evidence) -> Vec<RoomStay> {
         }
     }
     stays
+}
+
+/// Moves the begin of a room behind a turn that is made just before its door. A frame in the opening counts to the room ahead, although
+/// the hop from there leads through the door.
+pub(super) fn turn_before_rooms(
+    stays: &mut [RoomStay],
+    bends: &[WalkBend],
+    leads_through_door: impl Fn(usize) -> bool,
+) {
+    for at in 1..stays.len() {
+        let entered = stays[at].entered;
+        let turns_there = bends.iter().any(|bend| bend.first == entered);
+        if stays[at - 1].left + 1 == entered && entered < stays[at].left && turns_there && leads_through_door(entered) {
+            stays[at - 1].left = entered;
+            stays[at].entered = entered + 1;
+        }
+    }
 }
 
 /// Two opposite turns are taken for a winding way, and not for turns, if three limits hold. Each is smaller than this,

@@ -547,6 +547,43 @@ fn an_opening_has_a_door_by_its_rooms_or_by_a_near_door() {
 }
 
 #[test]
+fn a_turn_just_before_its_door_comes_before_the_room() {
+    // North along a hallway, and west through a door just beside the corner at frame 2.
+    let stops = [(0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 2.0, 0.0), (-1.0, 2.0, 0.0), (-2.0, 2.0, 0.0)];
+    let openings = |door: (f64, f64)| {
+        let seen = |room: &str| frame(room, vec![placed("door", "1", door.0, door.1)]);
+        let rooms = ["hallway", "hallway", "bedroom", "bedroom", "bedroom"].map(seen);
+        let (evidence, path) = walked(&stops, rooms.to_vec());
+        let memory = WalkMemory::from_path(&evidence, &path);
+        (memory.openings[0].before, memory.openings[0].behind, memory.stays[1].entered)
+    };
+    assert_eq!(openings((-0.3, 2.2)), (2, 3, 3), "the hop behind the corner leads through the door");
+    assert_eq!(openings((0.2, 1.7)), (1, 2, 2), "the hop before the corner does");
+}
+
+#[test]
+fn the_nearest_hops_are_those_that_come_nearest_within_the_walk() {
+    let (evidence, path) = walked(&NORTH, vec![frame("den", vec![]); 4]);
+    let memory = WalkMemory::from_path(&evidence, &path);
+    let near = |x: f64, y: f64| {
+        let seen = RememberedThing {
+            name: "door".into(),
+            object: None,
+            colour: None,
+            position: Some(DVec3::new(x, y, 0.0)),
+            room: None,
+            glimpses: Vec::new(),
+            passed: None,
+        };
+        memory.nearest_hops(&seen).map(|(hops, near_m)| (hops, (near_m * 100.0).round()))
+    };
+    assert_eq!(near(0.4, 3.0), Some((vec![1], 40.0)));
+    assert_eq!(near(0.5, 4.0), Some((vec![1, 2], 50.0)), "at a corner there are two");
+    assert_eq!(near(0.0, 9.0), None, "it lies behind the end");
+    assert_eq!(near(0.0, -1.0), None, "it lies before the start");
+}
+
+#[test]
 fn a_door_leads_into_a_walled_room_and_not_from_one_outside_to_another() {
     for (from, to, wanted) in [
         ("hallway", "bedroom", true),

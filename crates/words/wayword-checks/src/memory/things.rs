@@ -17,6 +17,8 @@ pub struct RememberedThing {
     pub colour: Option<String>,
     /// Where it is, metres, world frame.
     pub position: Option<DVec3>,
+    /// The room that it stands in, where labels say it.
+    pub room: Option<String>,
     /// From which frames it is seen, ascending.
     pub glimpses: Vec<ThingGlimpse>,
     /// Where one passes it, if one does.
@@ -63,6 +65,28 @@ impl RememberedThing {
     pub fn glimpse_from(&self, frame: usize) -> Option<&ThingGlimpse> {
         self.glimpses.iter().find(|glimpse| glimpse.frame == frame)
     }
+}
+
+/// The hops of a walk with these eyes at which it comes nearest to a position, by the floor, and how near that is, metres.
+pub(super) fn nearest_hops(eyes: &[DVec3], position: DVec3) -> Option<(Vec<usize>, f64)> {
+    /// Hops are equally near up to this, metres.
+    const EQUALLY_NEAR_M: f64 = 0.02;
+    let at = position.truncate();
+    let last = eyes.len().checked_sub(2)?;
+    let (mut all, mut is_within) = (Vec::new(), false);
+    let mut nearest_m = f64::INFINITY;
+    for (hop, pair) in eyes.windows(2).enumerate() {
+        let (from, along) = (pair[0].truncate(), (pair[1] - pair[0]).truncate());
+        let part = (at - from).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
+        let far_m = (from + along * part.clamp(0.0, 1.0) - at).length();
+        if far_m < nearest_m {
+            // What lies before the start or behind the end is at no hop.
+            (nearest_m, is_within) = (far_m, (hop > 0 || part >= 0.0) && (hop < last || part <= 1.0));
+        }
+        all.push(far_m);
+    }
+    let hops = all.iter().enumerate().filter(|(_, far_m)| **far_m <= nearest_m + EQUALLY_NEAR_M);
+    is_within.then(|| (hops.map(|(hop, _)| hop).collect(), nearest_m))
 }
 
 /// Sightings without ids that lie up to this far apart are of one thing, metres.
@@ -185,7 +209,15 @@ fn join_sightings(group: &[EyeSighting<'_>], eyes: &[DVec3]) -> RememberedThing 
         Some(position) => passed_at(position, eyes),
         None => passed_by_glimpses(&glimpses),
     };
-    RememberedThing { name: first.name.clone(), object: first.object.clone(), colour, position, glimpses, passed }
+    RememberedThing {
+        name: first.name.clone(),
+        object: first.object.clone(),
+        colour,
+        position,
+        room: first.room.clone(),
+        glimpses,
+        passed,
+    }
 }
 
 /// The position of a thing: that of its labels, or else by the distance from the nearest frame, or else where two of
@@ -225,13 +257,15 @@ fn passed_at(position: DVec3, eyes: &[DVec3]) -> Option<ThingPassing> {
             let off_m = along.perp_dot(to) / length_m;
             let beside = (-PASSING_SLACK_M..=length_m + PASSING_SLACK_M).contains(&along_m);
             let is_near = (IN_THE_WAY_M..=BESIDE_M).contains(&off_m.abs());
+            // Lengths along the walk count the slope of stairs.
+            let slope = (hop[1] - hop[0]).length() / length_m;
             if beside && is_near && best.as_ref().is_none_or(|(nearest, _)| off_m.abs() < *nearest) {
                 let side = if off_m > 0.0 { Side::Left } else { Side::Right };
                 let frame = if along_m * 2.0 > length_m { at + 1 } else { at };
-                best = Some((off_m.abs(), ThingPassing { frame, side, along_m: walked_m + along_m }));
+                best = Some((off_m.abs(), ThingPassing { frame, side, along_m: walked_m + along_m * slope }));
             }
         }
-        walked_m += length_m;
+        walked_m += (hop[1] - hop[0]).length();
     }
     best.map(|(_, passed)| passed)
 }

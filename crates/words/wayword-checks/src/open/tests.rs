@@ -68,6 +68,7 @@ fn survey_with(floor_m: Option<f64>) -> ViewpointSurvey {
             distance_m: None,
             position: Some(eye + DVec3::new(1.0, 0.0, 0.0)),
             colour: None,
+            room: None,
         };
         let things = BUILDING[at].1.iter().map(label).collect();
         Ok::<_, GraphError>(ViewpointKnowledge { room: Some(BUILDING[at].0.to_owned()), things: Some(things) })

@@ -12,7 +12,7 @@ fn finding(check: CheckKind, verdict: Verdict, span: Option<[usize; 2]>) -> Chec
 }
 
 fn checked(world: CheckWorld, findings: Vec<CheckFinding>) -> TextFindings {
-    TextFindings { findings, mentions: Vec::new(), world }
+    TextFindings { findings, mentions: Vec::new(), parts: Vec::new(), world }
 }
 
 #[test]

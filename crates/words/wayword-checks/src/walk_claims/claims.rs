@@ -21,6 +21,8 @@ pub(super) struct StepClaim<'a> {
     pub(super) things: [Vec<&'a RememberedThing>; 2],
     /// The stays in rooms that its first place may mean.
     pub(super) stays: Vec<&'a RoomStay>,
+    /// The turn that the step makes before it comes to the place: "turn left into the office".
+    pub(super) turn_before: Option<Side>,
 }
 
 impl<'a> StepClaim<'a> {
@@ -28,7 +30,7 @@ impl<'a> StepClaim<'a> {
         let (first, second) = match what {
             ClaimedFact::Place { place, .. } | ClaimedFact::EndOf(place) => (Some(place), None),
             ClaimedFact::Between([one, other]) | ClaimedFact::Beside([one, other]) => (Some(one), Some(other)),
-            ClaimedFact::Turn(_)
+            ClaimedFact::Turn { .. }
             | ClaimedFact::Climb(_)
             | ClaimedFact::StairEnd { .. }
             | ClaimedFact::Length { .. } => (None, None),
@@ -36,7 +38,7 @@ impl<'a> StepClaim<'a> {
         let things = [first, second].map(|place| place.map(|place| facts.things_meant(place)).unwrap_or_default());
         let room = first.filter(|place| place.is_room);
         let stays = room.map(|place| facts.stays_in(&place.name)).unwrap_or_default();
-        Self { span, event, what, things, stays }
+        Self { span, event, what, things, stays, turn_before: None }
     }
 }
 
@@ -44,7 +46,7 @@ impl<'a> StepClaim<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum ClaimedFact<'a> {
     /// The walk turns to a side, or around (`Behind`).
-    Turn(Side),
+    Turn { side: Side, size: TurnSize },
     /// The walk goes up or down.
     Climb(ClimbDirection),
     /// A place lies at the stretch in this way.
@@ -61,13 +63,26 @@ pub(super) enum ClaimedFact<'a> {
     Length { low_m: f64, high_m: f64 },
 }
 
+/// How wide a text says that a turn is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum TurnSize {
+    /// "Turn slightly left".
+    Slight,
+    /// "Turn left".
+    Plain,
+    /// "Turn hard left".
+    Sharp,
+}
+
 /// How a place lies at a stretch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PlaceRole {
     /// The stretch passes it.
     Passed,
-    /// The stretch leads to it or towards it.
-    Approached,
+    /// The turn of the stretch comes when it has been passed.
+    TurnedPast,
+    /// The stretch leads to it, or only towards it.
+    Approached { is_reached: bool },
     /// The stretch ends at it.
     Reached,
     /// The walk ends at it.
@@ -90,23 +105,31 @@ pub(super) enum PlaceRole {
     InSight,
 }
 
-/// The claims of each step, in the order of the steps.
+/// The words for a way to a place, of which "to" alone says that the way ends there.
+const WAY_WORDS: [&str; 5] = ["to", "toward", "towards", "approach", "for"];
+
+/// The words for a turn that is wider than most.
+const SHARP_WORDS: [&str; 3] = ["hard", "sharp", "sharply"];
+
+/// Whether each step stops. "Stop when you reach the sofa": the condition of a stop is about the stop.
+pub(super) fn effective_stops(steps: &[InstructionStep]) -> Vec<bool> {
+    let mut stops = false;
+    let stops_there = |step: &InstructionStep| {
+        stops = step.stops || (stops && step.is_condition);
+        stops
+    };
+    steps.iter().map(stops_there).collect()
+}
+
+/// The claims of each step, in the order of the steps; `stops` are their [`effective_stops`].
 pub(super) fn claims_by_step<'a>(
     facts: &WalkFacts<'a>,
     reading: &'a TextReading,
-    steps: &[InstructionStep],
+    (steps, stops): (&[InstructionStep], &[bool]),
     object: Option<usize>,
 ) -> Vec<Vec<StepClaim<'a>>> {
     let lists = ClaimLister { facts, reading, object };
-    let mut stops = false;
-    steps
-        .iter()
-        .map(|step| {
-            // "Stop when you reach the sofa": the condition of a stop is about the stop.
-            stops = step.stops || (stops && step.is_condition);
-            lists.list_claims(step, stops)
-        })
-        .collect()
+    steps.iter().zip(stops).map(|(step, stops)| lists.list_claims(step, *stops)).collect()
 }
 
 struct ClaimLister<'f, 'a> {
@@ -122,7 +145,12 @@ impl<'a> ClaimLister<'_, 'a> {
         if let Some(side) = step.turn {
             let span = step.turn_span.unwrap_or(step.span);
             let event = self.event_at(span);
-            claims.push(StepClaim::new(self.facts, span, event, ClaimedFact::Turn(side)));
+            claims.push(StepClaim::new(
+                self.facts,
+                span,
+                event,
+                ClaimedFact::Turn { side, size: self.turn_size(step) },
+            ));
         }
         if let Some(climb) = step.climb {
             let is_climb = |what: &EventContent| matches!(what, EventContent::Climb(_) | EventContent::Steps(_));
@@ -178,7 +206,9 @@ impl<'a> ClaimLister<'_, 'a> {
         let place = self.place(mention)?;
         let locates = matches!(place.link, PlaceLink::Within | PlaceLink::Beside);
         let span = self.reading.events[mention.event].span;
-        let claim = |what| Some(StepClaim::new(self.facts, span, Some(mention.event), what));
+        let turn_before = step.turn.filter(|_| step.turn_span.is_some_and(|turn| turn[1] <= span[0]));
+        let claim =
+            |what| Some(StepClaim { turn_before, ..StepClaim::new(self.facts, span, Some(mention.event), what) });
         let is_room = |place: &&PlaceMention| place.is_room && !place.is_thing;
         let other = before.filter(|_| locates).and_then(|before| self.place(before));
         // "Wait in the hallway near the lamp": the lamp does not tell which hallway.
@@ -198,8 +228,35 @@ impl<'a> ClaimLister<'_, 'a> {
                 _ => claim(ClaimedFact::Beside([other, place])),
             };
         }
-        let role = place_role(step, stops, mention.relation, place)?;
+        let is_towards = self.is_towards(step, mention);
+        let role = place_role((step, stops), mention.relation, place, is_towards)?;
         claim(ClaimedFact::Place { place, role })
+    }
+
+    /// How wide a step says that its turn is.
+    fn turn_size(&self, step: &InstructionStep) -> TurnSize {
+        // "Turn hard right", "take a sharp left".
+        let [from, to] = step.turn_span.unwrap_or(step.span);
+        let before = self.reading.tokens().iter().filter(|token| token.span[1] <= to);
+        let mut near = before
+            .rev()
+            .take_while(|token| token.span[0] >= from)
+            .chain(self.reading.tokens().iter().rev().find(|token| token.span[1] <= from));
+        let is_sharp = near.any(|token| SHARP_WORDS.contains(&token.word.as_str()));
+        match (step.is_slight, is_sharp) {
+            (true, _) => TurnSize::Slight,
+            (false, true) => TurnSize::Sharp,
+            (false, false) => TurnSize::Plain,
+        }
+    }
+
+    /// Whether the last word about the way before a place is "towards".
+    fn is_towards(&self, step: &InstructionStep, mention: &StepMention) -> bool {
+        let until = self.reading.events[mention.event].span[0];
+        let words =
+            self.reading.tokens().iter().filter(|token| step.span[0] <= token.span[0] && token.span[1] <= until);
+        let mut ways = words.filter(|token| WAY_WORDS.contains(&token.word.as_str()));
+        ways.next_back().is_some_and(|token| token.word != "to")
     }
 
     /// The claim about the neighbour of a task's object: "the wardrobe next to the clock".
@@ -217,8 +274,10 @@ impl<'a> ClaimLister<'_, 'a> {
 
     /// The claim of the walker to be between two places. In "the kettle between the stove and the sink" it is the kettle.
     fn between_claim(&self, step: &InstructionStep) -> Option<StepClaim<'a>> {
-        let [first, second, ..] = step.places.as_slice() else { return None };
-        let is_told = first.relation == StepRelation::Between && self.object.is_none_or(|object| first.event < object);
+        let is_between =
+            |pair: &&[StepMention]| pair.first().is_some_and(|first| first.relation == StepRelation::Between);
+        let [first, second] = step.places.windows(2).find(is_between)? else { return None };
+        let is_told = self.object.is_none_or(|object| first.event < object);
         let pair = [self.place(first).filter(|_| is_told)?, self.place(second)?];
         let span = self.reading.events[first.event].span;
         Some(StepClaim::new(self.facts, span, None, ClaimedFact::Between(pair)))
@@ -245,8 +304,14 @@ impl<'a> ClaimLister<'_, 'a> {
 }
 
 /// How a place lies at the stretch of a step; `None` where the step says nothing that can be checked.
-fn place_role(step: &InstructionStep, stops: bool, relation: StepRelation, place: &PlaceMention) -> Option<PlaceRole> {
+fn place_role(
+    (step, stops): (&InstructionStep, bool),
+    relation: StepRelation,
+    place: &PlaceMention,
+    is_towards: bool,
+) -> Option<PlaceRole> {
     Some(match relation {
+        StepRelation::Past if step.turn.is_some() => PlaceRole::TurnedPast,
         StepRelation::Past => PlaceRole::Passed,
         // "Wait inside the closet."
         StepRelation::Into if stops && place.is_room => PlaceRole::Within { at_stop: true },
@@ -259,7 +324,7 @@ fn place_role(step: &InstructionStep, stops: bool, relation: StepRelation, place
         StepRelation::Between | StepRelation::Of => return None,
         StepRelation::To if stops => PlaceRole::Stopped,
         StepRelation::To if step.is_condition => PlaceRole::Reached,
-        StepRelation::To => PlaceRole::Approached,
+        StepRelation::To => PlaceRole::Approached { is_reached: !place.is_room && !is_towards },
         StepRelation::Plain | StepRelation::At | StepRelation::Near | StepRelation::Before => {
             match (stops, step.turn.is_some() || place.tells_turn) {
                 // "Stop in front of the dining room."

@@ -7,6 +7,7 @@ use super::{
     outcome::ClaimOutcome,
     untold::{untold_bends, untold_flights},
 };
+use wayword_core::walk_cuts::{WalkCuts, all_stretches, stretch_index};
 
 /// The cost of a turn that the stretch does not make.
 const FALSE_TURN_COST: f64 = 1.5;
@@ -21,34 +22,21 @@ const NO_WAY_COST: f64 = 0.1;
 /// The cost of a turn that is left out, of one that a walker need not be told of, and of a flight of stairs.
 const UNTOLD_COSTS: [f64; 3] = [1.0, 0.3, 1.5];
 
-/// The stretch of each step, by its first and its last frame. The next step begins where one ends. Among equal divisions, each step
+/// How much less likely a division is for each unit of its cost, as a natural log. It was chosen by hand, not fitted.
+const COST_STRENGTH: f64 = 4.0;
+
+/// All divisions of the walk among steps with these claims. The best cut is the division with the least cost; among equal ones, each step
 /// ends as early as it can.
-pub(super) fn divide_walk(facts: &WalkFacts<'_>, claims: &[Vec<StepClaim<'_>>]) -> Vec<[usize; 2]> {
+pub(super) fn divide_walk(facts: &WalkFacts<'_>, claims: &[Vec<StepClaim<'_>>]) -> WalkCuts {
     let frames = facts.last_frame() + 1;
-    // For each number of steps and each frame: the least cost with which these steps lead there, and where the last of them begins.
-    let mut best: Vec<Vec<(f64, usize)>> = vec![vec![(f64::INFINITY, 0); frames]; claims.len() + 1];
-    best[0][0].0 = 0.0;
-    for (step, claims) in claims.iter().enumerate() {
-        let (before, after) = best.split_at_mut(step + 1);
-        let (before, after) = (&before[step], &mut after[0]);
-        for (from, (reached, _)) in before.iter().enumerate().filter(|(_, (reached, _))| reached.is_finite()) {
-            for (to, least) in after.iter_mut().enumerate().skip(from) {
-                let cost = reached + stretch_cost(facts, claims, [from, to]);
-                if cost < least.0 {
-                    *least = (cost, from);
-                }
-            }
+    let score_step = |claims: &Vec<StepClaim<'_>>| {
+        let mut scores = vec![f64::NEG_INFINITY; frames * frames];
+        for stretch in all_stretches(frames) {
+            scores[stretch_index(frames, stretch)] = -COST_STRENGTH * stretch_cost(facts, claims, stretch);
         }
-    }
-    let mut to = frames - 1;
-    let mut division: Vec<[usize; 2]> = Vec::with_capacity(claims.len());
-    for step in (1..=claims.len()).rev() {
-        let from = best[step][to].1;
-        division.push([from, to]);
-        to = from;
-    }
-    division.reverse();
-    division
+        scores
+    };
+    WalkCuts::new(claims.iter().map(score_step).collect(), frames)
 }
 
 /// The cost of giving a stretch to a step.
@@ -62,7 +50,11 @@ fn stretch_cost(facts: &WalkFacts<'_>, all: &[StepClaim<'_>], stretch: [usize; 2
         matches!(
             claim.what,
             ClaimedFact::Place {
-                role: PlaceRole::Along | PlaceRole::Through | PlaceRole::Approached | PlaceRole::Passed,
+                role: PlaceRole::Along
+                    | PlaceRole::Through
+                    | PlaceRole::Approached { .. }
+                    | PlaceRole::Passed
+                    | PlaceRole::TurnedPast,
                 ..
             }
         )
@@ -75,7 +67,7 @@ fn claim_cost(facts: &WalkFacts<'_>, claim: &StepClaim<'_>, stretch: [usize; 2])
     match (judge_claim(facts, claim, stretch), claim.what) {
         (ClaimOutcome::Holds(_) | ClaimOutcome::Unjudged, _) => 0.0,
         (ClaimOutcome::Unknown(_), _) => UNDECIDED_COST,
-        (ClaimOutcome::Fails(_), ClaimedFact::Turn(_)) => FALSE_TURN_COST,
+        (ClaimOutcome::Fails(_), ClaimedFact::Turn { .. }) => FALSE_TURN_COST,
         (ClaimOutcome::Fails(_), ClaimedFact::Climb(_)) => FALSE_CLIMB_COST,
         (ClaimOutcome::Fails(_), _) => FALSE_CLAIM_COST,
     }

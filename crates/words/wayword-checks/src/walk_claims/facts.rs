@@ -3,18 +3,18 @@
 use crate::{
     Evidence, WalkMemory,
     memory::{RememberedThing, RoomStay, StairFlight, WalkBend},
-    sides::lies_on,
+    sides::{lies_on, wrap_angle},
 };
-use wayword_core::{Side, motion};
+use wayword_core::{PathMove, Side, motion};
 use wayword_language::{
     lexicon::{ThingClass, find_thing, names_agree, normalise_name, room_name, same_colour, same_room},
     reading::PlaceMention,
 };
 
-/// A turn that no step names is a mistake from this angle on, degrees. People leave out one in four that are wider than 55.
-const DECISION_DEG: f64 = 40.0;
+/// A hop with at least this share of the slope of its flight lies on the stairs as a whole.
+const STEEP_SHARE: f64 = 0.9;
 
-/// A turn "at the sofa" is at most this far from it, and a walker "by the sofa" as well, metres.
+/// A walker "by the sofa" is at most this far from it, metres.
 pub(super) const NEAR_M: f64 = 3.0;
 
 /// The facts of a walk.
@@ -63,12 +63,15 @@ impl<'a> WalkFacts<'a> {
 
     /// Whether a walker has to be told of a bend.
     pub(super) fn is_decision(&self, bend: &WalkBend) -> bool {
-        bend.turn_rad.to_degrees().abs() >= DECISION_DEG
+        bend.turn_rad.to_degrees().abs() >= motion::TOLD_DEG
     }
 
-    /// Whether a bend lies within a flight of stairs.
-    pub(super) fn is_on_stairs(&self, bend: &WalkBend) -> bool {
-        self.memory.flights.iter().any(|flight| flight.from < bend.first && bend.last < flight.to)
+    /// Whether the walk ends with a flight, and as steep as the flight is elsewhere: then it is not known whether the stairs end there too.
+    pub(super) fn ends_on_stairs(&self, flight: &StairFlight) -> bool {
+        let slope = |step: &PathMove| step.rise_m.abs() / step.distance_m.max(f64::MIN_POSITIVE);
+        let steps = self.evidence.moves.get(flight.from..flight.to).unwrap_or_default();
+        let steepest = steps.iter().map(slope).fold(0.0, f64::max);
+        flight.to == self.last_frame() && steps.last().is_some_and(|step| slope(step) >= STEEP_SHARE * steepest)
     }
 
     /// The flights of stairs whose middle lies on a stretch.
@@ -105,6 +108,11 @@ impl<'a> WalkFacts<'a> {
         self.evidence.frames.get(frame).is_some_and(|seen| seen.rooms.iter().any(|room| same_room(room, name)))
     }
 
+    /// Whether the room of a frame is known.
+    pub(super) fn knows_room(&self, frame: usize) -> bool {
+        self.evidence.frames.get(frame).is_some_and(|seen| !seen.rooms.is_empty())
+    }
+
     /// Whether the room of every frame is known.
     pub(super) fn knows_rooms(&self) -> bool {
         self.evidence.frames.iter().all(|frame| !frame.rooms.is_empty())
@@ -120,7 +128,7 @@ impl<'a> WalkFacts<'a> {
     pub(super) fn is_ahead(&self, thing: &RememberedThing, frame: usize) -> bool {
         let leaving_rad = self.evidence.moves.get(frame).map_or(0.0, |step| step.turn_rad);
         self.direction_rad(thing, frame)
-            .is_some_and(|rad| lies_on(Side::Ahead, rad) || lies_on(Side::Ahead, rad - leaving_rad))
+            .is_some_and(|rad| lies_on(Side::Ahead, rad) || lies_on(Side::Ahead, wrap_angle(rad - leaving_rad)))
     }
 
     /// Whether the things that can be seen from every frame are known.

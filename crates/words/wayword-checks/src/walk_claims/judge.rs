@@ -1,7 +1,7 @@
 //! Decides whether a claim holds on a stretch of the walk: turns, climbs, lengths and ends here, places in `places` and `relations`.
 
 use super::{
-    claims::{ClaimedFact, StepClaim},
+    claims::{ClaimedFact, StepClaim, TurnSize},
     facts::WalkFacts,
     outcome::ClaimOutcome::{self, Fails, Holds, Unjudged, Unknown},
     places::PlaceJudge,
@@ -21,7 +21,7 @@ const LENGTH_SLACK_M: f64 = 2.0;
 /// Decides a claim on a stretch, given by its first and its last frame.
 pub(super) fn judge_claim(facts: &WalkFacts<'_>, claim: &StepClaim<'_>, stretch: [usize; 2]) -> ClaimOutcome {
     match claim.what {
-        ClaimedFact::Turn(side) => judge_turn(facts, side, stretch),
+        ClaimedFact::Turn { side, size } => judge_turn(facts, (side, size), stretch),
         ClaimedFact::Climb(climb) => judge_climb(facts, climb, stretch),
         ClaimedFact::Place { place, role } => PlaceJudge { facts, claim, place, role, stretch }.judge_place(),
         ClaimedFact::Between(pair) => judge_between(facts, claim, pair, stretch[1]),
@@ -32,9 +32,19 @@ pub(super) fn judge_claim(facts: &WalkFacts<'_>, claim: &StepClaim<'_>, stretch:
     }
 }
 
-fn judge_turn(facts: &WalkFacts<'_>, side: Side, stretch: [usize; 2]) -> ClaimOutcome {
+fn judge_turn(facts: &WalkFacts<'_>, (side, size): (Side, TurnSize), stretch: [usize; 2]) -> ClaimOutcome {
     if let Some(bend) = facts.told_bend(side, stretch) {
-        return Holds(bend.first);
+        let (deg, way) = (bend.turn_rad.to_degrees().abs(), turn_word(side));
+        return match size {
+            TurnSize::Slight if deg > motion::MAX_SLIGHT_DEG => {
+                Fails(format!("the path does not turn only slightly {way} here"))
+            }
+            TurnSize::Plain if deg < motion::TOLD_DEG => Fails(format!("the path turns only slightly {way} here")),
+            TurnSize::Sharp if deg < motion::MAX_SLIGHT_DEG => {
+                Fails(format!("the path does not turn sharply {way} here"))
+            }
+            _ => Holds(bend.first),
+        };
     }
     let sign = match side {
         Side::Left => -1.0,
@@ -43,6 +53,7 @@ fn judge_turn(facts: &WalkFacts<'_>, side: Side, stretch: [usize; 2]) -> ClaimOu
     };
     // A long curve of small turns.
     if facts.bends_on(stretch).next().is_none()
+        && size == TurnSize::Slight
         && facts.net_turn_deg(stretch[0]..=stretch[1]) * sign >= motion::SLIGHT_DEG
     {
         return Holds(stretch[0]);
@@ -79,7 +90,7 @@ fn judge_stair_end(facts: &WalkFacts<'_>, is_top: bool, stretch: [usize; 2]) -> 
         let arrives = (flight.climb == ClimbDirection::Up) == is_top;
         let reaches = flight.to_level.is_some() || !knows_levels;
         match arrives {
-            true => reaches.then_some(flight.to),
+            true => (reaches && !facts.ends_on_stairs(flight)).then_some(flight.to),
             false => Some(flight.from),
         }
     });

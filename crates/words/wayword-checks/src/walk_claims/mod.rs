@@ -11,11 +11,13 @@
 //! - `facts`: what is known of the walk: distances, turns, rooms and doors along it.
 //! - `judge`: whether a claim holds on a stretch; `places` and `relations` decide those about places. `outcome`: what is found.
 //! - `untold`: turns and flights that a step leaves out.
+//! - `gaps`: stretches that the text passes over in silence.
 //! - `division`: the search for the best division.
 
 mod claims;
 mod division;
 mod facts;
+mod gaps;
 mod judge;
 mod outcome;
 mod places;
@@ -25,14 +27,19 @@ mod tests;
 mod untold;
 
 use crate::{Evidence, WalkMemory, new_finding, pass_finding};
-use claims::{ClaimedFact, StepClaim, claims_by_step};
+use claims::{ClaimedFact, StepClaim, claims_by_step, effective_stops};
 use division::divide_walk;
 use facts::WalkFacts;
+use gaps::{JudgedStep, find_gaps};
 use judge::{judge_claim, turn_word};
 use outcome::ClaimOutcome;
+use std::ops::Range;
 use untold::{untold_bends, untold_flights};
-use wayword_core::{CheckFinding, CheckKind, Verdict};
-use wayword_language::reading::{TextReading, steps::InstructionStep};
+use wayword_core::{CheckFinding, CheckKind, InstructionPart, Verdict, walk_cuts::WalkCuts};
+use wayword_language::reading::{
+    TextReading,
+    steps::{InstructionStep, read_steps},
+};
 
 /// Largest product of the number of steps and the square of the number of frames: the search compares so many stretches.
 const MAX_STRETCHES: usize = 1_000_000;
@@ -44,6 +51,73 @@ pub(super) struct WalkFindings {
     pub(super) findings: Vec<CheckFinding>,
     /// The frame of each event of the reading, where it has one.
     pub(super) frames: Vec<Option<usize>>,
+    /// The parts of the text with their stretches.
+    pub(super) parts: Vec<InstructionPart>,
+}
+
+/// A walk, divided among the steps of a text.
+struct DividedWalk<'a> {
+    facts: WalkFacts<'a>,
+    /// The claims of each step.
+    claims: Vec<Vec<StepClaim<'a>>>,
+    /// Whether each step stops, or is the condition of a stop.
+    stops: Vec<bool>,
+    /// All divisions.
+    cuts: WalkCuts,
+    /// The stretch of each step, in the best division.
+    stretches: Vec<[usize; 2]>,
+}
+
+impl<'a> DividedWalk<'a> {
+    /// `None` for a walk that has no moves, is too long, or has its frames too far apart.
+    fn new(
+        reading: &'a TextReading,
+        steps: &'a [InstructionStep],
+        (evidence, memory): (&'a Evidence, &'a WalkMemory),
+        object: Option<usize>,
+    ) -> Option<Self> {
+        let work = steps.len() * evidence.frames.len() * evidence.frames.len();
+        let facts = WalkFacts::new(evidence, memory);
+        let mean_hop_m = facts.length_m([0, facts.last_frame()]) / evidence.moves.len().max(1) as f64;
+        let is_coarse = memory.is_on_graph() || mean_hop_m > MAX_MEAN_HOP_M;
+        if evidence.moves.is_empty() || steps.is_empty() || work > MAX_STRETCHES || is_coarse {
+            return None;
+        }
+        let stops = effective_stops(steps);
+        let claims = claims_by_step(&facts, reading, (steps, &stops), object);
+        let cuts = divide_walk(&facts, &claims);
+        let stretches = cuts.best_cut();
+        Some(Self { facts, claims, stops, cuts, stretches })
+    }
+
+    /// The parts of the text: its steps, each with the conditions that follow it ("until you reach the sofa").
+    fn parts(&self, steps: &[InstructionStep]) -> Vec<InstructionPart> {
+        let mut ranges: Vec<Range<usize>> = Vec::new();
+        for (number, step) in steps.iter().enumerate() {
+            match ranges.last_mut().filter(|_| step.is_condition) {
+                Some(range) => range.end = number + 1,
+                None => ranges.push(number..number + 1),
+            }
+        }
+        let part = |range: Range<usize>| {
+            let [first, last] = [range.start, range.end - 1];
+            let frames = [self.stretches[first][0], self.stretches[last][1]];
+            let span = [steps[first].span[0], steps[last].span[1]];
+            InstructionPart { span, frames, confidence: Some(self.cuts.joint_share(range, frames)) }
+        };
+        ranges.into_iter().map(part).collect()
+    }
+}
+
+/// The parts of a text with their stretches of the walk; `None` where the walk cannot be divided, as for [`check_walk_claims`].
+pub(super) fn align_steps_with_walk(
+    reading: &TextReading,
+    known: (&Evidence, &WalkMemory),
+) -> Option<Vec<InstructionPart>> {
+    let steps = read_steps(reading);
+    // What is to be done with the object of a task says nothing of the way.
+    let object = reading.task.as_ref().and_then(|task| task.object);
+    Some(DividedWalk::new(reading, &steps, known, object)?.parts(&steps))
 }
 
 /// Checks the claims of a text, each at its stretch of the walk. `steps` are those of the reading; `object` is the event of the
@@ -52,31 +126,40 @@ pub(super) struct WalkFindings {
 pub(super) fn check_walk_claims(
     reading: &TextReading,
     steps: &[InstructionStep],
-    (evidence, memory): (&Evidence, &WalkMemory),
+    known: (&Evidence, &WalkMemory),
     object: Option<usize>,
     tells_way: bool,
 ) -> Option<WalkFindings> {
-    let work = steps.len() * evidence.frames.len() * evidence.frames.len();
-    let facts = WalkFacts::new(evidence, memory);
-    let mean_hop_m = facts.length_m([0, facts.last_frame()]) / evidence.moves.len().max(1) as f64;
-    let is_coarse = memory.is_on_graph() || mean_hop_m > MAX_MEAN_HOP_M;
-    if evidence.moves.is_empty() || steps.is_empty() || work > MAX_STRETCHES || is_coarse {
-        return None;
-    }
-    let claims = claims_by_step(&facts, reading, steps, object);
-    let division = divide_walk(&facts, &claims);
-    let mut found = WalkFindings { findings: Vec::new(), frames: vec![None; reading.events.len()] };
-    for ((step, claims), stretch) in steps.iter().zip(&claims).zip(&division) {
-        for claim in claims {
-            let outcome = judge_claim(&facts, claim, *stretch);
-            if let (ClaimOutcome::Holds(frame), Some(event)) = (&outcome, claim.event) {
+    let divided = DividedWalk::new(reading, steps, known, object)?;
+    let facts = &divided.facts;
+    let frames = vec![None; reading.events.len()];
+    let mut found = WalkFindings { findings: Vec::new(), frames, parts: divided.parts(steps) };
+    let judge = |(claims, stretch): (&Vec<StepClaim<'_>>, &[usize; 2])| -> Vec<ClaimOutcome> {
+        claims.iter().map(|claim| judge_claim(facts, claim, *stretch)).collect()
+    };
+    let outcomes: Vec<Vec<ClaimOutcome>> = divided.claims.iter().zip(&divided.stretches).map(judge).collect();
+    let judged: Vec<JudgedStep<'_, '_>> = (0..steps.len())
+        .map(|at| JudgedStep {
+            step: &steps[at],
+            claims: &divided.claims[at],
+            outcomes: &outcomes[at],
+            stretch: divided.stretches[at],
+            stops: divided.stops[at],
+        })
+        .collect();
+    for JudgedStep { step, claims, outcomes, stretch, .. } in &judged {
+        for (claim, outcome) in claims.iter().zip(*outcomes) {
+            if let (ClaimOutcome::Holds(frame), Some(event)) = (outcome, claim.event) {
                 found.frames[event] = Some(*frame);
             }
-            found.findings.extend(claim_finding(&facts, claim, &outcome));
+            found.findings.extend(claim_finding(facts, claim, outcome));
         }
         if tells_way {
-            found.findings.extend(untold_findings(&facts, claims, step, *stretch));
+            found.findings.extend(untold_findings(facts, claims, step, *stretch));
         }
+    }
+    if tells_way {
+        found.findings.extend(find_gaps(facts, &judged));
     }
     for check in [CheckKind::Order, CheckKind::Turns] {
         if found.findings.iter().all(|finding| finding.check != check) {
@@ -97,7 +180,7 @@ fn claim_finding(facts: &WalkFacts<'_>, claim: &StepClaim<'_>, outcome: &ClaimOu
             let holds_on = |stretch| matches!(judge_claim(facts, claim, stretch), ClaimOutcome::Holds(_));
             let holds_elsewhere = || holds_on(whole) || (0..=facts.last_frame()).any(|frame| holds_on([frame; 2]));
             let check = match claim.what {
-                ClaimedFact::Turn(_) | ClaimedFact::Length { .. } => CheckKind::Turns,
+                ClaimedFact::Turn { .. } | ClaimedFact::Length { .. } => CheckKind::Turns,
                 ClaimedFact::Climb(_) | ClaimedFact::StairEnd { .. } => CheckKind::Floors,
                 ClaimedFact::Place { .. } if holds_elsewhere() => CheckKind::Order,
                 _ => CheckKind::Landmarks,

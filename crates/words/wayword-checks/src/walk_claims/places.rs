@@ -8,12 +8,12 @@ use super::{
 use crate::{
     goal::{MAX_STOP_DISTANCE_M as STOP_M, is_wide},
     landmarks::is_door,
-    memory::{RememberedThing, RoomOpening, ThingGlimpse},
+    memory::{IN_DOOR_M, RememberedThing, RoomOpening, RoomStay, ThingGlimpse, ThingPassing, WalkBend, is_any_door},
     sides::{lies_on, side_word, wrap_angle},
 };
 use wayword_core::Side;
 use wayword_language::{
-    lexicon::{ThingClass, find_thing, is_fabric},
+    lexicon::is_fabric,
     reading::{PlaceMention, PlaceOrdinal},
 };
 
@@ -21,14 +21,22 @@ use wayword_language::{
 const WIDE_STOP_M: f64 = 4.0;
 /// A thing that the walker goes to may still be this far away at the end of the stretch, metres.
 const APPROACHED_M: f64 = 3.5;
+/// A walker who goes to a thing comes as near to it as the walk does, up to this, metres.
+const REACHED_SLACK_M: f64 = 1.0;
 /// A thing that the walk comes so near to was passed, metres.
 const TOUCHED_M: f64 = 1.3;
-/// A walk goes through a door whose middle it comes so near to, metres: between two frames lies half a metre.
-const THROUGH_M: f64 = 0.9;
 /// A door between two frames lies at most so far from one of them, metres.
 const DOOR_M: f64 = 1.4;
-/// What lies behind a walker at the end has to be so near, metres: it was passed else.
-const BEHIND_STOP_M: f64 = 1.5;
+/// "Down the hallway" goes at least so far along it, metres.
+const ALONG_M: f64 = 2.0;
+/// A turn "at the lamp" is at most this far from it, metres; at a wide thing [`NEAR_M`].
+const TURN_M: f64 = 2.2;
+/// "Turn left past the sofa": the sofa is passed at most so long after the turn begins, metres.
+const TURNED_PAST_M: f64 = 0.5;
+/// A thing was passed before a stretch if it was passed so long before its first frame, metres.
+const PASSED_BEFORE_M: f64 = 0.4;
+/// What lies behind a walker at the end has to be so near, metres: else it was passed.
+const BEHIND_STOP_M: f64 = 1.0;
 /// From this angle on a thing is behind the walker, degrees.
 const BEHIND_DEG: f64 = 110.0;
 /// A picture ahead shows what lies within this angle of the heading, degrees.
@@ -41,11 +49,6 @@ const PASSED_M: f64 = 3.5;
 const SIGHT_FRAMES: usize = 3;
 /// The way into a doorway "on the right" turns by at least this angle, degrees.
 const SIDEWAYS_DEG: f64 = 15.0;
-
-/// Whether a name means an opening between rooms, of whatever kind.
-fn is_any_door(name: &str) -> bool {
-    is_door(name) || find_thing(name).is_some_and(|thing| thing.class == ThingClass::Door)
-}
 
 /// The judge of one place on one stretch.
 pub(super) struct PlaceJudge<'f, 'a> {
@@ -67,7 +70,7 @@ impl PlaceJudge<'_, '_> {
         if is_stairs(name) && self.facts.flights_on(self.wider()).next().is_some() && self.role != PlaceRole::Passed {
             return Holds(self.stretch[0]);
         }
-        if is_any_door(name) {
+        if is_door(name) || is_any_door(name) {
             return self.judge_door();
         }
         let things = &self.claim.things[0];
@@ -113,6 +116,26 @@ impl PlaceJudge<'_, '_> {
         }
     }
 
+    /// Whether the turn that the step makes before it comes to a change of rooms comes before it in the walk as well.
+    fn turns_before(&self, behind: usize) -> bool {
+        let turns = |side| self.facts.told_bend(side, [self.stretch[0], behind]).is_some();
+        self.claim.turn_before.is_none_or(turns)
+    }
+
+    /// Whether the stretch goes some way along a room.
+    fn goes_along(&self, stay: &RoomStay) -> bool {
+        let [from, to] = self.stretch;
+        let (first, end) = (stay.entered.max(from).saturating_sub(1), (stay.left + 1).min(to));
+        first < end && self.facts.length_m([first, end]) >= ALONG_M
+    }
+
+    /// Whether a room that is entered soon after the stretch lies straight ahead at its end.
+    fn leads_straight_to(&self, entered: usize) -> bool {
+        let to = self.stretch[1];
+        let turns = || self.facts.memory.bends.iter().any(|bend| (to..entered).contains(&bend.first));
+        (to + 1..=to + 2).contains(&entered) && !turns()
+    }
+
     /// Decides a room.
     fn judge_room(&self) -> ClaimOutcome {
         let [from, to] = self.stretch;
@@ -123,19 +146,22 @@ impl PlaceJudge<'_, '_> {
             || stays().find(|stay| stay.entered <= to && stay.left >= from).map(|stay| stay.entered.max(from));
         let is_last_in = || facts.is_in_room(last, name).then_some(last);
         let found = match self.role {
-            PlaceRole::Entered => entered().find(|entered| self.changes_room_at(*entered)),
-            // One can go to a room and turn into it afterwards, or be in it already.
-            PlaceRole::Approached | PlaceRole::Reached => entered()
-                .find(|entered| self.changes_room_at(*entered) || (to + 1..=to + 2).contains(entered))
+            PlaceRole::Entered => {
+                entered().find(|entered| self.changes_room_at(*entered) && self.turns_before(*entered))
+            }
+            // One can go to a room and enter it straight ahead afterwards, or be in it already.
+            PlaceRole::Approached { .. } | PlaceRole::Reached => entered()
+                .find(|entered| self.changes_room_at(*entered) || self.leads_straight_to(*entered))
                 .or_else(|| is_last_in().filter(|_| to == last)),
             PlaceRole::Left => {
                 stays().map(|stay| stay.left).find(|left| *left < last && self.changes_room_at(left + 1))
             }
             PlaceRole::Stopped | PlaceRole::Within { at_stop: true } => is_last_in(),
-            PlaceRole::TurnedAt | PlaceRole::Passed | PlaceRole::Near | PlaceRole::InSight => {
+            PlaceRole::TurnedAt | PlaceRole::TurnedPast | PlaceRole::Passed | PlaceRole::Near | PlaceRole::InSight => {
                 facts.around(self.stretch).find(|frame| facts.is_in_room(*frame, name))
             }
-            PlaceRole::Through | PlaceRole::Along | PlaceRole::Within { at_stop: false } => overlap(),
+            PlaceRole::Along => overlap().filter(|_| stays().any(|stay| self.goes_along(stay))),
+            PlaceRole::Through | PlaceRole::Within { at_stop: false } => overlap(),
         };
         match found {
             Some(frame) => self.room_on_side(frame),
@@ -153,7 +179,7 @@ impl PlaceJudge<'_, '_> {
 
     /// A room that is entered on a side: the walk has to turn to it.
     fn room_on_side(&self, frame: usize) -> ClaimOutcome {
-        if !matches!(self.role, PlaceRole::Entered | PlaceRole::Approached | PlaceRole::Through) {
+        if !matches!(self.role, PlaceRole::Entered | PlaceRole::Approached { .. } | PlaceRole::Through) {
             return Holds(frame);
         }
         self.way_on_side(frame.saturating_sub(1), frame)
@@ -163,9 +189,9 @@ impl PlaceJudge<'_, '_> {
     fn way_on_side(&self, before: usize, behind: usize) -> ClaimOutcome {
         let Some(side @ (Side::Left | Side::Right)) = self.place.side else { return Holds(behind) };
         let sign = if side == Side::Left { -1.0 } else { 1.0 };
-        let around = self.facts.around([before, behind]);
-        let has_bend = self.facts.told_bend(side, [*around.start(), *around.end()]).is_some();
-        let net_deg = self.facts.net_turn_deg(around) * sign;
+        // A turn behind the opening says nothing of its side.
+        let has_bend = self.facts.told_bend(side, [before.saturating_sub(1), behind]).is_some();
+        let net_deg = self.facts.net_turn_deg(before.saturating_sub(1)..=behind) * sign;
         match net_deg {
             _ if has_bend || net_deg >= SIDEWAYS_DEG => Holds(behind),
             deg if deg <= -SIDEWAYS_DEG => {
@@ -196,14 +222,16 @@ impl PlaceJudge<'_, '_> {
                         .iter()
                         .any(|frame| doors().any(|door| far_m(door, *frame) <= DOOR_M))
                 };
-                if let Some(opening) = openings.filter(has_door).find(|opening| self.changes_room_at(opening.behind)) {
+                let is_here =
+                    |opening: &&RoomOpening| self.changes_room_at(opening.behind) && self.turns_before(opening.behind);
+                if let Some(opening) = openings.filter(has_door).find(is_here) {
                     return self.way_on_side(opening.before, opening.behind);
                 }
                 // Two rooms of one name have no change of rooms between them.
-                let [from, to] = self.stretch;
-                let through = (from..=to).find(|frame| doors().any(|door| far_m(door, *frame) <= THROUGH_M));
-                match through {
-                    Some(frame) => self.way_on_side(frame, (frame + 1).min(last)),
+                let crossed = doors().filter_map(|door| facts.memory.nearest_hops(door));
+                let mut crossed = crossed.filter(|(_, near_m)| *near_m <= IN_DOOR_M).flat_map(|(hops, _)| hops);
+                match crossed.find(|hop| self.changes_room_at(hop + 1) && self.turns_before(hop + 1)) {
+                    Some(hop) => self.way_on_side(hop, hop + 1),
                     None if facts.knows_rooms() => Fails(format!("the path does not go through a {name} here")),
                     None => unknown(),
                 }
@@ -272,7 +300,7 @@ impl PlaceJudge<'_, '_> {
             Some(far_m) => far_m <= limit_m && (is_seen_near(frame) || !facts.lists_things()),
             None => is_seen(frame),
         };
-        if !self.was_ahead(thing) {
+        if !self.was_ahead(thing) || self.is_in_other_room(thing) {
             return Vec::new();
         }
         let around = facts.around(self.stretch);
@@ -281,32 +309,57 @@ impl PlaceJudge<'_, '_> {
         let stop_m = if is_wide(self.name()) { WIDE_STOP_M } else { STOP_M };
         match self.role {
             PlaceRole::Passed => {
-                let passed = thing.passed.map(|passed| passed.frame).filter(|frame| (from..=to + 1).contains(frame));
-                let passed = passed.filter(|frame| within(*frame, PASSED_M));
-                passed.into_iter().chain((from..=to).filter(|frame| within(*frame, TOUCHED_M))).collect()
+                let is_here = |passed: &ThingPassing| {
+                    (from..=to + 1).contains(&passed.frame)
+                        && !self.is_passed_before(passed)
+                        && !self.is_behind_at_first(thing)
+                };
+                match thing.passed.filter(|passed| within(passed.frame, PASSED_M)) {
+                    Some(passed) if is_here(&passed) => vec![passed.frame],
+                    Some(_) if !is_wide(self.name()) => Vec::new(),
+                    _ => (from..=to).filter(|frame| within(*frame, TOUCHED_M)).collect(),
+                }
             }
-            PlaceRole::Approached => {
+            PlaceRole::Approached { is_reached } => {
                 let (start_m, end_m) = (far_m(from), far_m(to));
                 let comes_nearer = start_m.zip(end_m).is_none_or(|(start_m, end_m)| end_m < start_m - 0.3);
                 let is_ahead = facts.is_ahead(thing, to);
                 let is_toward = comes_nearer && (within(to, APPROACHED_M) || is_ahead) && (from..=to).any(is_seen);
-                (within(to, stop_m) || is_toward).then_some(to).into_iter().collect()
+                // What lies at the side is passed.
+                let leads_there = within(to, TOUCHED_M)
+                    || (from.max(to.saturating_sub(1))..=to).any(|frame| facts.is_ahead(thing, frame));
+                // One goes to a thing until the walk leads away from it.
+                let nearest_m = (0..=last).filter_map(far_m).fold(f64::INFINITY, f64::min);
+                let is_there = far_m(to).is_none_or(|end_m| end_m <= nearest_m + REACHED_SLACK_M);
+                let comes_there = if is_reached { within(to, APPROACHED_M) && is_there } else { within(to, stop_m) };
+                ((comes_there || (is_toward && !is_reached)) && leads_there).then_some(to).into_iter().collect()
+            }
+            PlaceRole::TurnedPast => {
+                let is_before = |passed: &usize, bend: &WalkBend| {
+                    facts.length_m([bend.first.min(*passed), *passed]) <= TURNED_PAST_M
+                };
+                let passed = thing.passed.filter(|passed| !self.is_passed_before(passed)).map(|passed| passed.frame);
+                let passed = passed.filter(|frame| within(*frame, PASSED_M));
+                let passed = passed.filter(|passed| facts.bends_on(self.stretch).any(|bend| is_before(passed, bend)));
+                passed.filter(|frame| (from.saturating_sub(1)..=to + 1).contains(frame)).into_iter().collect()
             }
             PlaceRole::Reached => (to..=(to + 1).min(last)).filter(|frame| within(*frame, stop_m)).collect(),
             PlaceRole::Stopped | PlaceRole::Within { at_stop: true } => {
                 let is_behind =
                     facts.direction_rad(thing, last).is_some_and(|rad| rad.abs() >= BEHIND_DEG.to_radians());
-                let limit_m = if is_behind { BEHIND_STOP_M } else { stop_m };
+                let is_passed = thing.passed.is_some_and(|passed| facts.length_m([passed.frame, last]) > BEHIND_STOP_M);
+                let limit_m = if is_behind || is_passed { BEHIND_STOP_M } else { stop_m };
                 let is_there = within(last, limit_m) && (is_seen(last) || within(last, TOUCHED_M));
                 is_there.then_some(last).into_iter().collect()
             }
             PlaceRole::TurnedAt => {
+                let turn_m = if is_wide(self.name()) { NEAR_M } else { TURN_M };
                 let mut bends = facts.bends_on(self.stretch).peekable();
                 match bends.peek().is_none() {
-                    true => frames().filter(|frame| within(*frame, NEAR_M)).collect(),
+                    true => frames().filter(|frame| within(*frame, turn_m)).collect(),
                     false => bends
                         .flat_map(|bend| bend.first..=bend.last + 1)
-                        .filter(|frame| within(*frame, NEAR_M))
+                        .filter(|frame| within(*frame, turn_m))
                         .collect(),
                 }
             }
@@ -320,18 +373,53 @@ impl PlaceJudge<'_, '_> {
         }
     }
 
+    /// Whether a thing is passed before the stretch begins.
+    fn is_passed_before(&self, passed: &ThingPassing) -> bool {
+        self.facts.length_m([0, self.stretch[0]]) - passed.along_m > PASSED_BEFORE_M
+    }
+
+    /// Whether a thing lies behind a walker who goes on from the first frame of the stretch.
+    fn is_behind_at_first(&self, thing: &RememberedThing) -> bool {
+        let from = self.stretch[0];
+        let leaving_rad = self.facts.evidence.moves.get(from).map_or(0.0, |step| step.turn_rad);
+        let towards = self.facts.direction_rad(thing, from).map(|rad| wrap_angle(rad - leaving_rad));
+        towards.is_some_and(|rad| rad.abs() >= BEHIND_DEG.to_radians())
+    }
+
+    /// Whether a thing stands in a room where the walk is not: on the stretch, at its end for a stop, or later for a thing ahead.
+    fn is_in_other_room(&self, thing: &RememberedThing) -> bool {
+        let [from, to] = self.stretch;
+        let last = self.facts.last_frame();
+        let frames = match self.role {
+            PlaceRole::Approached { is_reached: false } | PlaceRole::Reached => to..=last,
+            PlaceRole::Approached { is_reached: true } => from..=(to + 1).min(last),
+            PlaceRole::Stopped | PlaceRole::Within { at_stop: true } => last..=last,
+            PlaceRole::InSight => return false,
+            PlaceRole::Passed | PlaceRole::TurnedPast => from..=to,
+            PlaceRole::TurnedAt => from..=self.facts.bends_on(self.stretch).next().map_or(to, |bend| bend.first),
+            _ => from.saturating_sub(1)..=(to + 1).min(last),
+        };
+        thing.room.as_ref().is_some_and(|room| {
+            let knows = frames.clone().all(|frame| self.facts.knows_room(frame));
+            knows && !frames.clone().any(|frame| self.facts.is_in_room(frame, room))
+        })
+    }
+
     /// Whether the walker saw a thing ahead, on the stretch or not long before. Where directions are not known, being seen is enough.
     fn was_ahead(&self, thing: &RememberedThing) -> bool {
         let [from, to] = self.stretch;
-        let frames = from.saturating_sub(AHEAD_FRAMES)..=to + 1;
+        let frames = match self.role {
+            PlaceRole::Stopped | PlaceRole::Within { at_stop: true } => to.saturating_sub(AHEAD_FRAMES)..=to,
+            _ => from.saturating_sub(AHEAD_FRAMES)..=to + 1,
+        };
         let is_ahead = |glimpse: &ThingGlimpse| glimpse.turn_rad.is_none_or(|rad| rad.abs() <= AHEAD_DEG.to_radians());
         thing.glimpses.iter().any(|glimpse| frames.contains(&glimpse.frame) && is_ahead(glimpse))
     }
 
     /// Whether a thing is on a side of the walker at a frame; `None` where its direction is not known.
     fn is_on_side(&self, thing: &RememberedThing, frame: usize, side: Side) -> Option<bool> {
-        if let (PlaceRole::Passed, Some(passed)) = (self.role, thing.passed.filter(|_| thing.position.is_some()))
-            && passed.frame == frame
+        if let Some(passed) = thing.passed.filter(|passed| thing.position.is_some() && passed.frame == frame)
+            && matches!(self.role, PlaceRole::Passed | PlaceRole::TurnedPast)
         {
             return Some(passed.side == side);
         }
@@ -346,6 +434,7 @@ impl PlaceJudge<'_, '_> {
         let last = self.facts.last_frame();
         Fails(match self.role {
             PlaceRole::Passed => format!("the path does not pass {name:?} here"),
+            PlaceRole::TurnedPast => format!("the path turns before it passes {name:?}"),
             PlaceRole::Stopped | PlaceRole::Within { at_stop: true } => {
                 let far_m = things.iter().filter_map(|thing| self.facts.memory.distance_m(thing, last));
                 match far_m.min_by(f64::total_cmp) {
@@ -355,7 +444,7 @@ impl PlaceJudge<'_, '_> {
                     _ => format!("{name:?} is not seen from the end of the path"),
                 }
             }
-            PlaceRole::Approached | PlaceRole::Reached => format!("the path does not lead to {name:?} here"),
+            PlaceRole::Approached { .. } | PlaceRole::Reached => format!("the path does not lead to {name:?} here"),
             PlaceRole::TurnedAt => format!("the path does not turn at {name:?}"),
             PlaceRole::Entered | PlaceRole::Through => format!("the path does not go through {name:?} here"),
             PlaceRole::Left => format!("the path does not leave {name:?} here"),

@@ -6,7 +6,6 @@ use super::{
     outcome::ClaimOutcome::{self, Fails, Holds, Unjudged, Unknown},
 };
 use crate::{goal::is_wide, memory::RememberedThing, sides::wrap_angle};
-use wayword_core::DVec3;
 use wayword_language::{lexicon::is_fabric, reading::PlaceMention};
 
 /// Two things beside each other have centres at most this far apart, metres.
@@ -30,21 +29,26 @@ pub(super) fn judge_beside(
             .any(|frame| facts.memory.distance_m(thing, frame).is_none_or(|far_m| far_m <= 2.0 * NEAR_M))
     };
     let here: Vec<&RememberedThing> = all.iter().filter(is_near).copied().collect();
-    let places =
-        |things: &[&RememberedThing]| things.iter().map(|thing| thing.position).collect::<Option<Vec<DVec3>>>();
-    let (Some(here), Some(there)) = (places(&here), places(there)) else {
+    if here.iter().chain(there).any(|thing| thing.position.is_none()) {
         return Unknown(format!("the program cannot check whether {:?} is near {:?}", place.name, neighbour.name));
-    };
+    }
     let is_wide = [place, neighbour].iter().any(|place| is_wide(&place.name));
     let limit_m = if is_wide { 2.0 * BESIDE_M } else { BESIDE_M };
-    let is_pair = here.iter().any(|a| there.iter().any(|b| a != b && (*a - *b).truncate().length() <= limit_m));
+    let lies_beside = |a: &RememberedThing, b: &RememberedThing| {
+        let far_m = a.position.zip(b.position).map(|(a, b)| (a - b).truncate().length());
+        // A wall may stand between things that no frame shows both.
+        let are_seen_together = a.glimpses.iter().any(|glimpse| b.glimpse_from(glimpse.frame).is_some());
+        a.position != b.position && are_seen_together && far_m.is_some_and(|far_m| far_m <= limit_m)
+    };
+    let is_pair = here.iter().any(|a| there.iter().any(|b| lies_beside(a, b)));
     if is_pair { Holds(stretch[1]) } else { Fails(format!("{:?} is not near {:?} here", place.name, neighbour.name)) }
 }
 
 /// Decides a relation of two places of which one at least is not seen along the walk.
 fn judge_absent_pair(facts: &WalkFacts<'_>, claim: &StepClaim<'_>, pair: [&PlaceMention; 2]) -> ClaimOutcome {
     let is_absent = |(place, things): &(&PlaceMention, &Vec<&RememberedThing>)| {
-        place.is_thing && !place.is_room && !is_fabric(&place.name) && things.is_empty()
+        let is_room = place.is_room && !facts.stays_in(&place.name).is_empty();
+        place.is_thing && !is_room && !is_fabric(&place.name) && things.is_empty()
     };
     match pair.into_iter().zip(&claim.things).find(is_absent) {
         Some((place, _)) if facts.lists_things() => {

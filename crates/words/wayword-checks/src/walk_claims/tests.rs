@@ -1,7 +1,8 @@
 //! Texts about one walk through an invented flat: each kind of claim where it holds, at another stretch, and left out.
 
 use crate::{
-    CheckSubject, EndSurroundings, Evidence, EvidenceSource, FrameEvidence, SeenThing, WalkMemory, check_text,
+    CheckSubject, EndSurroundings, Evidence, EvidenceSource, FrameEvidence, SeenThing, WalkMemory, align_with_walk,
+    check_text,
 };
 use wayword_core::{
     CheckKind, DVec3, Heading, InstructionStyle, ObjectId, Path, PathMotion, SceneId, StyleConstraints, Verdict,
@@ -27,7 +28,7 @@ const STOPS: [[f64; 2]; 14] = [
 ];
 
 /// The things of the flat, with their positions over the floor.
-const THINGS: [(&str, [f64; 2]); 11] = [
+const THINGS: [(&str, [f64; 2]); 15] = [
     ("plant", [-1.0, 2.0]),
     ("bookshelf", [1.0, 3.0]),
     ("mirror", [-1.0, 4.0]),
@@ -39,7 +40,14 @@ const THINGS: [(&str, [f64; 2]); 11] = [
     ("armchair", [6.0, 8.5]),
     ("window", [5.0, 9.0]),
     ("wardrobe", [2.0, 9.0]),
+    ("door", [1.0, 2.0]),
+    ("stove", [6.5, 7.5]),
+    ("vase", [2.0, 4.3]),
+    ("vase", [5.8, 8.3]),
 ];
+
+/// The things of the flat that stand in a room into which the walk only looks.
+const KITCHEN_THINGS: [&str; 1] = ["stove"];
 
 /// How far a thing is seen, metres.
 const SIGHT_M: f64 = 5.0;
@@ -62,6 +70,7 @@ fn flat_walk() -> (Evidence, WalkMemory) {
                 object: Some(ObjectId::new(number.to_string()).unwrap()),
                 position: Some(position),
                 distance_m: Some((position - eye).length()),
+                room: KITCHEN_THINGS.contains(name).then(|| "kitchen".to_owned()),
                 turn_rad: Heading::towards(eye, position).map(|to| frame.pose.heading.turn_to(to)),
                 ..SeenThing::default()
             }
@@ -210,6 +219,68 @@ fn relations_counts_lengths_and_ends_of_rooms_are_decided_or_unverified() {
     );
     let extent = mistakes(&WHOLE.replace("Walk down the hallway", "Walk to the end of the hallway"));
     assert!(extent.iter().all(|found| found.1 == Verdict::Unverified) && !extent.is_empty(), "{extent:?}");
+}
+
+#[test]
+fn a_turn_told_as_slight_fails_where_the_walk_turns_fully() {
+    fails(&WHOLE.replace("Turn right and enter", "Turn slightly right and enter"), CheckKind::Turns, "right");
+}
+
+#[test]
+fn a_turn_past_a_thing_comes_after_the_thing() {
+    let turn = |place: &str| WHOLE.replace("Turn right and", &format!("Turn right past the {place} and"));
+    holds(&turn("mirror"));
+    let early = mistakes(&turn("bed"));
+    assert!(early.iter().any(|found| found.3 == "the path turns before it passes \"bed\""), "{early:?}");
+}
+
+#[test]
+fn a_thing_in_another_room_is_no_place_to_stop_or_to_turn_at() {
+    fails(&WHOLE.replace("stop by the armchair", "stop by the stove"), CheckKind::Landmarks, "stove");
+    fails(&WHOLE.replace("past the bed, turn", "past the bed, go to the stove, turn"), CheckKind::Landmarks, "stove");
+}
+
+#[test]
+fn a_turn_far_behind_the_last_thing_named_fails_where_a_door_comes_before_it() {
+    let bare =
+        "Turn right and enter the bedroom. Walk past the bed, turn left at the dresser and stop by the armchair.";
+    fails(bare, CheckKind::Turns, "Turn right");
+    holds(&bare.replace("Turn right and", "Walk straight. Turn right and"));
+}
+
+#[test]
+fn a_stop_that_names_nothing_fails_where_the_walk_goes_on() {
+    fails(&WHOLE.replace(" and stop by the armchair", ". Stop"), CheckKind::Landmarks, "Stop");
+    holds(&WHOLE.replace(" and stop by the armchair", ", walk past the rug and the lamp. Stop"));
+}
+
+#[test]
+fn a_stop_at_one_of_several_alike_fails_where_the_walk_comes_to_another_first() {
+    let stop = |place: &str| WHOLE.replace("stop by the armchair", &format!("stop by the {place}"));
+    let found = mistakes(&stop("vase"));
+    assert!(
+        matches!(&found[..], [only] if only.3 == "the walk comes to another \"vase\" before this one"),
+        "{found:?}"
+    );
+    holds(&stop("vase next to the armchair"));
+    holds(&stop("vase on the right"));
+}
+
+#[test]
+fn parts_follow_one_another_from_the_first_to_the_last_frame() {
+    let (evidence, memory) = flat_walk();
+    let parts = align_with_walk(WHOLE, (&evidence, &memory)).unwrap();
+    let frames: Vec<[usize; 2]> = parts.iter().map(|part| part.frames).collect();
+    assert_eq!((frames[0][0], frames[frames.len() - 1][1]), (0, STOPS.len() - 1));
+    assert!(frames.windows(2).all(|pair| pair[0][1] == pair[1][0]), "{frames:?}");
+    assert!(parts.iter().all(|part| part.confidence.is_some_and(|share| (0.0..=1.0 + 1e-9).contains(&share))));
+    let words: Vec<&str> = parts.iter().map(|part| &WHOLE[part.span[0]..part.span[1]]).collect();
+    let turns: Vec<[usize; 2]> =
+        words.iter().zip(&frames).filter(|(words, _)| words.contains("urn ")).map(|(_, frames)| *frames).collect();
+    // The walk turns at the frames 5 and 10.
+    assert!(turns[0][0] <= 5 && turns[0][1] > 5 && turns[1][0] <= 10 && turns[1][1] > 10, "{words:?} {frames:?}");
+    let unknown = Evidence { source: EvidenceSource::Captions, ..evidence };
+    assert_eq!(align_with_walk(WHOLE, (&unknown, &memory)), None);
 }
 
 #[test]

@@ -15,15 +15,16 @@ pub(super) fn untold_bends<'a>(
     let mut bends: Vec<&WalkBend> = facts.bends_on(stretch).collect();
     // A staircase turns as it is built.
     if names_stairs(claims) {
-        bends.retain(|bend| !facts.is_on_stairs(bend));
+        bends.retain(|bend| !facts.memory.is_on_stairs(bend));
     }
     for claim in claims {
         let side = match claim.what {
-            ClaimedFact::Turn(side) => Some(side),
+            ClaimedFact::Turn { side, .. } => Some(side),
             // "The door on your right" sends the walker to the right.
-            ClaimedFact::Place { place, role: PlaceRole::Entered | PlaceRole::Through | PlaceRole::Approached } => {
-                place.side
-            }
+            ClaimedFact::Place {
+                place,
+                role: PlaceRole::Entered | PlaceRole::Through | PlaceRole::Approached { .. },
+            } => place.side,
             _ => None,
         };
         let told = side.and_then(|side| widest_to(side, bends.iter().copied()));

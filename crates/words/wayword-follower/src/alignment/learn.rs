@@ -1,10 +1,11 @@
 //! Fits the weights of the alignment to known stretches, by gradient descent on the likelihood of people's cut among all cuts.
 
-use super::{AlignmentCase, AlignmentWeights, PartReading, chain::all_stretches, features::ValuedFeature, tables};
+use super::{AlignmentCase, AlignmentWeights, PartReading, features::ValuedFeature, tables};
 use crate::{
     fit::NEGLIGIBLE_SHARE,
     learn::{AdamDescent, FitPlan, hold_strengths},
 };
+use wayword_core::walk_cuts::all_stretches;
 
 /// The gradient of the loss over texts, and the loss.
 #[derive(Debug, Clone)]
@@ -24,14 +25,14 @@ impl Default for AlignmentSlope {
 impl AlignmentSlope {
     /// Adds a text with its known stretches, one for each part: consecutive, from the first to the last viewpoint of the walk.
     pub fn add_text(&mut self, case: &AlignmentCase<'_>, stretches: &[[usize; 2]], weights: &AlignmentWeights) {
-        let chain = case.cut_chain(weights);
+        let cuts = case.walk_cuts(weights);
         let mut found: Vec<ValuedFeature> = Vec::new();
         let mut known_score = 0.0;
         for (part, known) in stretches.iter().enumerate() {
             let known = known.map(|at| case.place_near(at));
             for stretch in all_stretches(case.places()) {
                 let is_known = stretch == known;
-                let share = chain.stretch_share(part, stretch);
+                let share = cuts.stretch_share(part, stretch);
                 if share < NEGLIGIBLE_SHARE && !is_known {
                     continue;
                 }
@@ -44,7 +45,7 @@ impl AlignmentSlope {
                 found.iter().for_each(|(feature, value)| self.values[*feature as usize] += by * value);
             }
         }
-        self.loss += chain.total() - known_score;
+        self.loss += cuts.total() - known_score;
         self.texts += 1;
     }
 

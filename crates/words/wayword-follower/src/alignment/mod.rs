@@ -5,7 +5,6 @@
 //! steps there. The share of a way is a softmax of these scores. The weights are fitted to stretches that people gave to the parts of
 //! R2R's texts (Fine-Grained R2R, Hong et al. 2020).
 
-mod chain;
 mod features;
 mod learn;
 mod parts;
@@ -18,21 +17,31 @@ pub use parts::{PartedText, TextPart};
 pub(crate) use places::walk_places;
 pub use weights::{AlignmentWeights, PartReading};
 
-use crate::{
-    building::KnownBuilding,
-    fit::{WalkFit, log_sum},
-    guide::GuideTrial,
-    tree::WalkTree,
-    weights::FeatureWeights,
-};
-use chain::{CutChain, all_stretches, stretch_index};
+use crate::{building::KnownBuilding, fit::WalkFit, guide::GuideTrial, tree::WalkTree, weights::FeatureWeights};
 use features::{AlignedWalk, PartedTrial, ValuedFeature};
+use wayword_core::{
+    InstructionPart,
+    walk_cuts::{WalkCuts, all_stretches, log_sum, stretch_index},
+};
 
 /// The alignment of a text with a walk.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WalkAlignment {
     /// The parts of the text, in order.
     pub parts: Vec<AlignedPart>,
+}
+
+impl WalkAlignment {
+    /// The parts as records have them. The places of the walk are the frames of the path.
+    #[must_use]
+    pub fn into_parts(self) -> Vec<InstructionPart> {
+        let part = |part: AlignedPart| InstructionPart {
+            span: part.span,
+            frames: part.stretch,
+            confidence: Some(part.confidence),
+        };
+        self.parts.into_iter().map(part).collect()
+    }
 }
 
 /// A part of a text with its stretch of the walk. Places of the walk are numbered from 0.
@@ -103,13 +112,13 @@ impl<'a> AlignmentCase<'a> {
     /// Aligns the text.
     #[must_use]
     pub fn align_parts(&self, weights: &AlignmentWeights) -> WalkAlignment {
-        let chain = self.cut_chain(weights);
-        let cut = chain.best_cut();
+        let cuts = self.walk_cuts(weights);
+        let cut = cuts.best_cut();
         let parts = self.trial.text.parts.iter().zip(cut).enumerate().map(|(number, (part, stretch))| AlignedPart {
             span: part.span,
             stretch: stretch.map(|place| self.walk_places[place]),
-            confidence: chain.stretch_share(number, stretch),
-            end_shares: self.shares_along_walk(&chain.end_shares(number)),
+            confidence: cuts.stretch_share(number, stretch),
+            end_shares: self.shares_along_walk(&cuts.end_shares(number)),
         });
         WalkAlignment { parts: parts.collect() }
     }
@@ -131,7 +140,7 @@ impl<'a> AlignmentCase<'a> {
         self.trial.walk.last_place() + 1
     }
 
-    fn cut_chain(&self, weights: &AlignmentWeights) -> CutChain {
+    fn walk_cuts(&self, weights: &AlignmentWeights) -> WalkCuts {
         let places = self.places();
         let mut found = Vec::new();
         let score_part = |part: usize| {
@@ -143,7 +152,7 @@ impl<'a> AlignmentCase<'a> {
             }
             scores
         };
-        CutChain::new((0..self.trial.text.parts.len()).map(score_part).collect(), places)
+        WalkCuts::new((0..self.trial.text.parts.len()).map(score_part).collect(), places)
     }
 
     fn part_features(&self, part: usize, stretch: [usize; 2], reading: PartReading, found: &mut Vec<ValuedFeature>) {

@@ -3,13 +3,14 @@
 
 use crate::{
     features::{FeatureNumber, MAX_STEP_HOPS, WalkStretch, stretch_features, tables},
-    fit::{WalkFit, log_sum},
+    fit::WalkFit,
     guide::GuideTrial,
     learn::{AdamDescent, FitPlan, hold_strengths},
     tree::WalkTree,
     weights::FeatureWeights,
 };
 use std::sync::LazyLock;
+use wayword_core::walk_cuts::log_sum;
 
 /// The weights of a walker.
 #[derive(Debug, Clone, PartialEq)]

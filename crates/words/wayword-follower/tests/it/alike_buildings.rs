@@ -69,6 +69,7 @@ impl World<'_> {
                     distance_m: None,
                     position: Some(position),
                     colour: None,
+                    room: None,
                 }
             });
             let things = Some(thing.into_iter().collect());

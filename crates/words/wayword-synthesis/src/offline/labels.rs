@@ -204,6 +204,7 @@ mod tests {
             distance_m: Some(deg.abs()),
             position: None,
             colour: colour.map(str::to_owned),
+            room: None,
         };
         let labels = vec![
             label("1", "sofa", 0.0, Some("green")),

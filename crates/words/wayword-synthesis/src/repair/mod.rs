@@ -85,6 +85,16 @@ pub enum WritingOutcome {
     },
 }
 
+impl WritingOutcome {
+    /// The accepted text, or the best one of those that failed.
+    pub fn instruction_mut(&mut self) -> Option<&mut Instruction> {
+        match self {
+            Self::Accepted(instruction) => Some(instruction),
+            Self::Rejected { last, .. } => last.as_mut(),
+        }
+    }
+}
+
 /// Writes an instruction and repairs it. If the first writer's texts all fail, the finisher writes.
 ///
 /// # Errors
@@ -204,6 +214,7 @@ fn check_text(text: String, provenance: TextProvenance, order: InstructionOrder<
         style: order.style.name.clone(),
         verdict: checked.verdict(),
         mentions: checked.mentions,
+        parts: checked.parts,
         findings: checked.findings,
         ambiguity,
         provenance,

@@ -8,7 +8,7 @@ use super::{
     phrases::draw_option,
     route::WayClause,
 };
-use crate::style::way::{ClauseJoint, is_until};
+use crate::style::way::{ClauseJoint, ClauseKind, is_until};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_language::text::capitalise_first;
@@ -31,12 +31,14 @@ pub(super) struct TextDraft<'a> {
 impl<'a> TextDraft<'a> {
     /// Puts the clauses into words and draws the joints. A task replaces the words of the last clause.
     pub(super) fn from_clauses(
-        told: Vec<WayClause>,
+        mut told: Vec<WayClause>,
         task: Option<&str>,
         full_stop: bool,
         brief: &'a WritingBrief<'_>,
         dice: TextDice,
     ) -> Self {
+        // "Walk straight. Go forward": once is enough.
+        told.dedup_by(|next, before| next.kind == ClauseKind::Straight && before.kind == ClauseKind::Straight);
         let mut names = ChosenNames::for_way(&brief.profile.way, dice);
         let mut phrases: Vec<ClausePhrase> =
             (0..told.len()).map(|at| names.clause_phrase(&told, at, brief, dice)).collect();

@@ -34,7 +34,7 @@ fn goes_out(clause: &WayClause, brief: &WritingBrief<'_>) -> bool {
 }
 
 /// Distance into a room up to which the walker is "just inside", metres.
-const JUST_INSIDE_M: f64 = 2.5;
+const JUST_INSIDE_M: f64 = 1.5;
 
 /// How far the walker has gone in the room of a frame when arriving there, metres.
 fn walked_in_m(at: usize, brief: &WritingBrief<'_>) -> f64 {

@@ -36,5 +36,6 @@ fn label_for_thing(camera: &PinholeCamera, seen: &VisibleObject, thing: &Semanti
         distance_m: Some(offset.length()),
         position: Some(centre),
         colour: None,
+        room: None,
     })
 }

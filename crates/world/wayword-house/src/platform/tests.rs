@@ -42,6 +42,22 @@ fn paths_keep_to_their_length_end_at_their_target_and_repeat() {
 }
 
 #[test]
+fn paths_end_on_the_floor_of_a_storey() {
+    let platform = small();
+    let storey_m = f64::from(crate::model::STOREY_CM) / 100.0;
+    for scene in ["house2-4", "house2-10"] {
+        let scene = SceneId::new(scene).unwrap();
+        let request = PathRequest { hops: 1..=9, length_m: 4.0..=16.0 };
+        for seed in 0..40 {
+            let path = platform.sample_path(&scene, &request, seed).unwrap();
+            let height_m = path.frames.last().unwrap().pose.position.z - crate::graph::EYE_M;
+            let storeys = height_m / storey_m;
+            assert!((storeys - storeys.round()).abs() < 0.05, "seed {seed} of {scene} ends at {height_m} m");
+        }
+    }
+}
+
+#[test]
 fn a_view_has_picture_labels_and_room() {
     let platform = small();
     let scene = HousePlatform::scene_of(1).unwrap();

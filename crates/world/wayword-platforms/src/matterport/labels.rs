@@ -35,6 +35,7 @@ pub(crate) fn from_boxes(listed: &[ListedObject], eye: DVec3, centres: &BTreeMap
                 distance_m: centre.map(|centre| eye.distance(centre)),
                 position: centre,
                 colour: None,
+                room: None,
             })
         })
         .collect();
@@ -58,6 +59,7 @@ pub(crate) fn from_house(house: &MatterportHouseFile, viewpoint: &ViewpointId, e
                 distance_m: Some(eye.distance(object.centre)),
                 position: Some(object.centre),
                 colour: None,
+                room: None,
             })
         })
         .collect();

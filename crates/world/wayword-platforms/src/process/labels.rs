@@ -98,6 +98,7 @@ impl ObservedObject {
             distance_m: reported_m.or_else(|| position.map(|centre| eye.distance(centre))),
             position,
             colour: self.colour.map(|colour| protocol::checked_name("`colour`", &colour)).transpose()?,
+            room: None,
         })
     }
 }

@@ -249,6 +249,7 @@ mod tests {
             distance_m,
             position: None,
             colour: None,
+            room: None,
         }
     }
 

@@ -60,6 +60,7 @@ fn at(heading_deg: f64, elevation_deg: f64) -> ObjectLabel {
         distance_m: None,
         position: None,
         colour: None,
+        room: None,
     }
 }
 

@@ -32,6 +32,7 @@ fn survey(spots: &[Spot<'_>], joined: &[(&str, &str)], has_positions: bool) -> V
             distance_m: None,
             position: has_positions.then_some(*position),
             colour: None,
+            room: None,
         };
         let things = Some(things.iter().map(label).collect());
         Ok::<_, GraphError>(ViewpointKnowledge { room: Some((*room).to_owned()), things })

@@ -8,15 +8,12 @@ use crate::{style::way::ClauseKind, writer::phrases::draw_option};
 use rand::Rng;
 use wayword_checks::memory::{RoomOpening, WalkBend};
 use wayword_core::{Side, motion};
-use wayword_language::lexicon::{ThingClass, find_thing, room_name};
+use wayword_language::lexicon::room_name;
 
 /// The start room counts as left soon if the path leaves it after at most this many hops.
 const MAX_SOON_HOPS: usize = 2;
 /// Share of texts that begin with leaving the start room, where the path leaves it soon.
 const LEAVE_AT_ONCE_SHARE: f64 = 0.6;
-
-/// Greatest distance from a door at which the walker counts as being in it, metres.
-const MAX_DOOR_DISTANCE_M: f64 = 0.5;
 
 impl WayPlanner<'_> {
     /// Begins the text with leaving the room of the start, as many texts do, without describing the first turn. Returns
@@ -140,13 +137,6 @@ impl WayPlanner<'_> {
         self.enter_room(to.as_deref().filter(|_| names_new_room));
     }
 
-    /// Whether the walker is in a door or doorway at a frame, so that a turn there happens behind the door.
-    fn stands_in_a_door(&self, at: usize) -> bool {
-        let is_door = |name: &str| find_thing(name).is_some_and(|thing| thing.class == ThingClass::Door);
-        let doors = self.memory.things.iter().filter(|seen| seen.position.is_some() && is_door(&seen.name));
-        doors.filter_map(|door| self.memory.distance_m(door, at)).any(|distance_m| distance_m <= MAX_DOOR_DISTANCE_M)
-    }
-
     /// Whether a hallway ends where the walk leaves it: the walk went along the hallway, and straight on into the room
     /// behind it.
     fn is_end_of_hall(&self, opening: &RoomOpening) -> bool {
@@ -174,9 +164,9 @@ impl WayPlanner<'_> {
         if is_implied || self.is_left_out(bend) {
             return self.change_room(opening);
         }
-        if self.stands_in_a_door(at) {
-            self.change_room(opening);
-            return self.push(WayClause::new(ClauseKind::Turn, at, MAIN_WEIGHT).with_side(side));
+        if bend.turn_rad.to_degrees().abs() < motion::TOLD_DEG {
+            self.push(WayClause::new(ClauseKind::TurnSlightly, at, MAIN_WEIGHT).with_side(side));
+            return self.change_room(opening);
         }
         let mut kinds: Vec<(f64, ClauseKind)> = Vec::new();
         if to.is_some() {

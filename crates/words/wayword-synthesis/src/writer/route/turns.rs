@@ -4,7 +4,7 @@ use super::{LONG_HOP_M, MAIN_WEIGHT, OfferRole, ThingOffer, WayClause, WayPlanne
 use crate::{style::way::ClauseKind, writer::phrases::draw_option};
 use rand::Rng;
 use wayword_checks::memory::WalkBend;
-use wayword_core::{ClimbDirection, Side, seeded_rng};
+use wayword_core::{ClimbDirection, Side, motion, seeded_rng};
 use wayword_language::lexicon::room_name;
 
 impl WayPlanner<'_> {
@@ -26,13 +26,15 @@ impl WayPlanner<'_> {
         if !offers {
             self.go_on_to(at);
         }
-        let slight = bend.is_slight() && self.rng.random_bool(0.5);
+        let is_small = bend.turn_rad.to_degrees().abs() < motion::TOLD_DEG;
+        let slight = is_small || (bend.is_slight() && self.rng.random_bool(0.5));
         let bare = if slight { ClauseKind::TurnSlightly } else { ClauseKind::Turn };
         let follows = self.follows_a_place(at);
         let room = self.memory.room_at(at).and_then(usable_room);
         let is_hall = room.as_deref().and_then(room_name) == Some("hallway");
         let mut kinds = vec![(if follows || offers { 4.0 } else { 0.3 }, bare)];
         match flight {
+            _ if is_small => {}
             Some(ClimbDirection::Up) => kinds.push((4.0, ClauseKind::TurnAtTop)),
             Some(ClimbDirection::Down) => kinds.push((4.0, ClauseKind::TurnAtBottom)),
             _ => {}
@@ -40,7 +42,7 @@ impl WayPlanner<'_> {
         if is_hall && !self.along && self.walked_in(at) >= 2 {
             kinds.push((3.0, ClauseKind::Along));
         }
-        if room.is_some() {
+        if room.is_some() && !is_small {
             kinds.push((0.4, ClauseKind::TurnIn));
         }
         let kind = draw_option(&kinds, &mut self.rng).unwrap_or(bare);
@@ -104,7 +106,7 @@ impl WayPlanner<'_> {
         let is_told = match (side, leaves_soon) {
             (Side::Behind, true) => self.rng.random_bool(0.15),
             (Side::Behind, false) => self.rng.random_bool(0.5),
-            (_, true) => self.rng.random_bool(0.15),
+            (_, true) => bend.turn_rad.to_degrees().abs() >= motion::TOLD_DEG && self.rng.random_bool(0.15),
             (_, false) => !bend.is_slight() && self.rng.random_bool(0.4),
         };
         if is_told {
@@ -115,7 +117,7 @@ impl WayPlanner<'_> {
     /// Whether a turn is left out: people do not mention small turns that the way requires anyway. All candidates of a
     /// text leave out the same ones, and the way back the same ones as the way there.
     pub(super) fn is_left_out(&self, bend: WalkBend) -> bool {
-        if bend.turn_rad.to_degrees().abs() >= SMALL_TURN_DEG {
+        if bend.turn_rad.to_degrees().abs() >= motion::TOLD_DEG {
             return false;
         }
         let brief = self.brief;
@@ -128,7 +130,5 @@ impl WayPlanner<'_> {
     }
 }
 
-/// Turns of a smaller angle may be left out, degrees.
-const SMALL_TURN_DEG: f64 = 40.0;
-/// Share of these small turns that is left out.
+/// Share of the turns below [`motion::TOLD_DEG`] that is left out.
 const LEFT_OUT_SHARE: f64 = 0.6;
