@@ -174,16 +174,11 @@ impl<'a> FollowedPath<'a> {
         Ok(Self { place, walk, heading_rad })
     }
 
-    /// Follows a text, and judges its route and its single steps. `tag` is the tag of its language, where its file
-    /// gives one.
-    pub(crate) fn follow_text(&self, text: &str, tag: Option<&str>) -> FollowerFindings {
-        let guide = match read_guide(text, tag) {
-            Ok(guide) => guide,
-            Err(why) => return FollowerFindings::not_followed(why),
-        };
-        let mut followed = self.judge_guide(&guide);
+    /// Follows the steps of a text, and judges its route and its single steps.
+    pub(crate) fn follow_guide(&self, guide: &Guide) -> FollowerFindings {
+        let mut followed = self.judge_guide(guide);
         if followed.turns == TurnJudge::JudgedElsewhere {
-            let judged = judge_steps(&guide, self.known_path(), FeatureWeights::fitted(), GainThresholds::default());
+            let judged = judge_steps(guide, self.known_path(), FeatureWeights::fitted(), GainThresholds::default());
             followed.findings.extend(judged.wrong);
             followed.turn_gain = judged.turn_gain;
         }
@@ -202,10 +197,20 @@ impl<'a> FollowedPath<'a> {
         known: (&Evidence, &WalkMemory),
     ) -> Result<Vec<InstructionPart>, &'static str> {
         let (_, reading) = read_followable(text, tag)?;
+        Ok(self.align_reading(text, &reading, known))
+    }
+
+    /// As [`Self::align_text`], for a text that was read before.
+    pub(crate) fn align_reading(
+        &self,
+        text: &str,
+        reading: &TextReading,
+        known: (&Evidence, &WalkMemory),
+    ) -> Vec<InstructionPart> {
         if let Some(parts) = align_with_walk(text, known) {
-            return Ok(parts);
+            return parts;
         }
-        let parted = PartedText::from_reading(text, &reading);
+        let parted = PartedText::from_reading(text, reading);
         let (alone, frame_numbers): (KnownBuilding, Vec<usize>);
         let path = match &self.place {
             FollowedPlace::JoinedGraph { frames, .. } => {
@@ -216,7 +221,7 @@ impl<'a> FollowedPath<'a> {
             FollowedPlace::Graph(_) | FollowedPlace::PathAlone(_) => self.known_path(),
         };
         let case = AlignmentCase::new(&parted, path.building, path.walk, path.heading_rad, FeatureWeights::fitted());
-        Ok(case.align_parts(AlignmentWeights::fitted(PartReading::Words)).into_parts())
+        case.align_parts(AlignmentWeights::fitted(PartReading::Words)).into_parts()
     }
 
     /// Whether another way than that of the path is open at a frame. Where no graph says so, one may be.
@@ -238,12 +243,12 @@ impl<'a> FollowedPath<'a> {
 
     /// Only judges where a text leads, without its single turns.
     pub(crate) fn judge_route(&self, text: &str) -> FollowerFindings {
-        read_guide(text, None).map_or_else(FollowerFindings::not_followed, |guide| self.judge_guide(&guide))
+        read_guide(text).map_or_else(FollowerFindings::not_followed, |guide| self.judge_guide(&guide))
     }
 
     /// How likely a text leads to the end of the path, for the choice between texts; `None` where it cannot be followed.
     pub(crate) fn leads_there(&self, text: &str) -> Option<f64> {
-        let guide = read_guide(text, None).ok()?;
+        let guide = read_guide(text).ok()?;
         goal_probability(&guide, self.known_path(), self.walk_prior(), &CHOICE_WEIGHTS).ok()
     }
 
@@ -320,11 +325,11 @@ fn walks_straight(platform: &dyn Platform, scene: &SceneId, from: DVec3, to: DVe
 }
 
 /// The steps that a text gives to a walker; an error, with the reason, for a text that cannot be followed.
-pub(crate) fn read_guide(text: &str, tag: Option<&str>) -> Result<Guide, &'static str> {
-    read_followable(text, tag).map(|(guide, _)| guide)
+pub(crate) fn read_guide(text: &str) -> Result<Guide, &'static str> {
+    read_followable(text, None).map(|(guide, _)| guide)
 }
 
-/// As [`read_guide`], with the reading of the text as well.
+/// As [`read_guide`], with the reading of the text as well. `tag` is the tag of its language, where its file gives one.
 pub(crate) fn read_followable(text: &str, tag: Option<&str>) -> Result<(Guide, TextReading), &'static str> {
     let reading = read_instruction(text, &BTreeSet::new());
     if !is_understood(&reading, tag) {

@@ -37,7 +37,7 @@ impl KnownScenes {
             let hint = "give the steps of a walk in English, as in \"Go past the bed and turn left\"";
             CommandError::usage(format!("the text cannot be followed: {why}"), hint)
         };
-        let guide = read_guide(text, None).map_err(unfollowed)?;
+        let guide = read_guide(text).map_err(unfollowed)?;
         let tree = WalkTree::from_prior(&known.building, place, heading.rad(), WalkPrior::default());
         if guide.len().saturating_mul(tree.len()) > MAX_FOLLOW_WORK {
             return Err(unfollowed("it has too many steps"));

@@ -2,12 +2,12 @@
 //!
 //! The parts of the text are aligned with the walk. A decision is told where the part of its stretch names it.
 
-use crate::{Evidence, WalkMemory, known_names, memory::WalkBend};
+use crate::{WalkMemory, memory::WalkBend};
 use serde::Serialize;
 use wayword_core::{ClimbDirection, InstructionPart, Side, motion};
 use wayword_language::{
     lexicon::same_room,
-    reading::{EventContent, PlaceLink, TextReading, read_instruction},
+    reading::{EventContent, PlaceLink, TextReading},
 };
 
 /// A decision of a walk.
@@ -95,12 +95,11 @@ impl WalkDecision {
 /// `is_open` says of a turn whether another way is open there.
 #[must_use]
 pub fn cover_walk(
-    text: &str,
+    reading: &TextReading,
     parts: &[InstructionPart],
-    (evidence, memory): (&Evidence, &WalkMemory),
+    memory: &WalkMemory,
     is_open: impl Fn(&WalkBend) -> bool,
 ) -> Vec<CoveredDecision> {
-    let reading = &read_instruction(text, &known_names(evidence));
     let mut used = vec![false; reading.events.len()];
     let cover = |(decision, frames): (WalkDecision, [usize; 2])| {
         let (told, event) = find_words(reading, parts, &decision, frames, &used);
@@ -187,8 +186,8 @@ fn names_decision(event: &EventContent, decision: &WalkDecision) -> bool {
 mod tests {
     use super::*;
     use crate::memory::{RoomStay, StairFlight};
-    use std::f64::consts::FRAC_PI_2;
-    use wayword_core::Path;
+    use std::{collections::BTreeSet, f64::consts::FRAC_PI_2};
+    use wayword_language::reading::read_instruction;
 
     const TEXT: &str = "Walk down the hallway. Turn left into the kitchen. Go up the stairs and stop.";
 
@@ -205,13 +204,6 @@ mod tests {
     }
 
     fn cover(frames: [[usize; 2]; 3], is_open: impl Fn(&WalkBend) -> bool) -> Vec<(WalkDecision, DecisionTold)> {
-        let evidence = Evidence::for_path_alone(&Path {
-            id: "p".into(),
-            scene: wayword_core::SceneId::new("s").unwrap(),
-            frames: Vec::new(),
-            motion: wayword_core::PathMotion::Known,
-            target: None,
-        });
         let ends = [TEXT.find(" Turn").unwrap(), TEXT.find(" Go").unwrap(), TEXT.len()];
         let parts: Vec<InstructionPart> = frames
             .iter()
@@ -222,7 +214,8 @@ mod tests {
                 confidence: None,
             })
             .collect();
-        let covered = cover_walk(TEXT, &parts, (&evidence, &memory()), is_open);
+        let reading = read_instruction(TEXT, &BTreeSet::new());
+        let covered = cover_walk(&reading, &parts, &memory(), is_open);
         covered.into_iter().map(|covered| (covered.decision, covered.told)).collect()
     }
 

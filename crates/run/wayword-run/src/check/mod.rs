@@ -14,7 +14,7 @@ use crate::{
     check::args::{AskedWorld, CheckArgs as Args},
     doubts::find_doubts,
     error::{CommandError, Exit},
-    follow::{FollowedPath, FollowerFindings, KnownScenes, ambiguity_rejection},
+    follow::{FollowedPath, FollowerFindings, KnownScenes, ambiguity_rejection, read_followable},
     interrupt,
     lookout::DetectorLookout,
     output::CommandOutput,
@@ -252,8 +252,12 @@ impl<'a> TextChecker<'a> {
         let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
         let checked = walk.texts.iter().zip(&testimonies).map(|(text, own_testimony)| {
             let check_style = self.styles.style_or_any(text);
-            let follower = followed.as_ref().map(|followed| match followed {
-                Ok(followed) => followed.follow_text(&text.words, text.tag.as_deref()),
+            let read = followed.as_ref().map(|followed| {
+                let followed = followed.as_ref().map_err(|why| *why);
+                followed.and_then(|followed| Ok((followed, read_followable(&text.words, text.tag.as_deref())?)))
+            });
+            let follower = read.as_ref().map(|read| match read {
+                Ok((followed, (guide, _))) => followed.follow_guide(guide),
                 Err(why) => FollowerFindings::not_followed(why),
             });
             // People name a target as they like, so any object of the final viewpoint is accepted.
@@ -281,16 +285,13 @@ impl<'a> TextChecker<'a> {
             let ambiguity = follower.as_ref().map(|follower| follower.text_ambiguity(&text.words, &evidence));
             checked.add_findings(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(ambiguity_rejection));
             let mut shown = CheckedText::from_text(text, &checked);
-            if let Some(Ok(followed)) = &followed {
+            // A text that is not understood leaves nothing out.
+            if let Some(Ok((followed, (_, reading)))) = &read {
                 if shown.parts.is_empty() {
-                    shown.parts =
-                        followed.align_text(&text.words, text.tag.as_deref(), (&evidence, &memory)).unwrap_or_default();
+                    shown.parts = followed.align_reading(&text.words, reading, (&evidence, &memory));
                 }
-                // A text that is not understood leaves nothing out.
-                if !shown.parts.is_empty() {
-                    let is_open = |bend: &WalkBend| (bend.first..=bend.last).any(|frame| followed.has_other_way(frame));
-                    shown.coverage_of_walk = cover_walk(&text.words, &shown.parts, (&evidence, &memory), is_open);
-                }
+                let is_open = |bend: &WalkBend| (bend.first..=bend.last).any(|frame| followed.has_other_way(frame));
+                shown.coverage_of_walk = cover_walk(reading, &shown.parts, &memory, is_open);
             }
             if how.doubts {
                 let words = (text.words.as_str(), text.tag.as_deref());

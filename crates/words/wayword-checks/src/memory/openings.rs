@@ -78,7 +78,7 @@ pub(crate) fn frames_at_doors(evidence: &Evidence) -> Vec<usize> {
     through.flat_map(|opening| [opening.before, opening.behind]).collect()
 }
 
-/// Whether a name means an opening between rooms, of whatever kind.
+/// Whether the lexicon has a name among those of doors and doorways.
 pub(crate) fn is_any_door(name: &str) -> bool {
     find_thing(name).is_some_and(|thing| thing.class == ThingClass::Door)
 }

@@ -32,11 +32,10 @@ const MAX_BARE_STOP_M: f64 = 1.5;
 const SIDE_DOOR_M: f64 = 2.0;
 
 /// A step with its claims, what was found about them, and its stretch of the walk.
-#[derive(Clone, Copy)]
 pub(super) struct JudgedStep<'s, 'a> {
     pub(super) step: &'s InstructionStep,
     pub(super) claims: &'s [StepClaim<'a>],
-    pub(super) outcomes: &'s [ClaimOutcome],
+    pub(super) outcomes: Vec<ClaimOutcome>,
     pub(super) stretch: [usize; 2],
     /// Whether it stops, or is the condition of a stop.
     pub(super) stops: bool,
@@ -44,8 +43,8 @@ pub(super) struct JudgedStep<'s, 'a> {
 
 impl<'s, 'a> JudgedStep<'s, 'a> {
     /// The claims that hold, each with its frame.
-    fn holding(self) -> impl Iterator<Item = (&'s StepClaim<'a>, usize)> {
-        self.claims.iter().zip(self.outcomes).filter_map(|(claim, outcome)| match outcome {
+    fn holding(&self) -> impl Iterator<Item = (&'s StepClaim<'a>, usize)> {
+        self.claims.iter().zip(&self.outcomes).filter_map(|(claim, outcome)| match outcome {
             ClaimOutcome::Holds(frame) => Some((claim, *frame)),
             _ => None,
         })
@@ -81,7 +80,7 @@ pub(super) fn find_gaps(facts: &WalkFacts<'_>, steps: &[JudgedStep<'_, '_>]) -> 
             found.push(new_finding(CheckKind::Turns, Verdict::Fail, reason, Some(judged.step.span)));
         }
         found.extend(way_left_out(facts, judged, told).filter(|_| !is_led_there));
-        told = told.max(last_told(facts, *judged));
+        told = told.max(last_told(facts, judged));
         if judged.goes_on() {
             told = told.max(judged.stretch[1]);
         }
@@ -93,7 +92,7 @@ pub(super) fn find_gaps(facts: &WalkFacts<'_>, steps: &[JudgedStep<'_, '_>]) -> 
 }
 
 /// The last frame of which a step has words.
-fn last_told(facts: &WalkFacts<'_>, judged: JudgedStep<'_, '_>) -> usize {
+fn last_told(facts: &WalkFacts<'_>, judged: &JudgedStep<'_, '_>) -> usize {
     let frame = |(claim, frame): (&StepClaim<'_>, usize)| match claim.what {
         ClaimedFact::Turn { side, .. } => facts.told_bend(side, judged.stretch).map_or(frame, |bend| bend.last + 1),
         ClaimedFact::Place { role: PlaceRole::Through, .. } => {
@@ -197,7 +196,10 @@ fn unclear_stop(facts: &WalkFacts<'_>, steps: &[JudgedStep<'_, '_>]) -> Option<C
     let is_alone = |place: &PlaceMention| {
         place.count.is_none() && !place.several && place.ordinal.is_none() && place.side.is_none()
     };
-    let is_stop = |claim: &StepClaim<'_>| matches!(claim.what, ClaimedFact::Place { place, role: PlaceRole::Stopped } if is_alone(place));
+    let is_stop = |claim: &StepClaim<'_>| match claim.what {
+        ClaimedFact::Place { place, role } => role == PlaceRole::Stopped && is_alone(place),
+        _ => false,
+    };
     if stop.claims.iter().any(is_relation) {
         return None;
     }
@@ -226,7 +228,7 @@ fn vague_stop(facts: &WalkFacts<'_>, steps: &[JudgedStep<'_, '_>]) -> Option<Che
         return None;
     }
     let limit_m = if stop.claims.is_empty() { MAX_BARE_STOP_M } else { MAX_GAP_M };
-    let told = before.iter().map(|judged| last_told(facts, *judged)).max().unwrap_or(0);
+    let told = before.iter().map(|judged| last_told(facts, judged)).max().unwrap_or(0);
     let gap_m = facts.length_m([told, facts.last_frame()]);
     (gap_m > limit_m).then(|| {
         let reason = format!("the walk goes on for {gap_m:.1} m, and the text does not say how far");

@@ -134,21 +134,14 @@ pub(super) fn check_walk_claims(
     let facts = &divided.facts;
     let frames = vec![None; reading.events.len()];
     let mut found = WalkFindings { findings: Vec::new(), frames, parts: divided.parts(steps) };
-    let judge = |(claims, stretch): (&Vec<StepClaim<'_>>, &[usize; 2])| -> Vec<ClaimOutcome> {
-        claims.iter().map(|claim| judge_claim(facts, claim, *stretch)).collect()
+    let judge = |at: usize| {
+        let (claims, stretch) = (&divided.claims[at], divided.stretches[at]);
+        let outcomes = claims.iter().map(|claim| judge_claim(facts, claim, stretch)).collect();
+        JudgedStep { step: &steps[at], claims, outcomes, stretch, stops: divided.stops[at] }
     };
-    let outcomes: Vec<Vec<ClaimOutcome>> = divided.claims.iter().zip(&divided.stretches).map(judge).collect();
-    let judged: Vec<JudgedStep<'_, '_>> = (0..steps.len())
-        .map(|at| JudgedStep {
-            step: &steps[at],
-            claims: &divided.claims[at],
-            outcomes: &outcomes[at],
-            stretch: divided.stretches[at],
-            stops: divided.stops[at],
-        })
-        .collect();
+    let judged: Vec<JudgedStep<'_, '_>> = (0..steps.len()).map(judge).collect();
     for JudgedStep { step, claims, outcomes, stretch, .. } in &judged {
-        for (claim, outcome) in claims.iter().zip(*outcomes) {
+        for (claim, outcome) in claims.iter().zip(outcomes) {
             if let (ClaimOutcome::Holds(frame), Some(event)) = (outcome, claim.event) {
                 found.frames[event] = Some(*frame);
             }
