@@ -114,7 +114,7 @@ class AlignedPart:
     frames: tuple[int, int]
     """The frames where it begins and ends, numbered from 0. The next part begins where it ends."""
     confidence: float | None
-    """The probability of exactly these frames, from 0 to 1; None where nothing is known of the motion along the path."""
+    """The probability of exactly these frames, from 0 to 1; None where the motion along the path is unknown."""
 
 
 @dataclass(frozen=True)
@@ -390,9 +390,7 @@ def instruction(
 def parts_of(parts: Sequence[Mapping[str, Any]]) -> tuple[AlignedPart, ...]:
     """Parts of a text from their JSON."""
     return tuple(
-        AlignedPart(
-            (part["span"][0], part["span"][1]), (part["frames"][0], part["frames"][1]), part.get("confidence")
-        )
+        AlignedPart((part["span"][0], part["span"][1]), (part["frames"][0], part["frames"][1]), part.get("confidence"))
         for part in parts
     )
 
