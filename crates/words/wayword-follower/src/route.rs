@@ -50,7 +50,7 @@ pub struct GainThresholds {
 
 impl Default for GainThresholds {
     fn default() -> Self {
-        Self { turn: 2.4, no_turn: 4.1, climb: 0.2, swap: 3.0, route: 8.0 }
+        Self { turn: 2.4, no_turn: 4.1, climb: 0.2, swap: 3.0, route: 6.0 }
     }
 }
 

@@ -30,6 +30,8 @@ pub struct PathSurroundings {
     rooms: Vec<(String, ListedDistance)>,
     /// The rooms within reach of the path.
     near_rooms: BTreeSet<String>,
+    /// The rooms within reach of its end.
+    end_rooms: BTreeSet<String>,
     /// Whether a viewpoint near the path has no room.
     has_gap: bool,
     /// How many objects are listed near the path.
@@ -107,15 +109,19 @@ impl PathSurroundings {
                 None => has_gap |= to.path_m <= NEAR_M,
             }
         }
-        let near = rooms.iter().filter(|(_, distance)| distance.path_m <= NEAR_M);
-        let near_rooms = near.map(|(name, _)| room_name(name).unwrap_or(name).to_owned()).collect();
+        let rooms_within = |distance_m: fn(&ListedDistance) -> f64| {
+            let near = rooms.iter().filter(|(_, distance)| distance_m(distance) <= NEAR_M);
+            near.map(|(name, _)| room_name(name).unwrap_or(name).to_owned()).collect::<BTreeSet<String>>()
+        };
+        let near_rooms = rooms_within(|distance| distance.path_m);
+        let end_rooms = rooms_within(|distance| distance.end_m);
         let rooms = rooms.into_iter().map(|(room, distance)| (room.to_owned(), distance)).collect();
         let spots =
             || building.names.iter().flat_map(|name| &name.spots).map(|spot| path_distance(&eyes, spot.position));
         let near_objects = spots().filter(|distance| distance.path_m <= NEAR_M).count();
         let end_objects = spots().filter(|distance| distance.end_m <= NEAR_M).count();
         let building = Arc::clone(building);
-        Some(Self { building, eyes, floors_m, distances, rooms, near_rooms, has_gap, near_objects, end_objects })
+        Some(Self { building, eyes, floors_m, distances, rooms, near_rooms, end_rooms, has_gap, near_objects, end_objects })
     }
 
     /// How far the nearest thing is that a name may mean.
@@ -189,6 +195,12 @@ impl PathSurroundings {
     #[must_use]
     pub fn near_rooms(&self) -> &BTreeSet<String> {
         &self.near_rooms
+    }
+
+    /// The rooms within reach of the end of the path, by their usual names.
+    #[must_use]
+    pub fn end_rooms(&self) -> &BTreeSet<String> {
+        &self.end_rooms
     }
 
     /// Whether a viewpoint within reach of the path lies in no known room.

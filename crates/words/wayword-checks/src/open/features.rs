@@ -172,6 +172,12 @@ fn missed_object(
         features.push((format!("{home} {class}"), 1.0));
         features.push((format!("{home} {reach}"), 1.0));
         features.push((format!("{home} {class} {reach}"), 1.0));
+        if at_stop {
+            let ends = homes.iter().any(|home| around.end_rooms().contains(home));
+            let home = if ends { "ends in its room" } else { "ends in no room of it" };
+            features.push((format!("{home} {class}"), 1.0));
+            features.push((format!("{home} {reach}"), 1.0));
+        }
     }
     if let Some(thing) = find_thing(&claim.name) {
         features.push((format!("salience {} {reach}", thing.salience), 1.0));
@@ -204,6 +210,9 @@ fn missed_room(
     .into();
     if at_stop {
         features.push((format!("path {}", self::distance_bin(distance.path_m)), 1.0));
+        for room in around.end_rooms() {
+            features.push((format!("{group} ends in {}", weights.room_group(room)), 1.0));
+        }
     }
     features.push(("rooms nearby".into(), around.near_rooms().len() as f64));
     let case = match (nearest_m.is_finite(), at_stop) {
