@@ -4,7 +4,7 @@
 use super::{findings_or_pass, new_finding, sides};
 use crate::{
     evidence::{Evidence, EvidenceSource},
-    memory::frames_at_doors,
+    memory::{frames_at_doors, is_door},
 };
 use std::collections::BTreeMap;
 use wayword_core::{CheckFinding, CheckKind, Verdict};
@@ -145,11 +145,6 @@ struct SightingIndex<'a> {
     frames_of_things: BTreeMap<&'a str, Vec<usize>>,
     /// The frames on both sides of a door or doorway through which the walk leads.
     doors: Vec<usize>,
-}
-
-/// Whether a name means an opening between rooms. A change of rooms shows it, even if labels do not list it.
-pub(crate) fn is_door(name: &str) -> bool {
-    matches!(name, "door" | "doorway" | "opening" | "entrance" | "exit" | "threshold")
 }
 
 impl<'a> SightingIndex<'a> {

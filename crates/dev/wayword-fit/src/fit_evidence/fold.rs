@@ -35,7 +35,7 @@ pub(crate) const CASE_GROUPS: [ClaimCaseGroup; 2] = [
     ClaimCaseGroup {
         name: "rooms",
         cases: &[ClaimCase::Room, ClaimCase::RoomAtStop, ClaimCase::RoomLacking],
-        budget: 0.011,
+        budget: 0.015,
     },
 ];
 

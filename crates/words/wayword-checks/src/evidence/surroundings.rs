@@ -121,7 +121,18 @@ impl PathSurroundings {
         let near_objects = spots().filter(|distance| distance.path_m <= NEAR_M).count();
         let end_objects = spots().filter(|distance| distance.end_m <= NEAR_M).count();
         let building = Arc::clone(building);
-        Some(Self { building, eyes, floors_m, distances, rooms, near_rooms, end_rooms, has_gap, near_objects, end_objects })
+        Some(Self {
+            building,
+            eyes,
+            floors_m,
+            distances,
+            rooms,
+            near_rooms,
+            end_rooms,
+            has_gap,
+            near_objects,
+            end_objects,
+        })
     }
 
     /// How far the nearest thing is that a name may mean.

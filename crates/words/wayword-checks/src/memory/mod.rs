@@ -7,14 +7,32 @@ mod stays_and_bends;
 mod tests;
 mod things;
 
-pub(crate) use openings::{IN_DOOR_M, frames_at_doors, is_any_door};
+pub(crate) use openings::{IN_DOOR_M, frames_at_doors, is_any_door, is_door};
 pub use openings::{RoomOpening, leads_through_a_door};
 pub use stays_and_bends::{RoomStay, StairFlight, WalkBend};
-pub use things::{RememberedThing, ThingGlimpse, ThingPassing};
+pub use things::{AHEAD_FRAMES, RememberedThing, ThingGlimpse, ThingPassing};
 
-use crate::Evidence;
+use crate::{Evidence, EvidenceSource};
+use openings::OPENING_DOOR_M;
+use std::ops::RangeInclusive;
 use wayword_core::{DVec3, Heading, Path, Side};
-use wayword_language::lexicon::names_agree;
+use wayword_language::lexicon::{names_agree, same_room};
+
+/// What a walker passed so long before the end of a walk is no thing to stop at, metres; what lies behind the walker there has to be so
+/// near.
+pub(crate) const BEHIND_STOP_M: f64 = 1.0;
+/// A walker who comes so near to a thing takes it for the one to stop at, metres.
+const FIRST_STOP_M: f64 = 2.0;
+/// A walker may go on so far without a word, metres. R2R counts a walker who stops within this of the goal as arrived.
+pub const MAX_TOLD_GAP_M: f64 = 3.0;
+/// A door at the side of the walk lies at most so far from it, metres.
+const SIDE_DOOR_M: f64 = 2.0;
+/// A door "on the left" that is farther than this behind the last thing that was named is not taken for the next one, metres.
+pub const MAX_SIDE_DOOR_GAP_M: f64 = 1.0;
+/// A text has words for a way that is longer than this, metres.
+pub const MAX_SILENT_WAY_M: f64 = 5.0;
+/// A stop without any place lies at most so far behind the last thing that was named, metres.
+pub const MAX_BARE_STOP_GAP_M: f64 = 1.5;
 
 /// The memory of a walk.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -35,6 +53,8 @@ pub struct WalkMemory {
     headings: Vec<Heading>,
     /// Whether the walk goes from viewpoint to viewpoint of a graph.
     is_on_graph: bool,
+    /// Whether labels show the doors, with their positions. Then a change of rooms without one leads through none.
+    knows_doors: bool,
 }
 
 impl WalkMemory {
@@ -53,7 +73,10 @@ impl WalkMemory {
         let doors = openings::doors_of_hops(&things, &eyes);
         stays_and_bends::turn_before_rooms(&mut stays, &bends, |hop| doors.contains(&hop));
         let openings = openings::find_openings(&stays, evidence);
-        Self {
+        let is_on_graph = path.frames.iter().all(|frame| frame.viewpoint.is_some());
+        let shows_door = |thing: &RememberedThing| thing.position.is_some() && is_any_door(&thing.name);
+        let knows_doors = evidence.source == EvidenceSource::Labels && !is_on_graph && things.iter().any(shows_door);
+        let mut memory = Self {
             things,
             bends,
             flights: stays_and_bends::find_flights(evidence),
@@ -61,8 +84,32 @@ impl WalkMemory {
             openings,
             eyes,
             headings,
-            is_on_graph: path.frames.iter().all(|frame| frame.viewpoint.is_some()),
+            is_on_graph,
+            knows_doors,
+        };
+        if knows_doors {
+            let has_door: Vec<bool> =
+                memory.openings.iter().map(|opening| memory.doors_at(opening).next().is_some()).collect();
+            memory.openings.iter_mut().zip(has_door).for_each(|(opening, has_door)| opening.has_door = has_door);
         }
+        memory
+    }
+
+    /// Whether the walk passes a door close by on a side, strictly between two frames.
+    #[must_use]
+    pub fn passes_door(&self, side: Side, after: usize, before: usize) -> bool {
+        let on_side = |door: &&RememberedThing| {
+            let passed =
+                door.passed.filter(|passed| passed.side == side && passed.frame > after && passed.frame < before);
+            passed.is_some_and(|by| self.distance_m(door, by.frame).is_some_and(|far_m| far_m <= SIDE_DOOR_M))
+        };
+        self.things.iter().filter(|thing| is_door(&thing.name)).any(|door| on_side(&door))
+    }
+
+    /// Whether labels show the doors, with their positions.
+    #[must_use]
+    pub fn knows_doors(&self) -> bool {
+        self.knows_doors
     }
 
     /// Whether the walk goes from viewpoint to viewpoint of a graph, which are farther apart than the frames of another walk.
@@ -110,6 +157,48 @@ impl WalkMemory {
     #[must_use]
     pub fn nearest_hops(&self, thing: &RememberedThing) -> Option<(Vec<usize>, f64)> {
         things::nearest_hops(&self.eyes, thing.position?)
+    }
+
+    /// The doors and doorways of a change of rooms whose positions are known.
+    pub fn doors_at(&self, opening: &RoomOpening) -> impl Iterator<Item = &RememberedThing> {
+        let frames = [opening.before, opening.behind];
+        let is_near = move |door: &&RememberedThing| {
+            let within = |frame: usize| self.distance_m(door, frame).is_some_and(|far_m| far_m <= OPENING_DOOR_M);
+            door.position.is_some() && frames.into_iter().any(within)
+        };
+        self.things.iter().filter(|thing| is_door(&thing.name) || is_any_door(&thing.name)).filter(is_near)
+    }
+
+    /// Whether the walk passed a thing long before its end, so that it is no thing to stop at.
+    #[must_use]
+    pub fn is_left_behind(&self, thing: &RememberedThing) -> bool {
+        let last = self.frame_count().saturating_sub(1);
+        thing.passed.is_some_and(|passed| self.walked_m(passed.frame, last) > BEHIND_STOP_M)
+    }
+
+    /// Whether the walk comes to a thing in its last room more than `gap_m` metres before its end, so that a walker may take that for the
+    /// one to stop at.
+    #[must_use]
+    pub fn is_met_before_end(&self, thing: &RememberedThing, gap_m: f64) -> bool {
+        let last = self.frame_count().saturating_sub(1);
+        let Some(stay) = self.stay_at(last) else { return false };
+        let is_near = |frame: usize| self.distance_m(thing, frame).is_some_and(|far_m| far_m <= FIRST_STOP_M);
+        self.shares_room(thing, last..=last)
+            && (stay.entered..=last).any(|frame| self.walked_m(frame, last) > gap_m && is_near(frame))
+    }
+
+    /// The way between two frames along the walk, metres; 0 where the motion is unknown.
+    #[must_use]
+    pub fn walked_m(&self, from: usize, to: usize) -> f64 {
+        let eyes = self.eyes.get(from..=to).unwrap_or_default();
+        eyes.windows(2).map(|hop| hop[0].distance(hop[1])).sum()
+    }
+
+    /// Whether a thing may stand in a room where one of these frames lies; true where a room is not known.
+    #[must_use]
+    pub fn shares_room(&self, thing: &RememberedThing, mut frames: RangeInclusive<usize>) -> bool {
+        let Some(room) = &thing.room else { return true };
+        frames.any(|frame| self.room_at(frame).is_none_or(|here| same_room(here, room)))
     }
 
     /// The side of a walker at a frame on which a thing lies, looking along the frame's heading.

@@ -78,7 +78,12 @@ pub(crate) fn frames_at_doors(evidence: &Evidence) -> Vec<usize> {
     through.flat_map(|opening| [opening.before, opening.behind]).collect()
 }
 
-/// Whether the lexicon has a name among those of doors and doorways.
+/// Whether a name means an opening between rooms. A change of rooms shows it, even if labels do not list it.
+pub(crate) fn is_door(name: &str) -> bool {
+    matches!(name, "door" | "doorway" | "opening" | "entrance" | "exit" | "threshold")
+}
+
+/// Whether the lexicon has a name among those of doors.
 pub(crate) fn is_any_door(name: &str) -> bool {
     find_thing(name).is_some_and(|thing| thing.class == ThingClass::Door)
 }
@@ -102,6 +107,9 @@ fn shows_door(evidence: &Evidence, frame: usize) -> bool {
 
 /// A hop that comes so near to the middle of a door leads through it, metres.
 pub(crate) const IN_DOOR_M: f64 = 0.5;
+
+/// A door whose position is known lies at most so far from one of the two frames between which it is, metres.
+pub(super) const OPENING_DOOR_M: f64 = 1.4;
 
 /// A door up to this far from one of the two frames is taken to be the one between them, metres.
 const DOOR_M: f64 = 2.5;

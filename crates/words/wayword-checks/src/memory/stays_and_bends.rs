@@ -40,6 +40,20 @@ pub struct StairFlight {
     pub to_level: Option<u32>,
 }
 
+/// A hop with at least this share of the slope of its flight lies on the stairs as a whole.
+const STEEP_SHARE: f64 = 0.9;
+
+impl StairFlight {
+    /// Whether the walk ends with this flight, as steep as it is elsewhere: then it is not known whether the stairs end there too.
+    #[must_use]
+    pub fn ends_on_stairs(&self, moves: &[PathMove]) -> bool {
+        let slope = |step: &PathMove| step.rise_m.abs() / step.distance_m.max(f64::MIN_POSITIVE);
+        let steps = moves.get(self.from..self.to).unwrap_or_default();
+        let steepest = steps.iter().map(slope).fold(0.0, f64::max);
+        self.to == moves.len() && steps.last().is_some_and(|step| slope(step) >= STEEP_SHARE * steepest)
+    }
+}
+
 impl WalkBend {
     /// The side to which it turns; `Behind` for a turn around.
     #[must_use]

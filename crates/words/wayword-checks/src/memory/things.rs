@@ -2,9 +2,17 @@
 //! the thing's position and the side on which one passes it follow from them.
 
 use crate::{Evidence, SeenThing};
-use std::f64::consts::{FRAC_PI_3, FRAC_PI_4};
+use std::{
+    f64::consts::{FRAC_PI_3, FRAC_PI_4},
+    ops::RangeInclusive,
+};
 use wayword_core::{DVec3, Heading, Side};
 use wayword_language::lexicon::{names_agree, normalise_name};
+
+/// A picture ahead shows what lies within this angle of the heading, degrees.
+const AHEAD_DEG: f64 = 50.0;
+/// A walker knows a thing that was ahead at most this many frames before.
+pub const AHEAD_FRAMES: usize = 4;
 
 /// A thing that was seen along a walk.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,6 +66,13 @@ impl RememberedThing {
     #[must_use]
     pub fn last_seen(&self) -> usize {
         self.glimpses.last().map_or(0, |glimpse| glimpse.frame)
+    }
+
+    /// Whether a walker saw it ahead from one of these frames. Where directions are not known, being seen is enough.
+    #[must_use]
+    pub fn is_ahead_from(&self, frames: &RangeInclusive<usize>) -> bool {
+        let is_ahead = |glimpse: &ThingGlimpse| glimpse.turn_rad.is_none_or(|rad| rad.abs() <= AHEAD_DEG.to_radians());
+        self.glimpses.iter().any(|glimpse| frames.contains(&glimpse.frame) && is_ahead(glimpse))
     }
 
     /// How it is seen from a frame.

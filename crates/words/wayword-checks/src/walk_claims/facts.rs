@@ -5,14 +5,11 @@ use crate::{
     memory::{RememberedThing, RoomStay, StairFlight, WalkBend},
     sides::{lies_on, wrap_angle},
 };
-use wayword_core::{PathMove, Side, motion};
+use wayword_core::{Side, motion};
 use wayword_language::{
     lexicon::{ThingClass, find_thing, names_agree, normalise_name, room_name, same_colour, same_room},
     reading::PlaceMention,
 };
-
-/// A hop with at least this share of the slope of its flight lies on the stairs as a whole.
-const STEEP_SHARE: f64 = 0.9;
 
 /// A walker "by the sofa" is at most this far from it, metres.
 pub(super) const NEAR_M: f64 = 3.0;
@@ -64,14 +61,6 @@ impl<'a> WalkFacts<'a> {
     /// Whether a walker has to be told of a bend.
     pub(super) fn is_decision(&self, bend: &WalkBend) -> bool {
         bend.turn_rad.to_degrees().abs() >= motion::TOLD_DEG
-    }
-
-    /// Whether the walk ends with a flight, and as steep as the flight is elsewhere: then it is not known whether the stairs end there too.
-    pub(super) fn ends_on_stairs(&self, flight: &StairFlight) -> bool {
-        let slope = |step: &PathMove| step.rise_m.abs() / step.distance_m.max(f64::MIN_POSITIVE);
-        let steps = self.evidence.moves.get(flight.from..flight.to).unwrap_or_default();
-        let steepest = steps.iter().map(slope).fold(0.0, f64::max);
-        flight.to == self.last_frame() && steps.last().is_some_and(|step| slope(step) >= STEEP_SHARE * steepest)
     }
 
     /// The flights of stairs whose middle lies on a stretch.

@@ -7,29 +7,14 @@ use super::{
     outcome::ClaimOutcome,
 };
 use crate::{
-    landmarks::is_door,
-    memory::{RememberedThing, WalkBend},
+    memory::{
+        MAX_BARE_STOP_GAP_M, MAX_SIDE_DOOR_GAP_M, MAX_SILENT_WAY_M, MAX_TOLD_GAP_M, RememberedThing, WalkBend, is_door,
+    },
     new_finding,
 };
 use std::collections::BTreeSet;
 use wayword_core::{CheckFinding, CheckKind, Side, Verdict};
-use wayword_language::{
-    lexicon::same_room,
-    reading::{PlaceMention, steps::InstructionStep},
-};
-
-/// A walker may go on so far without a word, metres. R2R counts a walker who stops within this of the goal as arrived.
-const MAX_GAP_M: f64 = 3.0;
-/// A door "on the left" that is farther than this behind the last thing that was named is not taken for the next one, metres.
-const MAX_SIDE_DOOR_GAP_M: f64 = 1.0;
-/// A text has words for a way that is longer than this, metres.
-const MAX_SILENT_WAY_M: f64 = 5.0;
-/// A walker who comes so near to a thing takes it for the one to stop at, metres.
-const FIRST_STOP_M: f64 = 2.0;
-/// A stop without any place lies at most so far behind the last thing that was named, metres.
-const MAX_BARE_STOP_M: f64 = 1.5;
-/// A door at the side of the walk lies at most so far from it, metres.
-const SIDE_DOOR_M: f64 = 2.0;
+use wayword_language::reading::{PlaceMention, steps::InstructionStep};
 
 /// A step with its claims, what was found about them, and its stretch of the walk.
 pub(super) struct JudgedStep<'s, 'a> {
@@ -122,19 +107,13 @@ fn turn_after_gap<'a>(facts: &WalkFacts<'a>, judged: &JudgedStep<'_, 'a>, told: 
     let side = judged.step.turn.or_else(|| judged.claims.iter().find_map(on_side));
     let side = side.filter(|side| matches!(side, Side::Left | Side::Right))?;
     let bend = widest_to(side, facts.bends_on(judged.stretch))?;
-    let has_door_before = || {
-        facts.memory.things.iter().filter(|thing| is_door(&thing.name)).any(|door| {
-            let is_on_way = |frame: usize| (told + 1..bend.first).contains(&frame);
-            let passed = door.passed.filter(|passed| passed.side == side && is_on_way(passed.frame));
-            passed.is_some_and(|passed| {
-                facts.memory.distance_m(door, passed.frame).is_some_and(|far_m| far_m <= SIDE_DOOR_M)
-            })
-        })
-    };
     // "The door on the left" is the first one on the left.
     let limit_m =
-        if judged.claims.iter().any(|claim| on_side(claim).is_some()) { MAX_SIDE_DOOR_GAP_M } else { MAX_GAP_M };
-    (told < bend.first && facts.length_m([told, bend.first]) > limit_m && has_door_before()).then_some(bend)
+        if judged.claims.iter().any(|claim| on_side(claim).is_some()) { MAX_SIDE_DOOR_GAP_M } else { MAX_TOLD_GAP_M };
+    (told < bend.first
+        && facts.length_m([told, bend.first]) > limit_m
+        && facts.memory.passes_door(side, told, bend.first))
+    .then_some(bend)
 }
 
 /// The finding about a room that the walk crosses, or a long way, before the next thing that the text names.
@@ -170,7 +149,9 @@ fn way_left_out(facts: &WalkFacts<'_>, judged: &JudgedStep<'_, '_>, mut told: us
         judged.holding().filter(|(claim, _)| is_point(claim)).map(|(_, frame)| frame).collect();
     for next in points {
         let crossed = facts.memory.stays.iter().find(|stay| {
-            stay.entered > told && stay.left < next && facts.length_m([stay.entered - 1, stay.left + 1]) > MAX_GAP_M
+            stay.entered > told
+                && stay.left < next
+                && facts.length_m([stay.entered - 1, stay.left + 1]) > MAX_TOLD_GAP_M
         });
         let gap_m = if next > told { facts.length_m([told, next]) } else { 0.0 };
         let reason = match crossed {
@@ -191,7 +172,6 @@ fn way_left_out(facts: &WalkFacts<'_>, judged: &JudgedStep<'_, '_>, mut told: us
 fn unclear_stop(facts: &WalkFacts<'_>, steps: &[JudgedStep<'_, '_>]) -> Option<CheckFinding> {
     let stop = steps.last().filter(|stop| stop.stops)?;
     let last = facts.last_frame();
-    let stay = facts.memory.stay_at(last)?;
     let is_relation = |claim: &StepClaim<'_>| matches!(claim.what, ClaimedFact::Beside(_) | ClaimedFact::Between(_));
     let is_alone = |place: &PlaceMention| {
         place.count.is_none() && !place.several && place.ordinal.is_none() && place.side.is_none()
@@ -207,12 +187,8 @@ fn unclear_stop(facts: &WalkFacts<'_>, steps: &[JudgedStep<'_, '_>]) -> Option<C
     let near_m = |thing: &RememberedThing, frame: usize| facts.memory.distance_m(thing, frame).unwrap_or(f64::INFINITY);
     let things = &claim.things[0];
     let meant = things.iter().min_by(|a, b| near_m(a, last).total_cmp(&near_m(b, last)))?;
-    let stands_here = |thing: &RememberedThing| thing.room.as_ref().is_none_or(|room| same_room(room, &stay.room));
-    let comes_first = |thing: &&&RememberedThing| {
-        let mut frames = (stay.entered..=last).filter(|frame| facts.length_m([*frame, last]) > MAX_GAP_M);
-        stands_here(thing) && frames.any(|frame| near_m(thing, frame) <= FIRST_STOP_M)
-    };
-    let other = things.iter().filter(|thing| **thing != *meant).find(comes_first)?;
+    let mut others = things.iter().filter(|thing| **thing != *meant);
+    let other = others.find(|thing| facts.memory.is_met_before_end(thing, MAX_TOLD_GAP_M))?;
     let reason = format!("the walk comes to another {:?} before this one", other.name);
     Some(new_finding(CheckKind::Landmarks, Verdict::Fail, reason, Some(claim.span)))
 }
@@ -227,7 +203,7 @@ fn vague_stop(facts: &WalkFacts<'_>, steps: &[JudgedStep<'_, '_>]) -> Option<Che
     if !stop.claims.iter().all(names_only_a_room) {
         return None;
     }
-    let limit_m = if stop.claims.is_empty() { MAX_BARE_STOP_M } else { MAX_GAP_M };
+    let limit_m = if stop.claims.is_empty() { MAX_BARE_STOP_GAP_M } else { MAX_TOLD_GAP_M };
     let told = before.iter().map(|judged| last_told(facts, judged)).max().unwrap_or(0);
     let gap_m = facts.length_m([told, facts.last_frame()]);
     (gap_m > limit_m).then(|| {

@@ -90,7 +90,7 @@ fn judge_stair_end(facts: &WalkFacts<'_>, is_top: bool, stretch: [usize; 2]) -> 
         let arrives = (flight.climb == ClimbDirection::Up) == is_top;
         let reaches = flight.to_level.is_some() || !knows_levels;
         match arrives {
-            true => (reaches && !facts.ends_on_stairs(flight)).then_some(flight.to),
+            true => (reaches && !flight.ends_on_stairs(&facts.evidence.moves)).then_some(flight.to),
             false => Some(flight.from),
         }
     });

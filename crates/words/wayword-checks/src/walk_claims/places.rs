@@ -7,8 +7,10 @@ use super::{
 };
 use crate::{
     goal::{MAX_STOP_DISTANCE_M as STOP_M, is_wide},
-    landmarks::is_door,
-    memory::{IN_DOOR_M, RememberedThing, RoomOpening, RoomStay, ThingGlimpse, ThingPassing, WalkBend, is_any_door},
+    memory::{
+        AHEAD_FRAMES, BEHIND_STOP_M, IN_DOOR_M, RememberedThing, RoomOpening, RoomStay, ThingPassing, WalkBend,
+        is_any_door, is_door,
+    },
     sides::{lies_on, side_word, wrap_angle},
 };
 use wayword_core::Side;
@@ -25,8 +27,6 @@ const APPROACHED_M: f64 = 3.5;
 const REACHED_SLACK_M: f64 = 1.0;
 /// A thing that the walk comes so near to was passed, metres.
 const TOUCHED_M: f64 = 1.3;
-/// A door between two frames lies at most so far from one of them, metres.
-const DOOR_M: f64 = 1.4;
 /// "Down the hallway" goes at least so far along it, metres.
 const ALONG_M: f64 = 2.0;
 /// A turn "at the lamp" is at most this far from it, metres; at a wide thing [`NEAR_M`].
@@ -35,14 +35,8 @@ const TURN_M: f64 = 2.2;
 const TURNED_PAST_M: f64 = 0.5;
 /// A thing was passed before a stretch if it was passed so long before its first frame, metres.
 const PASSED_BEFORE_M: f64 = 0.4;
-/// What lies behind a walker at the end has to be so near, metres: else it was passed.
-const BEHIND_STOP_M: f64 = 1.0;
 /// From this angle on a thing is behind the walker, degrees.
 const BEHIND_DEG: f64 = 110.0;
-/// A picture ahead shows what lies within this angle of the heading, degrees.
-const AHEAD_DEG: f64 = 50.0;
-/// A thing is known to the walker who saw it ahead at most this many frames before the stretch.
-const AHEAD_FRAMES: usize = 4;
 /// A thing that the walk passes is at most so far away there, metres.
 const PASSED_M: f64 = 3.5;
 /// A thing counts as in sight where a frame up to this many frames away shows it.
@@ -122,10 +116,10 @@ impl PlaceJudge<'_, '_> {
         self.claim.turn_before.is_none_or(turns)
     }
 
-    /// Whether the stretch goes some way along a room.
+    /// Whether the walk goes some way along a room from the stretch on: past things that the next steps name.
     fn goes_along(&self, stay: &RoomStay) -> bool {
-        let [from, to] = self.stretch;
-        let (first, end) = (stay.entered.max(from).saturating_sub(1), (stay.left + 1).min(to));
+        let first = stay.entered.max(self.stretch[0]).saturating_sub(1);
+        let end = (stay.left + 1).min(self.facts.last_frame());
         first < end && self.facts.length_m([first, end]) >= ALONG_M
     }
 
@@ -218,9 +212,7 @@ impl PlaceJudge<'_, '_> {
         match self.role {
             PlaceRole::Entered | PlaceRole::Through | PlaceRole::Left => {
                 let has_door = |opening: &&RoomOpening| {
-                    [opening.before, opening.behind]
-                        .iter()
-                        .any(|frame| doors().any(|door| far_m(door, *frame) <= DOOR_M))
+                    facts.memory.doors_at(opening).any(|there| doors().any(|door| **door == *there))
                 };
                 let is_here =
                     |opening: &&RoomOpening| self.changes_room_at(opening.behind) && self.turns_before(opening.behind);
@@ -347,8 +339,7 @@ impl PlaceJudge<'_, '_> {
             PlaceRole::Stopped | PlaceRole::Within { at_stop: true } => {
                 let is_behind =
                     facts.direction_rad(thing, last).is_some_and(|rad| rad.abs() >= BEHIND_DEG.to_radians());
-                let is_passed = thing.passed.is_some_and(|passed| facts.length_m([passed.frame, last]) > BEHIND_STOP_M);
-                let limit_m = if is_behind || is_passed { BEHIND_STOP_M } else { stop_m };
+                let limit_m = if is_behind || facts.memory.is_left_behind(thing) { BEHIND_STOP_M } else { stop_m };
                 let is_there = within(last, limit_m) && (is_seen(last) || within(last, TOUCHED_M));
                 is_there.then_some(last).into_iter().collect()
             }
@@ -412,8 +403,7 @@ impl PlaceJudge<'_, '_> {
             PlaceRole::Stopped | PlaceRole::Within { at_stop: true } => to.saturating_sub(AHEAD_FRAMES)..=to,
             _ => from.saturating_sub(AHEAD_FRAMES)..=to + 1,
         };
-        let is_ahead = |glimpse: &ThingGlimpse| glimpse.turn_rad.is_none_or(|rad| rad.abs() <= AHEAD_DEG.to_radians());
-        thing.glimpses.iter().any(|glimpse| frames.contains(&glimpse.frame) && is_ahead(glimpse))
+        thing.is_ahead_from(&frames)
     }
 
     /// Whether a thing is on a side of the walker at a frame; `None` where its direction is not known.

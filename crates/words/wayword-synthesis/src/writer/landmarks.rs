@@ -6,7 +6,7 @@
 use super::{WritingBrief, dice::TextDice};
 use rand::Rng;
 use std::collections::BTreeMap;
-use wayword_checks::memory::RememberedThing;
+use wayword_checks::memory::{AHEAD_FRAMES, MAX_BARE_STOP_GAP_M, MAX_TOLD_GAP_M, RememberedThing};
 use wayword_core::{Side, Verdict};
 use wayword_language::lexicon::{
     LexiconThing, ThingClass, find_thing, is_fabric, is_room, kinds_of, names_agree, normalise_name, to_plural,
@@ -69,6 +69,8 @@ pub(super) struct ChosenLandmark {
 
 /// Greatest distance of a landmark from the frame where it is named, metres.
 const NEAR_M: f64 = 2.5;
+/// Greatest distance of a thing at which the walker turns, metres.
+const MAX_TURN_DISTANCE_M: f64 = 2.2;
 /// Greatest distance of a thing that the walker stops at, metres.
 const MAX_STOP_DISTANCE_M: f64 = 1.9;
 
@@ -96,7 +98,7 @@ const WIDE_THING_REACH_M: f64 = 1.2;
 const MAX_CHANCE_WORTH: f64 = 1.5;
 /// Share of things with a much larger random part, so that texts differ.
 const MORE_CHANCE_SHARE: f64 = 0.2;
-/// Deduction for each earlier search of the spot that failed.
+/// Deduction where the first search of the spot did not find it.
 const LATER_SEARCH_COST: f64 = 2.0;
 /// Deduction at a spot that replaces another one.
 const SPARE_SPOT_COST: f64 = 1.0;
@@ -114,6 +116,15 @@ pub(super) enum LandmarkUse {
     Beside,
     /// The walker stops there.
     Stop,
+    /// The same where nothing fixes the spot better: also at a rug, or at one of several alike. The checks decide whether it holds.
+    StopAtAny,
+}
+
+impl LandmarkUse {
+    /// Whether the walker stops there.
+    fn is_stop(self) -> bool {
+        matches!(self, Self::Stop | Self::StopAtAny)
+    }
 }
 
 /// A kind of thing with its best spot.
@@ -137,14 +148,14 @@ impl LandmarkHome<'_> {
 
     /// The bonus for being at the stop, where the search was for the stop.
     fn stop_bonus(&self) -> f64 {
-        if self.found_by.is_some_and(|search| search.purpose == LandmarkUse::Stop) { STOP_BONUS } else { 0.0 }
+        if self.found_by.is_some_and(|search| search.purpose.is_stop()) { STOP_BONUS } else { 0.0 }
     }
 }
 
 impl LandmarkSearch {
     /// The search for a second thing near the first.
     fn search_beside(self) -> Self {
-        Self { purpose: if self.purpose == LandmarkUse::Stop { LandmarkUse::Stop } else { LandmarkUse::Here }, ..self }
+        Self { purpose: if self.purpose.is_stop() { self.purpose } else { LandmarkUse::Here }, ..self }
     }
 }
 
@@ -215,7 +226,7 @@ impl<'a> LandmarkChooser<'a> {
         let home_at = |(spot, LandmarkSpot { searches, pair, is_spare }): (usize, &LandmarkSpot)| {
             let found = searches.iter().enumerate().find(|(_, search)| self.search_finds(**search, seen));
             if let Some((rank, search)) = found {
-                let deduction = LATER_SEARCH_COST * rank as f64 + if *is_spare { SPARE_SPOT_COST } else { 0.0 };
+                let deduction = LATER_SEARCH_COST * rank.min(1) as f64 + if *is_spare { SPARE_SPOT_COST } else { 0.0 };
                 let worth = self.landmark_worth(seen, *search) - deduction;
                 return Some(LandmarkHome { spot, worth, seen, found_by: Some(*search) });
             }
@@ -258,7 +269,7 @@ impl<'a> LandmarkChooser<'a> {
         } else {
             MAX_CHANCE_WORTH
         };
-        let ahead = if to == LandmarkUse::Stop && is_in_front(seen, frame) { IN_FRONT_BONUS } else { 0.0 };
+        let ahead = if to.is_stop() && is_in_front(seen, frame) { IN_FRONT_BONUS } else { 0.0 };
         let mut drawn = self.dice.named_rng(&["thing", &kind]);
         self.landmark_score(seen, frame) + ahead + drawn.random_range(0.0..chance)
     }
@@ -294,19 +305,73 @@ impl<'a> LandmarkChooser<'a> {
             Some(ThingClass::Seat | ThingClass::Surface) => WIDE_THING_REACH_M / 2.0,
             _ => 0.0,
         };
-        let most_m = if to == LandmarkUse::Stop { MAX_STOP_DISTANCE_M } else { NEAR_M + wide_m };
+        let most_m = match to {
+            LandmarkUse::Stop | LandmarkUse::StopAtAny => MAX_STOP_DISTANCE_M,
+            LandmarkUse::Here => MAX_TURN_DISTANCE_M,
+            LandmarkUse::Onward | LandmarkUse::Beside => NEAR_M + wide_m,
+        };
         let is_near = memory.distance_m(seen, frame).is_none_or(|distance_m| distance_m <= most_m);
         let side = memory.side_at(seen, frame);
         let is_there = match to {
+            // A walker who comes to a rug or stands on it is at no one place.
+            LandmarkUse::Here | LandmarkUse::Stop if lies_on_floor(&seen.name) && seen.position.is_some() => false,
             LandmarkUse::Here => side != Some(Side::Behind) && was_seen(seen, frame, VISIBLE_AHEAD_RAD),
-            LandmarkUse::Onward => {
-                was_seen(seen, frame, VISIBLE_AHEAD_RAD) && (side == Some(Side::Ahead) || is_passed(seen, frame))
+            LandmarkUse::Onward => was_ahead(seen, frame) && (side == Some(Side::Ahead) || self.is_passed(seen, frame)),
+            LandmarkUse::Beside => was_ahead(seen, frame) && self.is_passed(seen, frame),
+            LandmarkUse::Stop | LandmarkUse::StopAtAny => {
+                let fixes_spot = || self.ends_at(seen, frame) && memory.shares_room(seen, frame..=frame);
+                side != Some(Side::Behind)
+                    && !hangs_overhead(&seen.name)
+                    && (self.has_twin(seen) || !self.has_other_before(seen, MAX_TOLD_GAP_M))
+                    && (to == LandmarkUse::StopAtAny || fixes_spot())
             }
-            LandmarkUse::Beside => was_seen(seen, frame, VISIBLE_BESIDE_RAD) && is_passed(seen, frame),
-            LandmarkUse::Stop => side != Some(Side::Behind) && !hangs_overhead(&seen.name),
+        };
+        let before = frame.saturating_sub(1);
+        let is_in_room = match to {
+            LandmarkUse::Stop | LandmarkUse::StopAtAny => true,
+            LandmarkUse::Here => memory.shares_room(seen, frame..=frame),
+            LandmarkUse::Onward | LandmarkUse::Beside => memory.shares_room(seen, before..=frame),
         };
         // Without positions the directions of things are unknown.
-        is_near && (is_there || side.is_none())
+        is_near && is_in_room && (is_there || side.is_none())
+    }
+
+    /// Whether a walker who stops at a frame comes to a thing: it was ahead just before, and was not left behind.
+    fn ends_at(&self, seen: &RememberedThing, frame: usize) -> bool {
+        let memory = self.brief.memory;
+        let is_behind = memory.turn_towards(seen, frame).is_some_and(|turn_rad| turn_rad.abs() > VISIBLE_BESIDE_RAD);
+        was_ahead(seen, frame)
+            && !is_behind
+            && !memory.is_left_behind(seen)
+            && !self.has_other_before(seen, MAX_BARE_STOP_GAP_M)
+    }
+
+    /// Whether another thing of the same name stands beside it, so that a text may name both: "the photos".
+    fn has_twin(&self, seen: &RememberedThing) -> bool {
+        let is_beside = |other: &&RememberedThing| {
+            let apart_m = seen.position.zip(other.position).map(|(here, there)| here.distance(there));
+            *other != seen && apart_m.is_some_and(|apart_m| apart_m <= TOGETHER_M)
+        };
+        self.brief.memory.things.iter().filter(is_beside).any(|other| names_agree(&other.name, &seen.name))
+    }
+
+    /// Whether the walk comes to another thing of the same name in its last room, more than `gap_m` metres before its end.
+    fn has_other_before(&self, seen: &RememberedThing, gap_m: f64) -> bool {
+        let memory = self.brief.memory;
+        let is_other = |other: &&RememberedThing| *other != seen && names_agree(&other.name, &seen.name);
+        memory.things.iter().filter(is_other).any(|other| memory.is_met_before_end(other, gap_m))
+    }
+
+    /// Whether the walker passes a thing on the way to a frame, behind the turn with which that way begins.
+    fn is_passed(&self, seen: &RememberedThing, frame: usize) -> bool {
+        let memory = self.brief.memory;
+        let before = frame.saturating_sub(1);
+        let turn = memory.bends.iter().find(|bend| (bend.first..=bend.last).contains(&before));
+        let begin_m = memory.walked_m(0, turn.map_or(before, |bend| bend.last));
+        seen.passed.is_some_and(|passed| {
+            (before..=frame).contains(&passed.frame)
+                && (turn.is_none() || seen.position.is_none() || passed.along_m >= begin_m)
+        })
     }
 
     /// The fixed part of a thing's value: high for salient things that people often name, that are near the frame and
@@ -384,15 +449,20 @@ fn was_seen(seen: &RememberedThing, frame: usize, aside_rad: f64) -> bool {
     seen.glimpses.iter().any(|glimpse| glimpse.frame <= frame && within(glimpse.turn_rad))
 }
 
+/// Whether a thing is a part of the floor, as a rug.
+fn lies_on_floor(name: &str) -> bool {
+    find_thing(name).is_some_and(|thing| thing.class == ThingClass::Floor)
+}
+
 /// Whether a thing hangs overhead, so that a walker does not stop at it.
 fn hangs_overhead(name: &str) -> bool {
     let is_lamp_by_hand = |name: &str| name.ends_with("lamp");
     find_thing(name).is_some_and(|thing| thing.class == ThingClass::Light) && !is_lamp_by_hand(name)
 }
 
-/// Whether the walker passes a thing at a frame or shortly before it.
-fn is_passed(seen: &RememberedThing, frame: usize) -> bool {
-    seen.passed.is_some_and(|passed| passed.frame <= frame && passed.frame + 2 > frame)
+/// Whether a walker saw a thing ahead at a frame or not long before.
+fn was_ahead(seen: &RememberedThing, frame: usize) -> bool {
+    seen.is_ahead_from(&(frame.saturating_sub(AHEAD_FRAMES)..=frame))
 }
 
 /// Whether a thing lies in front of a walker who arrives at a frame, as far as is known.

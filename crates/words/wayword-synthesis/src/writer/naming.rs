@@ -6,12 +6,12 @@ use super::{
     phrases::{draw_option, fill_gaps, stay_phrase},
     route::{OfferRole, WayClause, side_word, stands_still, suits_motion},
 };
-use crate::style::way::{ClauseKind, WayWording, is_until};
+use crate::style::way::{ClauseKind, WayWording, is_door_word, is_until};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
-use wayword_core::PathMotion;
-use wayword_language::lexicon::{counted_name, find_thing, room_name, to_plural};
+use wayword_core::{PathMotion, Side};
+use wayword_language::lexicon::{ThingClass, counted_name, find_thing, names_agree, room_name, to_plural};
 
 /// A clause in words.
 pub(super) struct ClausePhrase {
@@ -33,8 +33,19 @@ fn goes_out(clause: &WayClause, brief: &WritingBrief<'_>) -> bool {
         || !matches!(clause.kind, ClauseKind::ThroughDoor | ClauseKind::DoorOnSide | ClauseKind::ToDoor)
 }
 
+/// Whether people see a thing in the one colour that its material has: a picture has a subject and a frame, and a mirror shows the room.
+fn shows_one_colour(name: &str) -> bool {
+    !find_thing(name).is_some_and(|thing| matches!(thing.class, ThingClass::WallArt | ThingClass::Glass))
+}
+
 /// Distance into a room up to which the walker is "just inside", metres.
 const JUST_INSIDE_M: f64 = 1.5;
+
+/// Whether a thing is so long that one may still be beside it when its middle is passed.
+fn is_long(name: &str) -> bool {
+    find_thing(name)
+        .is_some_and(|thing| matches!(thing.class, ThingClass::Bed | ThingClass::Seat | ThingClass::Surface))
+}
 
 /// How far the walker has gone in the room of a frame when arriving there, metres.
 fn walked_in_m(at: usize, brief: &WritingBrief<'_>) -> f64 {
@@ -44,16 +55,18 @@ fn walked_in_m(at: usize, brief: &WritingBrief<'_>) -> f64 {
 
 /// The demands of a clause's context on its shape.
 #[derive(Clone, Copy)]
-struct ShapeNeeds {
+struct ShapeNeeds<'n> {
     motion: PathMotion,
     /// Whether it has to name its room.
     names_room: bool,
     /// Whether it leaves the room of the start, or names the room that it leaves.
     leaves: bool,
-    /// Whether the walker is at most a step behind the door of its room.
-    is_near_door: bool,
+    /// How far the walker has gone in its room, metres.
+    walked_in_m: f64,
     /// Whether it may limit the clause before it ("until you reach ...").
     may_run: bool,
+    /// The names of the doors at its change of rooms; `None` where they are not known.
+    doors: Option<&'n [&'n str]>,
 }
 
 /// The names that a text gives to rooms and things: one for each.
@@ -89,10 +102,12 @@ impl<'a> ChosenNames<'a> {
             Some(_) => before == Some(ClauseKind::Straight),
             None => before.is_some_and(ClauseKind::goes_on),
         };
+        let doors = door_names(clause, brief);
         let needs = ShapeNeeds {
             motion,
+            doors: doors.as_deref(),
             names_room: has_to_name(clauses, at, brief),
-            is_near_door: clause.kind != ClauseKind::StopIn || walked_in_m(clause.at, brief) <= JUST_INSIDE_M,
+            walked_in_m: walked_in_m(clause.at, brief),
             leaves: goes_out(clause, brief),
             may_run: follows,
         };
@@ -101,7 +116,7 @@ impl<'a> ChosenNames<'a> {
         let thing = clause.thing.as_ref().map(|thing| {
             let name = self.name_thing(&thing.name);
             let says_colour = thing.needs_colour || rng.random_bool(COLOUR_SHARE);
-            let colour = thing.colour.as_ref().filter(|_| says_colour);
+            let colour = thing.colour.as_ref().filter(|_| says_colour && shows_one_colour(&thing.name));
             let name = colour.map_or(name.clone(), |colour| format!("{colour} {name}"));
             // Several alike are mostly, but not always, named in the plural.
             let name = match thing.alike {
@@ -126,10 +141,18 @@ impl<'a> ChosenNames<'a> {
     }
 
     /// A shape of the clause's kind, by its share.
-    fn draw_shape(&self, clause: &WayClause, needs: ShapeNeeds, rng: &mut ChaCha8Rng) -> String {
+    fn draw_shape(&self, clause: &WayClause, needs: ShapeNeeds<'_>, rng: &mut ChaCha8Rng) -> String {
         let own = WayWording::built_in().shapes.get(&clause.kind);
         let shapes = self.way.shapes.get(&clause.kind).or(own);
         let ahead = clause.thing.as_ref().is_none_or(|thing| thing.in_front);
+        let is_near_door = clause.kind != ClauseKind::StopIn || needs.walked_in_m <= JUST_INSIDE_M;
+        let is_passed = |passed: (usize, Side)| passed.0 <= clause.at;
+        let is_passed_before = clause.kind != ClauseKind::TurnAt
+            || clause.thing.as_ref().is_none_or(|thing| {
+                thing.side.is_none() || !is_long(&thing.name) && thing.passed.is_some_and(is_passed)
+            });
+        // One is in the room already.
+        let is_inside = clause.kind == ClauseKind::TurnIn && needs.walked_in_m > JUST_INSIDE_M;
         let usual = clause.room.as_deref().and_then(room_name);
         let is_open_air = matches!(usual, Some("porch" | "balcony" | "outdoor area"));
         // A hallway is not called "the room", and a porch has no walls to leave it by.
@@ -143,10 +166,12 @@ impl<'a> ChosenNames<'a> {
                 && (ahead || !shape.contains("front"))
                 && is_room(shape)
                 && (is_open_air || !shape.contains("onto the {r}") && !shape.contains("out into the {r}"))
-                && (needs.is_near_door
-                    || !["just inside", "once you", "doorway"].iter().any(|near| shape.contains(near)))
+                && (is_near_door || !["just inside", "once you", "doorway"].iter().any(|near| shape.contains(near)))
                 && (needs.leaves || !["exit", "leave", "out "].iter().any(|out| shape.contains(out)))
                 && (needs.may_run || !is_until(shape))
+                && (is_passed_before || !["past", "after"].iter().any(|past| shape.contains(past)))
+                && needs.doors.is_none_or(|doors| fits_doors(shape, doors))
+                && !(is_inside && shape.contains("at the {r}"))
         };
         let all: Vec<(f64, &String)> = shapes
             .into_iter()
@@ -180,6 +205,20 @@ impl<'a> ChosenNames<'a> {
         self.chosen.insert(name.to_owned(), chosen.clone());
         chosen
     }
+}
+
+/// The names of the doors and doorways at the change of rooms of a clause; `None` where it has no such change, or the positions of doors
+/// are not known.
+fn door_names<'n>(clause: &WayClause, brief: &'n WritingBrief<'_>) -> Option<Vec<&'n str>> {
+    let memory = brief.memory;
+    let opening = memory.openings.iter().find(|opening| opening.before == clause.at)?;
+    memory.knows_doors().then(|| memory.doors_at(opening).map(|door| door.name.as_str()).collect())
+}
+
+/// Whether the words for doors in a shape name one of these doors.
+fn fits_doors(shape: &str, doors: &[&str]) -> bool {
+    let mut words = shape.split(' ').filter(|word| is_door_word(word));
+    words.all(|word| doors.iter().any(|door| names_agree(word, door)))
 }
 
 /// Whether a clause has to name its room, because "the room" would be unclear: it is the room of the end, a later

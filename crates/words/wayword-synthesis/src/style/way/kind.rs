@@ -93,6 +93,12 @@ impl ClauseKind {
 /// The names of openings between rooms.
 const DOOR_WORDS: &[&str] = &["door", "doorway", "opening", "entrance", "exit"];
 
+/// Whether a word names an opening between rooms.
+#[must_use]
+pub fn is_door_word(word: &str) -> bool {
+    DOOR_WORDS.contains(&word)
+}
+
 /// A clause taken apart into its turns, climbs, stops, rooms, things and doors.
 pub(super) struct ClauseParts<'a> {
     /// The turns, with the spans of their words in bytes.
@@ -145,7 +151,7 @@ impl<'a> ClauseParts<'a> {
         match class {
             _ if !is_plain => return None,
             _ if is_stairs => self.stairs = true,
-            _ if DOOR_WORDS.contains(&place.name.as_str()) => self.doors.push(place),
+            _ if is_door_word(&place.name) => self.doors.push(place),
             // Walls and floors are in every room, and evidence does not list them.
             Some(ThingClass::Fabric | ThingClass::Unknown | ThingClass::Door) => return None,
             _ if place.several => return None,

@@ -8,7 +8,7 @@ mod shapes;
 #[cfg(test)]
 mod tests;
 
-pub use kind::ClauseKind;
+pub use kind::{ClauseKind, is_door_word};
 pub use shapes::{ClauseJoint, is_until};
 
 use serde::{Deserialize, Serialize};

@@ -4,6 +4,7 @@
 use super::{
     FILLER_WEIGHT, MAIN_WEIGHT, OfferRole, SIDE_WEIGHT, ThingOffer, WayClause,
     offer::{OfferThings, free_hops, insert_offer},
+    onward::MIN_ALONG_M,
     usable_room,
 };
 use crate::{
@@ -141,6 +142,7 @@ impl PlanFiller<'_> {
         let memory = self.brief.memory;
         let last = memory.frame_count().saturating_sub(1);
         let crossed = memory.stays.iter().filter(|stay| stay.entered > 0 && stay.left < last);
+        let knows_way = self.brief.walk.path.motion.is_known();
         for stay in crossed {
             let Some(room) = usable_room(&stay.room) else { continue };
             let is_named =
@@ -149,6 +151,9 @@ impl PlanFiller<'_> {
                 continue;
             }
             let is_hall = room_name(&room) == Some("hallway");
+            if is_hall && knows_way && memory.walked_m(stay.entered - 1, stay.left + 1) < MIN_ALONG_M {
+                continue;
+            }
             let kind = if is_hall { ClauseKind::Along } else { ClauseKind::Through };
             self.insert_clause(WayClause::new(kind, stay.entered, SIDE_WEIGHT).with_room(&room));
             return true;

@@ -78,7 +78,9 @@ impl ThingOffer {
             OfferRole::Turn | OfferRole::EnterWith => vec![at(frame, MIN_PASSED_SALIENCE, LandmarkUse::Here)],
             OfferRole::PassEnter | OfferRole::Onward => vec![at(frame, MIN_PASSED_SALIENCE, LandmarkUse::Onward)],
             OfferRole::Stop(_) => {
-                vec![at(frame, MIN_PASSED_SALIENCE, LandmarkUse::Stop), at(frame, MIN_STOP_SALIENCE, LandmarkUse::Stop)]
+                let purposes = [LandmarkUse::Stop, LandmarkUse::StopAtAny];
+                let at_end = |purpose| [MIN_PASSED_SALIENCE, MIN_STOP_SALIENCE].map(|least| at(frame, least, purpose));
+                purposes.into_iter().flat_map(at_end).collect()
             }
         };
         if self.role == OfferRole::Onward && self.things != OfferThings::Fair {

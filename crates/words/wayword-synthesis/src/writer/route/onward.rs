@@ -8,11 +8,22 @@ use rand::Rng;
 use wayword_core::Side;
 use wayword_language::lexicon::room_name;
 
+/// "Go along the hallway" is said of at least such a way, metres.
+pub(super) const MIN_ALONG_M: f64 = 2.0;
+
 impl WayPlanner<'_> {
     /// Adds "go along the hallway".
     pub(super) fn go_along(&mut self, at: usize, room: &str, weight: u8) {
         self.push(WayClause::new(ClauseKind::Along, at, weight).with_room(room));
         self.along = true;
+    }
+
+    /// Whether the walk goes far enough along the room of a frame, from there on, that "go along the hallway" says something.
+    pub(super) fn goes_along(&self, at: usize) -> bool {
+        let Some(stay) = self.memory.stay_at(at) else { return false };
+        let last = self.memory.frame_count().saturating_sub(1);
+        let (first, end) = (stay.entered.max(at).saturating_sub(1), (stay.left + 1).min(last));
+        !self.brief.walk.path.motion.is_known() || self.memory.walked_m(first.min(end), end) >= MIN_ALONG_M
     }
 
     /// A hop within a room: past a thing, along the hallway, or at least straight on.
@@ -25,7 +36,7 @@ impl WayPlanner<'_> {
         let offers = self.rng.random_bool(offer_share) || self.is_first_hop_of_untold_turn(at);
         let room = self.memory.room_at(at + 1).and_then(usable_room);
         let hall = room.filter(|room| room_name(room) == Some("hallway"));
-        if let Some(hall) = hall.filter(|_| !self.along && self.rng.random_bool(0.5)) {
+        if let Some(hall) = hall.filter(|_| !self.along && self.rng.random_bool(0.5) && self.goes_along(at + 1)) {
             let left = self.memory.stay_at(at + 1).map_or(at, |stay| stay.left);
             let weight = if self.brief.walk.walked_m(at, left) >= LONG_HOP_M { MAIN_WEIGHT } else { SIDE_WEIGHT };
             return self.go_along(at, &hall, weight);

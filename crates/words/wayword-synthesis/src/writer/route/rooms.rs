@@ -6,7 +6,7 @@
 use super::{MAIN_WEIGHT, OfferRole, SIDE_WEIGHT, ThingOffer, WayClause, WayPlanner, usable_room};
 use crate::{style::way::ClauseKind, writer::phrases::draw_option};
 use rand::Rng;
-use wayword_checks::memory::{RoomOpening, WalkBend};
+use wayword_checks::memory::{MAX_SIDE_DOOR_GAP_M, RoomOpening, WalkBend};
 use wayword_core::{Side, motion};
 use wayword_language::lexicon::room_name;
 
@@ -173,7 +173,10 @@ impl WayPlanner<'_> {
             kinds.push((self.kind_count(ClauseKind::TurnInto) * 1.5, ClauseKind::TurnInto));
             kinds.push((self.kind_count(ClauseKind::EnterOnSide) * 1.5, ClauseKind::EnterOnSide));
         }
-        if opening.has_door {
+        let told = self.clauses.last().map_or(0, |before| before.at + 1);
+        let is_next_door =
+            self.memory.walked_m(told.min(at), at) <= MAX_SIDE_DOOR_GAP_M || !self.memory.passes_door(side, told, at);
+        if opening.has_door && is_next_door {
             kinds.push((self.kind_count(ClauseKind::DoorOnSide) * 4.0, ClauseKind::DoorOnSide));
             kinds.push((self.kind_count(ClauseKind::TurnThroughDoor) * 3.0, ClauseKind::TurnThroughDoor));
         }

@@ -2,6 +2,7 @@
 
 use super::{KEPT_WEIGHT, MAX_DOORWAY_HOP_M, OfferRole, ThingOffer, WayClause, WayPlanner, usable_room};
 use crate::{style::way::ClauseKind, writer::phrases::draw_option};
+use wayword_checks::memory::{MAX_BARE_STOP_GAP_M, MAX_TOLD_GAP_M, StairFlight};
 use wayword_core::ClimbDirection;
 use wayword_language::lexicon::{names_agree, room_name};
 
@@ -14,7 +15,10 @@ impl WayPlanner<'_> {
         let end = self.memory.frame_count().saturating_sub(1);
         let room = self.memory.room_at(end).and_then(usable_room);
         let is_told = room.is_some() && self.here == room;
-        let flight = self.memory.flights.last().filter(|flight| flight.to == end).map(|flight| flight.climb);
+        let ends_here = |flight: &&StairFlight| {
+            flight.to == end && (self.memory.is_on_graph() || !flight.ends_on_stairs(&self.brief.walk.moves))
+        };
+        let flight = self.memory.flights.last().filter(ends_here).map(|flight| flight.climb);
         let last_hop_m = self.brief.walk.moves.last().map_or(f64::INFINITY, |step| step.distance_m);
         // A doorway that no caption shows could not be checked.
         let shows_doorway = self.memory.seen_from(end).any(|seen| names_agree(&seen.name, "doorway"));
@@ -56,6 +60,7 @@ impl WayPlanner<'_> {
                 kinds.push((self.kind_count(ClauseKind::StopIn) * in_room * NAMED_AGAIN_FACTOR, ClauseKind::StopIn));
             }
         }
+        self.leave_out_vague_stops(&mut kinds, end);
         if misleads && room.is_some() {
             kinds.retain(|(_, kind)| {
                 matches!(kind, ClauseKind::StopIn | ClauseKind::StopAtIn | ClauseKind::StopInDoorwayOf)
@@ -69,6 +74,29 @@ impl WayPlanner<'_> {
         clause.offer = needs_thing(kind).then(|| ThingOffer::new(OfferRole::Stop(kind), end));
         clause.room = room;
         self.push(clause);
+    }
+
+    /// Leaves out the stops that name too little, where the walk goes on for some way behind the last thing that the text tells.
+    fn leave_out_vague_stops(&self, kinds: &mut Vec<(f64, ClauseKind)>, end: usize) {
+        if !self.brief.walk.path.motion.is_known() {
+            return;
+        }
+        let told = self.clauses.iter().rfind(|clause| !clause.is_offer()).map_or(0, |clause| {
+            let bend = self.memory.bends.iter().find(|bend| bend.first == clause.at);
+            bend.map_or(clause.at, |bend| bend.last) + 1
+        });
+        let gap_m = self.memory.walked_m(told.min(end), end);
+        // A room alone fixes the spot only near the door by which one enters it.
+        let entered = self.memory.stay_at(end).map_or(end, |stay| stay.entered);
+        let in_room_m = self.memory.walked_m(entered.saturating_sub(1), end);
+        let fixes_spot = |kind: &ClauseKind| match kind {
+            ClauseKind::Stop => gap_m <= MAX_BARE_STOP_GAP_M,
+            ClauseKind::StopIn => in_room_m <= MAX_TOLD_GAP_M,
+            _ => true,
+        };
+        if kinds.iter().any(|(_, kind)| fixes_spot(kind)) {
+            kinds.retain(|(_, kind)| fixes_spot(kind));
+        }
     }
 
     /// Whether the room that the text names last is not this one.

@@ -3,7 +3,7 @@
 use super::{LONG_HOP_M, MAIN_WEIGHT, OfferRole, ThingOffer, WayClause, WayPlanner, usable_room};
 use crate::{style::way::ClauseKind, writer::phrases::draw_option};
 use rand::Rng;
-use wayword_checks::memory::WalkBend;
+use wayword_checks::memory::{MAX_BARE_STOP_GAP_M, MAX_SILENT_WAY_M, WalkBend};
 use wayword_core::{ClimbDirection, Side, motion, seeded_rng};
 use wayword_language::lexicon::room_name;
 
@@ -22,11 +22,16 @@ impl WayPlanner<'_> {
         }
         let flight = self.memory.flights.iter().find(|flight| flight.to == at).map(|flight| flight.climb);
         let offers = self.rng.random_bool(if flight.is_some() { 0.25 } else { 0.75 });
-        let straight_from = self.straight_before(at);
-        if !offers {
+        let is_silent =
+            self.walked_since(at).is_some_and(|(from, _)| self.brief.walk.walked_m(from, at) > MAX_SILENT_WAY_M);
+        let straight_from = self.straight_before(at) && !is_silent;
+        if !offers || is_silent {
             self.go_on_to(at);
         }
         let is_small = bend.turn_rad.to_degrees().abs() < motion::TOLD_DEG;
+        if is_small && !is_silent && self.is_untold_before(at) {
+            self.push(WayClause::new(ClauseKind::Straight, at.saturating_sub(1), MAIN_WEIGHT));
+        }
         let slight = is_small || (bend.is_slight() && self.rng.random_bool(0.5));
         let bare = if slight { ClauseKind::TurnSlightly } else { ClauseKind::Turn };
         let follows = self.follows_a_place(at);
@@ -39,7 +44,7 @@ impl WayPlanner<'_> {
             Some(ClimbDirection::Down) => kinds.push((4.0, ClauseKind::TurnAtBottom)),
             _ => {}
         }
-        if is_hall && !self.along && self.walked_in(at) >= 2 {
+        if is_hall && !self.along && self.walked_in(at) >= 2 && self.goes_along(at.saturating_sub(1)) {
             kinds.push((3.0, ClauseKind::Along));
         }
         if room.is_some() && !is_small {
@@ -60,6 +65,7 @@ impl WayPlanner<'_> {
             ..ThingOffer::new(OfferRole::Turn, at)
         };
         self.push(if offers { turn.with_offer(offer) } else { turn });
+        self.along = false;
     }
 
     /// Whether the clause before a turn makes its place clear: it is no turn itself, and not far before it.
@@ -79,6 +85,12 @@ impl WayPlanner<'_> {
         let told = self.clauses.last().map_or(0, |before| before.at + 1);
         let from = stay.entered.max(told);
         (!self.along && self.brief.walk.walked_m(from, at) >= LONG_HOP_M).then_some((from, stay.room.as_str()))
+    }
+
+    /// Whether a walker who hears of a slight turn at a frame would take it at once, some way before it.
+    fn is_untold_before(&self, at: usize) -> bool {
+        let Some(before) = self.clauses.last() else { return false };
+        !before.kind.goes_on() && self.memory.walked_m((before.at + 1).min(at), at) > MAX_BARE_STOP_GAP_M
     }
 
     /// Whether a turn that gets no thing needs a "go straight" before it.
