@@ -76,8 +76,8 @@ const MAX_STOP_DISTANCE_M: f64 = 1.9;
 
 /// How far to either side a walker who looks ahead sees, radians.
 const VISIBLE_AHEAD_RAD: f64 = 1.05;
-/// The same for a walker who looks around, radians.
-const VISIBLE_BESIDE_RAD: f64 = 1.9;
+/// From this angle on a thing lies behind a walker who stops, radians.
+const BEHIND_RAD: f64 = 1.9;
 /// A thing closer to the walking direction than this is in front, radians.
 const IN_FRONT_RAD: f64 = 1.1;
 /// Things of one name are "the two chairs" if they are at most this far apart, metres.
@@ -112,8 +112,6 @@ pub(super) enum LandmarkUse {
     Here,
     /// The walker goes to it or past it on the way to a frame.
     Onward,
-    /// The same for things that are only visible to the side.
-    Beside,
     /// The walker stops there.
     Stop,
     /// The same where nothing fixes the spot better: also at a rug, or at one of several alike. The checks decide whether it holds.
@@ -308,7 +306,7 @@ impl<'a> LandmarkChooser<'a> {
         let most_m = match to {
             LandmarkUse::Stop | LandmarkUse::StopAtAny => MAX_STOP_DISTANCE_M,
             LandmarkUse::Here => MAX_TURN_DISTANCE_M,
-            LandmarkUse::Onward | LandmarkUse::Beside => NEAR_M + wide_m,
+            LandmarkUse::Onward => NEAR_M + wide_m,
         };
         let is_near = memory.distance_m(seen, frame).is_none_or(|distance_m| distance_m <= most_m);
         let side = memory.side_at(seen, frame);
@@ -317,7 +315,6 @@ impl<'a> LandmarkChooser<'a> {
             LandmarkUse::Here | LandmarkUse::Stop if lies_on_floor(&seen.name) && seen.position.is_some() => false,
             LandmarkUse::Here => side != Some(Side::Behind) && was_seen(seen, frame, VISIBLE_AHEAD_RAD),
             LandmarkUse::Onward => was_ahead(seen, frame) && (side == Some(Side::Ahead) || self.is_passed(seen, frame)),
-            LandmarkUse::Beside => was_ahead(seen, frame) && self.is_passed(seen, frame),
             LandmarkUse::Stop | LandmarkUse::StopAtAny => {
                 let fixes_spot = || self.ends_at(seen, frame) && memory.shares_room(seen, frame..=frame);
                 side != Some(Side::Behind)
@@ -330,7 +327,7 @@ impl<'a> LandmarkChooser<'a> {
         let is_in_room = match to {
             LandmarkUse::Stop | LandmarkUse::StopAtAny => true,
             LandmarkUse::Here => memory.shares_room(seen, frame..=frame),
-            LandmarkUse::Onward | LandmarkUse::Beside => memory.shares_room(seen, before..=frame),
+            LandmarkUse::Onward => memory.shares_room(seen, before..=frame),
         };
         // Without positions the directions of things are unknown.
         is_near && is_in_room && (is_there || side.is_none())
@@ -339,7 +336,7 @@ impl<'a> LandmarkChooser<'a> {
     /// Whether a walker who stops at a frame comes to a thing: it was ahead just before, and was not left behind.
     fn ends_at(&self, seen: &RememberedThing, frame: usize) -> bool {
         let memory = self.brief.memory;
-        let is_behind = memory.turn_towards(seen, frame).is_some_and(|turn_rad| turn_rad.abs() > VISIBLE_BESIDE_RAD);
+        let is_behind = memory.turn_towards(seen, frame).is_some_and(|turn_rad| turn_rad.abs() > BEHIND_RAD);
         was_ahead(seen, frame)
             && !is_behind
             && !memory.is_left_behind(seen)

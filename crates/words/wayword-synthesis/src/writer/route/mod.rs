@@ -242,6 +242,11 @@ impl WayPlanner<'_> {
         self.brief.profile.way.kind_count(kind)
     }
 
+    /// The frame up to which the text so far describes the walk, at most `at`.
+    fn told_until(&self, at: usize) -> usize {
+        self.clauses.last().map_or(0, |before| before.at + 1).min(at)
+    }
+
     fn push(&mut self, clause: WayClause) {
         self.clauses.push(clause);
     }

@@ -48,7 +48,7 @@ pub(super) enum OfferThings {
     Fair,
     /// Poor landmarks, too.
     Faint,
-    /// Any visible thing, to the side or ahead.
+    /// Poor landmarks, and those of the hop before.
     Any,
 }
 
@@ -87,11 +87,7 @@ impl ThingOffer {
             searches.push(at(frame, MIN_STOP_SALIENCE, LandmarkUse::Onward));
         }
         if self.role == OfferRole::Onward && self.things == OfferThings::Any {
-            let before = frame.saturating_sub(1);
-            searches.extend([
-                at(before, MIN_PASSED_SALIENCE, LandmarkUse::Onward),
-                at(frame, MIN_STOP_SALIENCE, LandmarkUse::Beside),
-            ]);
+            searches.push(at(frame.saturating_sub(1), MIN_PASSED_SALIENCE, LandmarkUse::Onward));
         }
         LandmarkSpot { searches, pair: self.pair, is_spare: self.stands_in_for.is_some() }
     }

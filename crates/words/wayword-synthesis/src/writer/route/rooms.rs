@@ -173,9 +173,9 @@ impl WayPlanner<'_> {
             kinds.push((self.kind_count(ClauseKind::TurnInto) * 1.5, ClauseKind::TurnInto));
             kinds.push((self.kind_count(ClauseKind::EnterOnSide) * 1.5, ClauseKind::EnterOnSide));
         }
-        let told = self.clauses.last().map_or(0, |before| before.at + 1);
+        let told = self.told_until(at);
         let is_next_door =
-            self.memory.walked_m(told.min(at), at) <= MAX_SIDE_DOOR_GAP_M || !self.memory.passes_door(side, told, at);
+            self.memory.walked_m(told, at) <= MAX_SIDE_DOOR_GAP_M || !self.memory.passes_door(side, told, at);
         if opening.has_door && is_next_door {
             kinds.push((self.kind_count(ClauseKind::DoorOnSide) * 4.0, ClauseKind::DoorOnSide));
             kinds.push((self.kind_count(ClauseKind::TurnThroughDoor) * 3.0, ClauseKind::TurnThroughDoor));

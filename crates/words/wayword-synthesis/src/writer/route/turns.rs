@@ -82,15 +82,14 @@ impl WayPlanner<'_> {
     /// Where the walker has gone a long way in a room since the last clause, its first frame and the room.
     fn walked_since(&self, at: usize) -> Option<(usize, &str)> {
         let stay = self.memory.stay_at(at)?;
-        let told = self.clauses.last().map_or(0, |before| before.at + 1);
-        let from = stay.entered.max(told);
+        let from = stay.entered.max(self.told_until(at));
         (!self.along && self.brief.walk.walked_m(from, at) >= LONG_HOP_M).then_some((from, stay.room.as_str()))
     }
 
     /// Whether a walker who hears of a slight turn at a frame would take it at once, some way before it.
     fn is_untold_before(&self, at: usize) -> bool {
         let Some(before) = self.clauses.last() else { return false };
-        !before.kind.goes_on() && self.memory.walked_m((before.at + 1).min(at), at) > MAX_BARE_STOP_GAP_M
+        !before.kind.goes_on() && self.memory.walked_m(self.told_until(at), at) > MAX_BARE_STOP_GAP_M
     }
 
     /// Whether a turn that gets no thing needs a "go straight" before it.
