@@ -59,6 +59,8 @@ impl PathThing {
 const NEARBY_M: f64 = 1.5;
 /// Shorter hops count as staying at the place, metres: some graphs have two viewpoints at one place.
 const MIN_HOP_M: f64 = 0.3;
+/// Things that are farther away do not count as seen, metres: the labels to which the weights were fitted reach this far.
+pub const SEEN_WITHIN_M: f64 = 3.0;
 /// The least slope (rise over run) of a hop that counts as stairs.
 const STAIRS_SLOPE: f64 = 0.25;
 
@@ -86,7 +88,7 @@ impl KnownBuilding {
                     position: label.position.unwrap_or(viewpoint.position),
                     seen_from: Vec::new(),
                 });
-                if thing.seen_from.last() != Some(&at) {
+                if thing.seen_from.last() != Some(&at) && label.distance_m.is_none_or(|far_m| far_m <= SEEN_WITHIN_M) {
                     thing.seen_from.push(at);
                 }
             }

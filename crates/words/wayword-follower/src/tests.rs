@@ -3,7 +3,7 @@
 use crate::{
     FeatureWeights, Guide, GuideTrial, KnownBuilding, WalkFit, WalkPrior, WalkTree, best_walk,
     change::{StepChangeKind, rank_changes},
-    online::{OnwardWeights, WalkerDecision, WalkerHop, WalkerSighting, WalkingFollower},
+    online::{OnwardWeights, WalkerDecision, WalkerHop, WalkerSighting, WalkerThing, WalkingFollower},
     route::{GainThresholds, KnownWalk, UnfollowedReason, judge_route, judge_steps},
     swap::best_swap,
     walk_shares,
@@ -46,6 +46,11 @@ fn label(name: &str, east: f64, north: f64, eye: DVec3) -> ObjectLabel {
 }
 
 pub(crate) fn surveyed() -> ViewpointSurvey {
+    surveyed_at(None)
+}
+
+/// The survey with this distance for each label, metres.
+pub(crate) fn surveyed_at(distance_m: Option<f64>) -> ViewpointSurvey {
     let mut graph = ViewpointGraph::default();
     for (at, (_, east, north, _)) in PLACES.iter().enumerate() {
         graph.add_viewpoint(id(at), DVec3::new(*east, *north, 1.5), Some(1)).unwrap();
@@ -61,6 +66,7 @@ pub(crate) fn surveyed() -> ViewpointSurvey {
             6 => vec![label("oven", 5.5, 5.5, eye)],
             _ => Vec::new(),
         };
+        let things = things.into_iter().map(|label| ObjectLabel { distance_m, ..label }).collect();
         Ok::<_, GraphError>(survey::ViewpointKnowledge { room: Some(PLACES[at].3.to_owned()), things: Some(things) })
     };
     ViewpointSurvey::from_graph(&graph, known).unwrap()
@@ -196,10 +202,17 @@ fn walks_of_two_pieces_pass_no_viewpoint_twice() {
 fn sight(survey: &ViewpointSurvey, here: usize, heading: Heading) -> WalkerSighting {
     let all = survey.viewpoints();
     let hop = |to: &usize| WalkerHop::between(all[here].position, all[*to].position, heading);
+    let hops: Vec<WalkerHop> = all[here].neighbours.iter().map(hop).collect();
     WalkerSighting {
-        hops: all[here].neighbours.iter().map(hop).collect(),
         room: all[here].known.room.clone(),
-        things: all[here].known.things.iter().flatten().map(|label| (label.name.clone(), 0)).collect(),
+        things: all[here]
+            .known
+            .things
+            .iter()
+            .flatten()
+            .filter_map(|label| WalkerThing::from_label(label, &hops, heading))
+            .collect(),
+        hops,
     }
 }
 

@@ -4,7 +4,7 @@ use super::texts::{FollowerScene, WalkedText, mean_scores};
 use rayon::prelude::*;
 use wayword_core::Heading;
 use wayword_follower::online::{
-    OnwardSlope, OnwardWeights, WalkerDecision, WalkerHop, WalkerSighting, WalkingFollower,
+    OnwardSlope, OnwardWeights, WalkerDecision, WalkerHop, WalkerSighting, WalkerThing, WalkingFollower,
 };
 
 /// Hops of a walk in training at most; then the walk is cut off.
@@ -34,9 +34,7 @@ impl<'a> WalkerBody<'a> {
         let hop = |to: &usize| WalkerHop::between(here.position, viewpoints[*to].position, self.heading);
         let hops: Vec<WalkerHop> = here.neighbours.iter().map(hop).collect();
         let labels = here.known.things.iter().flatten();
-        let things = labels
-            .filter_map(|label| Some((label.name.clone(), WalkerHop::nearest_hop(&hops, self.heading, label.heading)?)))
-            .collect();
+        let things = labels.filter_map(|label| WalkerThing::from_label(label, &hops, self.heading)).collect();
         WalkerSighting { hops, room: here.known.room.clone(), things }
     }
 

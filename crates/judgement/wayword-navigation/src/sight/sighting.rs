@@ -6,8 +6,11 @@
 
 use super::AgentView;
 use crate::{directions::named_places, error::WalkError, grounders::labels_of};
-use wayword_core::{CompassPoint, GroundTruth, Heading, View, ViewpointId};
-use wayword_follower::online::{WalkerHop, WalkerSighting};
+use wayword_core::{CompassPoint, GroundTruth, Heading, ObjectLabel, View, ViewpointId};
+use wayword_follower::{
+    SEEN_WITHIN_M,
+    online::{ThingDirection, WalkerHop, WalkerSighting, WalkerThing},
+};
 
 /// The source of the things that an agent is given at a node.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,13 +57,14 @@ impl AgentView<'_> {
         let around = self.cached_views(here)?;
         let (ways, hops) = self.ways_from(here, heading);
         let nearest = |direction: Heading| WalkerHop::nearest_hop(&hops, heading, direction);
-        // The name of each thing, and the index of the way nearest to its direction.
-        let mut found: Vec<(String, usize)> = Vec::new();
+        let mut found: Vec<WalkerThing> = Vec::new();
         match things {
             ThingSource::Labels => {
                 for view in &around.views {
                     let labels = labels_of(view, self.grounder.name())?.0;
-                    found.extend(labels.iter().filter_map(|label| Some((label.name.clone(), nearest(label.heading)?))));
+                    let near = |label: &&ObjectLabel| label.distance_m.is_none_or(|far_m| far_m <= SEEN_WITHIN_M);
+                    let thing = |label| WalkerThing::from_label(label, &hops, heading);
+                    found.extend(labels.iter().filter(near).filter_map(thing));
                 }
             }
             ThingSource::Scores { names, .. } if names.is_empty() => {}
@@ -71,7 +75,8 @@ impl AgentView<'_> {
                     let first = around.onward[view].first().and_then(|to| ways.iter().position(|way| way == to));
                     let Some(hop) = first.or_else(|| nearest(compass.to_heading())) else { continue };
                     let passes = names.iter().zip(&scores[view]).filter(|(_, score)| **score >= *threshold);
-                    found.extend(passes.map(|(name, _)| (name.clone(), hop)));
+                    let place = ThingDirection::Towards(hop);
+                    found.extend(passes.map(|(name, _)| WalkerThing { name: name.clone(), place }));
                 }
             }
         }

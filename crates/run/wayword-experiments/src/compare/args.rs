@@ -65,7 +65,7 @@ pub struct CompareArgs {
     #[arg(long, value_name = "MODEL", default_value = "hf/sentence-transformers/all-MiniLM-L6-v2")]
     pub encoder: String,
     /// Which walks reader-map thinks of: shortest:1-N (the shortest path to each viewpoint 1 to N hops away), or none (walks of two
-    /// shortest pieces). [default: shortest:1-8]
+    /// shortest pieces). [default: shortest:1-20]
     #[arg(long, value_name = "PRIOR")]
     pub prior: Option<AskedPrior>,
     /// What splits an instruction into phrases for the agents that walk by phrases: rules, or a language model as provider/model.
@@ -131,11 +131,19 @@ pub struct CompareArgs {
 const SELECTABLE_AGENTS: [&str; 6] = ["clip-nav", "seq-clip-nav", "glip-nav", "reader", "reader-map", "tools"];
 
 /// The walks that an agent that knows the map considers, as typed with `--prior`.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AskedPrior(pub WalkPrior);
 
 /// Most hops of a walk that an agent considers.
 const MAX_PRIOR_HOPS: usize = 20;
+
+impl Default for AskedPrior {
+    /// All that can be asked for: viewpoints of a generated house stand so close that its paths have up to 20 hops.
+    fn default() -> Self {
+        Self(WalkPrior::Shortest(MAX_PRIOR_HOPS))
+    }
+}
+
 /// Hops of the walks of two pieces.
 const TWO_PIECE_PRIOR_HOPS: usize = 8;
 
@@ -156,7 +164,7 @@ impl FromStr for AskedPrior {
         match hops.filter(|hops| (1..=MAX_PRIOR_HOPS).contains(hops)) {
             Some(hops) => Ok(Self(WalkPrior::Shortest(hops))),
             None if typed == "none" => Ok(Self(WalkPrior::TwoPieces(TWO_PIECE_PRIOR_HOPS))),
-            None => Err(format!("give shortest:1-8 (with 1 to {MAX_PRIOR_HOPS} hops at most) or none")),
+            None => Err(format!("give shortest:1-N with N from 1 to {MAX_PRIOR_HOPS}, or none")),
         }
     }
 }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::{
     made_buildings::{add_thing, make_building, make_corridor},
-    tests::surveyed,
+    tests::{surveyed, surveyed_at},
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -21,6 +21,15 @@ fn from_survey_takes_over_rooms_ways_things_and_storeys() {
     let things: Vec<_> = building.things.iter().map(|thing| (&*thing.name, &*thing.seen_from)).collect();
     assert_eq!(things, [("bed", &[4][..]), ("oven", &[6]), ("plant", &[1])]);
     assert_eq!(building.things[1].position, DVec3::new(5.5, 5.5, 1.0));
+}
+
+#[test]
+fn from_survey_sees_things_within_three_metres_alone_and_keeps_the_others() {
+    let seen_from = |distance_m: Option<f64>| {
+        let building = KnownBuilding::from_survey(&surveyed_at(distance_m));
+        building.things.iter().map(|thing| thing.seen_from.len()).collect::<Vec<_>>()
+    };
+    assert_eq!([seen_from(None), seen_from(Some(3.0)), seen_from(Some(3.1))], [[1; 3], [1; 3], [0; 3]]);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::{
     building::KnownBuilding,
     building_parts::{BuildingThing, BuildingViewpoint},
 };
-use wayword_core::{DVec3, Heading};
+use wayword_core::{DVec3, Heading, ObjectLabel};
 use wayword_language::lexicon::normalise_name;
 
 /// The walker's observation at a viewpoint. Directions are relative to its body.
@@ -14,8 +14,43 @@ pub struct WalkerSighting {
     pub hops: Vec<WalkerHop>,
     /// The room, where the platform has rooms.
     pub room: Option<String>,
-    /// The objects that are seen, each with the number of the hop that lies nearest to its direction.
-    pub things: Vec<(String, usize)>,
+    /// The objects that are seen.
+    pub things: Vec<WalkerThing>,
+}
+
+/// An object that a walker sees.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WalkerThing {
+    /// Its name.
+    pub name: String,
+    /// Where it is.
+    pub place: ThingDirection,
+}
+
+/// Where a walker sees an object, relative to its body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ThingDirection {
+    /// At the end of this way, as if it could be walked.
+    At(WalkerHop),
+    /// Somewhere in the direction of the hop with this number.
+    Towards(usize),
+}
+
+impl WalkerThing {
+    /// The object of a label, for a walker that looks along `heading`; `None` where there is no hop to tell its direction by.
+    #[must_use]
+    pub fn from_label(label: &ObjectLabel, hops: &[WalkerHop], heading: Heading) -> Option<Self> {
+        let at = |length_m| WalkerHop {
+            turn_rad: heading.turn_to(label.heading),
+            elevation_rad: label.elevation_rad,
+            length_m,
+        };
+        let place = match label.distance_m {
+            Some(far_m) => ThingDirection::At(at(far_m)),
+            None => ThingDirection::Towards(WalkerHop::nearest_hop(hops, heading, label.heading)?),
+        };
+        Some(Self { name: label.name.clone(), place })
+    }
 }
 
 /// A way out of a viewpoint.
@@ -102,12 +137,17 @@ impl WalkerMap {
             join_viewpoints(&mut self.building.viewpoints, *to, self.here);
         }
         self.ways[self.here] = ways;
-        for (name, hop) in &sighting.things {
-            let Some(off) = offsets.get(*hop) else { continue };
-            let position = here_m + off.normalize_or_zero() * off.length().min(MAX_THING_DISTANCE_M);
+        for thing in &sighting.things {
+            let off = match thing.place {
+                ThingDirection::At(way) => self.hop_offset(&way),
+                ThingDirection::Towards(hop) => {
+                    let Some(off) = offsets.get(hop) else { continue };
+                    off.normalize_or_zero() * off.length().min(MAX_THING_DISTANCE_M)
+                }
+            };
             self.building.things.push(BuildingThing {
-                name: normalise_name(name),
-                position,
+                name: normalise_name(&thing.name),
+                position: here_m + off,
                 seen_from: vec![self.here],
             });
         }

@@ -5,7 +5,7 @@ mod map;
 mod onward;
 mod reader;
 
-pub use map::{WalkerHop, WalkerSighting};
+pub use map::{ThingDirection, WalkerHop, WalkerSighting, WalkerThing};
 pub(crate) use onward::{HOPS_AWAY_CLASSES, STEPS_LEFT_CLASSES};
 pub use onward::{OnwardFit, OnwardLearner, OnwardSlope, OnwardWeights};
 pub use reader::{WalkerDecision, WalkingFollower};

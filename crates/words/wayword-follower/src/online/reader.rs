@@ -31,9 +31,9 @@ pub struct WalkingFollower<'a> {
 }
 
 /// Most hops of a walker. After these it stops wherever it is.
-const MAX_WALKER_HOPS: usize = 24;
+const MAX_WALKER_HOPS: usize = 60;
 /// Most hops of the walks from the start that a walker considers.
-const MAX_CONSIDERED_HOPS: usize = 10;
+const MAX_CONSIDERED_HOPS: usize = 24;
 /// Deduction for each hop to an option, natural logs, in addition to the fitted weights. The fit only rewards reaching the goal;
 /// going back and forth on the way has a cost too.
 const HOP_COST: f64 = 0.3;

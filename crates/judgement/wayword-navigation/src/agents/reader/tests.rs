@@ -10,6 +10,7 @@ use std::collections::BTreeSet;
 use wayword_core::{
     Heading, ModelError, PhraseGrounder, Platform, View, ViewpointId, ViewpointSurvey, survey::ViewpointKnowledge,
 };
+use wayword_follower::online::{ThingDirection, WalkerThing};
 
 const THINGS: [(&str, &str); 4] = [("n2", "plant"), ("e2", "sofa"), ("s2", "bed"), ("w2", "sink")];
 const ROOMS: [(&str, &str); 3] = [("e2", "living room"), ("s2", "bedroom"), ("w2", "kitchen")];
@@ -76,7 +77,7 @@ fn reader_gets_only_the_surroundings_of_its_node() {
         let room = ROOMS.iter().find(|(at, _)| *at == node).map(|(_, room)| *room);
         assert_eq!(seen.room.as_deref(), room, "{node}");
         let things: Vec<&str> = THINGS.iter().filter(|(at, _)| *at == node).map(|(_, name)| *name).collect();
-        assert_eq!(seen.things.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), things, "{node}");
+        assert_eq!(seen.things.iter().map(|thing| thing.name.as_str()).collect::<Vec<_>>(), things, "{node}");
     }
     let stood: BTreeSet<ViewpointId> = walked.steps.iter().map(|step| step.viewpoint.clone()).collect();
     assert_eq!(world.looked_from(), stood, "nobody looked from elsewhere");
@@ -125,7 +126,11 @@ fn things_by_scores_are_the_names_above_the_threshold() {
     let told = |threshold: f32| {
         let things = ThingSource::named_in("Walk past the sofa in the kitchen to the sink", threshold);
         let told = agent_view.surroundings_at(&id("middle"), Heading::NORTH, &things).unwrap();
-        told.sighting.things.iter().map(|(name, hop)| (name.clone(), told.ways[*hop].to_string())).collect::<Vec<_>>()
+        let way = |thing: &WalkerThing| match thing.place {
+            ThingDirection::Towards(hop) => told.ways[hop].to_string(),
+            ThingDirection::At(_) => panic!("scores tell no distance"),
+        };
+        told.sighting.things.iter().map(|thing| (thing.name.clone(), way(thing))).collect::<Vec<_>>()
     };
     assert_eq!(told(0.3), [("sink".to_owned(), "w1".to_owned())]);
     assert_eq!(told(0.6), []);

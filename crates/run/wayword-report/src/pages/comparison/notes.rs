@@ -170,7 +170,7 @@ fn reader_notes(comparison: &AgentComparison) -> Vec<String> {
     let mut notes = Vec::new();
     if has(READER_AGENT) {
         let things = match about.grounder.starts_with("labels") {
-            true => "and by which way each labelled object lies".to_owned(),
+            true => "and where each labelled object within 3 m is".to_owned(),
             false => {
                 format!("and which things its text names score high enough by {}", printable_name(&about.grounder))
             }

@@ -3,10 +3,10 @@ use crate::{
     features::{WalkStretch, stretch_features, tables},
     learn::FitPlan,
     made_buildings::random_weights,
-    online::{OnwardLearner, WalkerHop},
+    online::{OnwardLearner, ThingDirection, WalkerHop, WalkerThing},
 };
 use std::f64::consts::{FRAC_PI_2, PI};
-use wayword_core::{DVec3, Heading};
+use wayword_core::{DVec3, Heading, ObjectId, ObjectLabel};
 
 fn near(a: f64, b: f64, tolerance: f64) -> bool {
     (a - b).abs() < tolerance
@@ -17,7 +17,9 @@ fn hop(turn_rad: f64, length_m: f64) -> WalkerHop {
 }
 
 fn sight(hops: &[WalkerHop], room: &str, things: &[(&str, usize)]) -> WalkerSighting {
-    let things = things.iter().map(|(name, hop)| ((*name).to_owned(), *hop)).collect();
+    let thing =
+        |(name, hop): &(&str, usize)| WalkerThing { name: (*name).into(), place: ThingDirection::Towards(*hop) };
+    let things = things.iter().map(thing).collect();
     WalkerSighting { hops: hops.to_vec(), room: Some(room.to_owned()), things }
 }
 
@@ -47,6 +49,38 @@ fn nearest_hop_has_the_smallest_angle_to_a_direction() {
         |rad: f64| WalkerHop::nearest_hop(&hops, Heading::NORTH.turned_by(0.5), Heading::NORTH.turned_by(0.5 + rad));
     assert_eq!([0.1, 0.4, 0.6, -1.0, -1.5, 3.0].map(nearest), [Some(0), Some(0), Some(1), Some(0), Some(2), Some(2)]);
     assert_eq!(WalkerHop::nearest_hop(&[], Heading::NORTH, Heading::NORTH), None);
+}
+
+#[test]
+fn walker_map_puts_a_thing_with_a_distance_where_it_is_seen() {
+    let mut map = WalkerMap::new();
+    map.note_sighting(&sight(&[hop(FRAC_PI_2, 2.0)], "hall", &[]));
+    map.go_to(1);
+    let lamp = hop(-FRAC_PI_2, 1.2);
+    let thing = WalkerThing { name: "lamp".into(), place: ThingDirection::At(lamp) };
+    map.note_sighting(&WalkerSighting { things: vec![thing], ..sight(&[hop(PI, 2.0)], "hall", &[]) });
+    assert!(map.building.things[0].position.distance(DVec3::new(2.0, 1.2, 0.0)) < 1e-9);
+}
+
+#[test]
+fn from_label_takes_the_direction_from_the_body_and_the_nearest_hop_without_a_distance() {
+    let label = |distance_m: Option<f64>| ObjectLabel {
+        object: ObjectId::new("7").unwrap(),
+        name: "lamp".into(),
+        heading: Heading::NORTH.turned_by(1.5),
+        elevation_rad: 0.2,
+        box_px: None,
+        distance_m,
+        position: None,
+        room: None,
+        colour: None,
+    };
+    let (hops, east) = ([hop(0.0, 1.0), hop(PI, 1.0)], Heading::NORTH.turned_by(1.0));
+    let place = |label: &ObjectLabel, hops: &[WalkerHop]| WalkerThing::from_label(label, hops, east).map(|it| it.place);
+    let Some(ThingDirection::At(seen)) = place(&label(Some(2.5)), &hops) else { panic!("the label has a distance") };
+    assert!(near(seen.turn_rad, 0.5, 1e-9) && (seen.elevation_rad, seen.length_m) == (0.2, 2.5));
+    assert_eq!(place(&label(None), &hops), Some(ThingDirection::Towards(0)));
+    assert_eq!(place(&label(None), &[]), None);
 }
 
 #[test]
@@ -266,7 +300,7 @@ fn take_hop_ignores_a_hop_that_is_not_there() {
 }
 
 #[test]
-fn decide_next_stops_after_24_hops() {
+fn decide_next_stops_after_60_hops() {
     let guide = Guide::read_text("Walk on. Walk on. Walk on.");
     // Stopping costs so much that the walker always goes on.
     let mut weights = OnwardWeights::by_hand();
@@ -277,9 +311,9 @@ fn decide_next_stops_after_24_hops() {
     while let WalkerDecision::Go(_) = walker.decide_next(&seen) {
         hops += 1;
         seen = sight(&[hop(PI, 2.0), hop(0.3, 2.0)], "hallway", &[]);
-        assert!(hops < 50);
+        assert!(hops <= 60);
     }
-    assert_eq!(hops, 24);
+    assert_eq!(hops, 60);
     let empty = Guide::read_text("");
     let mut walker = WalkingFollower::new(&empty, &weights);
     assert_eq!(walker.decide_next(&sight(&[hop(0.0, 2.0)], "hallway", &[])), WalkerDecision::Stop);
