@@ -6,8 +6,8 @@ use clap::{Parser, Subcommand};
 use std::{path::PathBuf, process::ExitCode};
 use wayword_fit::{fit_alignment, fit_evidence, fit_follower};
 use wayword_quality::{
-    budget, checked_texts, claims, corrupt_people, corruption_findings, corruptions, coverage, critics, detector,
-    doubts, eye, house_faults, house_views, people, reader_figures, reuse, sample, skeleton, stage, steps,
+    arrivals, budget, checked_texts, claims, corrupt_people, corruption_findings, corruptions, coverage, critics,
+    detector, doubts, eye, house_faults, house_views, people, reader_figures, reuse, sample, skeleton, stage, steps,
     study_coverage, sweep, tell_apart, texts, walker,
 };
 use wayword_run::{error::CommandError, output::CommandOutput};
@@ -139,6 +139,8 @@ enum Measurement {
     #[command(mut_arg("show", |show| show.help("Show at most this many corruptions that were not found")))]
     #[command(after_long_help = "")]
     Found(corruption_findings::CorruptionFindingArgs),
+    /// Measure how well the follower foresees who arrives by answers that guides gave: CVDN's dialogues.
+    Arrivals(arrivals::ArrivalsArgs),
     /// Measure how far the follower can be believed: its calibration, wrong turns, other paths' texts, ambiguity.
     ReaderFigures(reader_figures::ReaderFiguresArgs),
     /// Count the words of people's texts that the follower would doubt, because a change would fit the walk better, by kind of change.
@@ -162,6 +164,7 @@ enum Measurement {
 fn main() -> ExitCode {
     let what = MeasureCli::parse().what;
     let is_json = match &what {
+        Measurement::Arrivals(flags) => flags.json,
         Measurement::Critics(flags) => flags.json,
         Measurement::People(flags) => flags.json,
         Measurement::Found(flags) => flags.judging.json,
@@ -211,6 +214,7 @@ fn run_measurement(what: Measurement, output: &CommandOutput) -> Result<(), Comm
         Measurement::People(flags) => people::measure_people(flags, output),
         Measurement::CorruptPeople(flags) => corrupt_people::write_corruptions(&flags, output),
         Measurement::Found(flags) => corruption_findings::measure_corruption_findings(flags, output),
+        Measurement::Arrivals(flags) => arrivals::measure_arrivals(&flags, output),
         Measurement::ReaderFigures(flags) => reader_figures::measure_reader_figures(&flags, output),
         Measurement::Doubts(flags) => doubts::measure_doubts(&flags, output),
         Measurement::Sweep(flags) => sweep::sweep_settings(&flags, output),

@@ -10,9 +10,10 @@
 //!   has word lists of its own (`word_lists.rs`); `locate.rs` decides whether an edited text is wrong.
 //! - [`texts`], [`tell_apart`]: figures of texts, and a classifier that separates generated ones from people's; `texts/listener/` finds a target by labels.
 //! - [`detector`], [`eye`]: what a detector or a flawed eye with given figures does to texts.
-//! - [`reader_figures`], [`critics`], [`sweep`], [`walker`]: followers, critics and agents.
+//! - [`reader_figures`], [`arrivals`], [`critics`], [`sweep`], [`walker`]: followers, critics and agents.
 //! - [`study_coverage`]: how often the intervals of studies cover the truth.
 
+pub mod arrivals;
 pub mod budget;
 pub mod checked_texts;
 pub mod claims;

@@ -2,7 +2,10 @@
 //!
 //! Wrong texts are made in two ways: by flipping a turn of a person's text, and by taking the text of another path in the building.
 
-use crate::{corrupt_people::flip_one_turn, share::aligned_table};
+use crate::{
+    corrupt_people::flip_one_turn,
+    share::{aligned_table, area_under_curve},
+};
 use clap::Args;
 use rand::seq::IndexedRandom;
 use rayon::prelude::*;
@@ -204,20 +207,10 @@ fn calibration_error(cases: &[(f64, bool)]) -> f64 {
     bins.iter().map(|(shares, right)| (shares - right).abs()).sum::<f64>() / cases.len().max(1) as f64
 }
 
-/// How often the second of a pair (of a wrong text) is higher than the first of any pair (of a right one); a tie counts
-/// half. `None` without pairs.
+/// How often the second of a pair (of a wrong text) is higher than the first of any pair (of a right one). `None` without pairs.
 fn pairwise_auc(pairs: &[[f64; 2]]) -> Option<f64> {
-    let mut values: Vec<(f64, bool)> =
-        pairs.iter().flat_map(|[right, wrong]| [(*right, false), (*wrong, true)]).collect();
-    values.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (mut below, mut wins) = (0.0, 0.0);
-    for tied in values.chunk_by(|a, b| a.0 == b.0) {
-        let wrong = tied.iter().filter(|(_, is_wrong)| *is_wrong).count() as f64;
-        let right = tied.len() as f64 - wrong;
-        wins += wrong * (below + right / 2.0);
-        below += right;
-    }
-    (!pairs.is_empty()).then(|| wins / (pairs.len() * pairs.len()) as f64)
+    let cases = pairs.iter().flat_map(|[right, wrong]| [(false, *right), (true, *wrong)]);
+    (!pairs.is_empty()).then(|| area_under_curve(cases.collect()))
 }
 
 #[cfg(test)]

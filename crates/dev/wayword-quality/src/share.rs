@@ -46,6 +46,21 @@ pub(crate) fn share_cell(share: Option<&ClusteredShare>) -> String {
     share.map_or_else(|| "-".to_owned(), ClusteredShare::to_string)
 }
 
+/// The area under the curve of hits over false alarms, for cases that should score higher (true) and lower (false): how often one of
+/// the first scores higher than one of the second. A tie counts half. 0.5 where one side is empty.
+pub(crate) fn area_under_curve(mut scored: Vec<(bool, f64)>) -> f64 {
+    scored.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let (mut below, mut won) = (0.0, 0.0);
+    for same in scored.chunk_by(|a, b| a.1 == b.1) {
+        let positive = same.iter().filter(|(is_hit, _)| *is_hit).count() as f64;
+        let negative = same.len() as f64 - positive;
+        won += positive * (below + negative / 2.0);
+        below += negative;
+    }
+    let positive = scored.len() as f64 - below;
+    if positive * below > 0.0 { won / (positive * below) } else { 0.5 }
+}
+
 /// A table with columns as wide as their widest cell. The first row is its head.
 pub(crate) fn aligned_table(rows: &[Vec<String>]) -> String {
     let columns = rows.first().map_or(0, Vec::len);

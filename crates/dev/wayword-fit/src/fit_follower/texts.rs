@@ -87,7 +87,7 @@ pub fn read_texts(data: &Path, files: &[PathBuf]) -> Result<(Vec<FollowerScene>,
 ///
 /// # Errors
 /// When the data of a building cannot be read.
-pub(crate) fn read_scenes(data: &Path, names: &BTreeSet<&SceneId>) -> Result<Vec<FollowerScene>, CommandError> {
+pub fn read_scenes(data: &Path, names: &BTreeSet<&SceneId>) -> Result<Vec<FollowerScene>, CommandError> {
     survey_scenes(open_matterport(data)?.as_ref(), names)
 }
 
@@ -112,8 +112,15 @@ fn survey_scenes(platform: &dyn Platform, names: &BTreeSet<&SceneId>) -> Result<
 
 impl FollowerScene {
     /// The number of a viewpoint in the building; `None` if the building lacks it.
-    pub(crate) fn viewpoint_number(&self, id: &ViewpointId) -> Option<usize> {
+    #[must_use]
+    pub fn viewpoint_number(&self, id: &ViewpointId) -> Option<usize> {
         self.survey.viewpoint_index(id)
+    }
+
+    /// The position of a viewpoint by its number, metres.
+    #[must_use]
+    pub fn position(&self, viewpoint: usize) -> wayword_core::DVec3 {
+        self.survey.viewpoints()[viewpoint].position
     }
 
     /// The texts of an episode; none if its walk has no hop or a viewpoint is unknown. `number` is the index of this scene.

@@ -7,7 +7,7 @@
 mod grams;
 mod logistic;
 
-use crate::share::ClusteredShare;
+use crate::share::{ClusteredShare, area_under_curve};
 use clap::Args;
 use grams::{GramFeatures, to_plain, word_grams};
 use logistic::{LogisticModel, SparseRow};
@@ -207,20 +207,6 @@ fn assign_folds(texts: &[SideText], folds: usize) -> BTreeMap<String, usize> {
         (building.clone(), least)
     };
     sizes.into_iter().map(place).collect()
-}
-
-/// The area under the curve of hits over false alarms; 0.5 where one side is empty.
-fn area_under_curve(mut scored: Vec<(bool, f64)>) -> f64 {
-    scored.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let (mut below, mut won) = (0.0, 0.0);
-    for same in scored.chunk_by(|a, b| a.1 == b.1) {
-        let positive = same.iter().filter(|(is_generated, _)| *is_generated).count() as f64;
-        let negative = same.len() as f64 - positive;
-        won += positive * (below + negative / 2.0);
-        below += negative;
-    }
-    let positive = scored.len() as f64 - below;
-    if positive * below > 0.0 { won / (positive * below) } else { 0.5 }
 }
 
 /// The runs of words with the greatest weights, of a classifier that saw all texts.
