@@ -18,7 +18,7 @@ use wayword_run::{
     plan::RunPlan,
     platforms::RememberingPlatform,
     run_folder::fresh_id,
-    settings::{EvidenceSources, Perception, RolePlayer, RunJob, RunSettings},
+    settings::RunJob,
     team::RoleTeam,
 };
 use wayword_synthesis::{observe::observe_path, walk::ObservedWalk};
@@ -99,14 +99,9 @@ pub fn measure_claims(flags: &ClaimsArgs, output: &CommandOutput) -> Result<(), 
     Ok(())
 }
 
-/// A job in which only the eye is a model; rules play all other roles.
+/// A job in which only the eye is a model.
 fn claims_job(stage: &MeasurementStage, flags: &ClaimsArgs) -> Result<RunJob, CommandError> {
-    let mut job = stage.writing_job(flags.paths)?;
-    let roles = &mut job.settings.roles;
-    (roles.ask, roles.summarise, roles.write) = (RolePlayer::Rules, RolePlayer::Rules, RolePlayer::Rules);
-    debug_assert!(roles.see != RolePlayer::Labels);
-    let RunSettings { perception, evidence, .. } = &mut job.settings;
-    (*perception, *evidence) = (Perception::Structured, EvidenceSources::default());
+    let mut job = stage.looking_job(flags.paths)?;
     if flags.episodes.is_some() {
         job.settings.episodes.clone_from(&flags.episodes);
         job.settings.paths = 0;

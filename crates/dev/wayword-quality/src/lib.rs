@@ -9,7 +9,7 @@
 //! - [`house_faults`]: faults in our own texts about generated houses, proved by the plan of the house. Like [`corrupt_people`], it
 //!   has word lists of its own (`word_lists.rs`); `locate.rs` decides whether an edited text is wrong.
 //! - [`texts`], [`tell_apart`]: figures of texts, and a classifier that separates generated ones from people's; `texts/listener/` finds a target by labels.
-//! - [`detector`], [`eye`]: what a detector or a flawed eye with given figures does to texts.
+//! - [`detector`], [`eye`]: what a detector or a flawed eye with given figures does to texts; `eye_check` checks texts by such an eye.
 //! - [`reader_figures`], [`arrivals`], [`critics`], [`sweep`], [`walker`]: followers, critics and agents.
 //! - [`study_coverage`]: how often the intervals of studies cover the truth.
 
@@ -26,6 +26,7 @@ pub mod critics;
 pub mod detector;
 pub mod doubts;
 pub mod eye;
+mod eye_check;
 pub mod house_faults;
 pub mod house_views;
 pub mod key;

@@ -15,7 +15,10 @@ use wayword_run::{
     plan::RunPlan,
     platforms,
     run_folder::fresh_id,
-    settings::{AskedPlatform, AskedRoles, AskedSettings, Draw, EvidenceSources, RunJob, Service, Walks, Writing},
+    settings::{
+        AskedPlatform, AskedRoles, AskedSettings, Draw, EvidenceSources, Perception, RolePlayer, RunJob, RunSettings,
+        Service, Walks, Writing,
+    },
     team::RoleTeam,
 };
 use wayword_testkit::provider::{
@@ -59,11 +62,19 @@ pub(super) struct MeasurementStage {
 impl MeasurementStage {
     /// A setup in which `hallucinated_share` of the objects that the scripted eye names are not there.
     pub(super) fn new(asked: &MeasuredWorldArgs, hallucinated_share: f64) -> Result<Self, CommandError> {
+        Self::with_eye(asked, |eye| FlawedEye { hallucinated_share, ..eye })
+    }
+
+    /// A setup with another eye than the usual one, which invents nothing here.
+    pub(super) fn with_eye(
+        asked: &MeasuredWorldArgs,
+        change: impl FnOnce(FlawedEye) -> FlawedEye,
+    ) -> Result<Self, CommandError> {
         let io = |source| CommandError::Io { path: std::env::temp_dir(), doing: "set the measurement up in", source };
         let gallery = PictureGallery::default();
         let platform = platforms::open_platform(&asked_job(asked, 1).resolve()?)?;
         let cast = ScriptedCast::new(
-            FlawedEye::new(gallery.clone(), asked.seed, hallucinated_share),
+            change(FlawedEye::new(gallery.clone(), asked.seed, 0.0)),
             asked.seed,
             TEXT_ROLE_ERROR_SHARE,
         );
@@ -101,6 +112,17 @@ impl MeasurementStage {
             ..asked_job(&self.asked, paths)
         }
         .into_job()
+    }
+
+    /// A job of `paths` paths in which only the eye is a model, and gives structured answers. Rules play all other roles.
+    pub(super) fn looking_job(&self, paths: usize) -> Result<RunJob, CommandError> {
+        let mut job = self.writing_job(paths)?;
+        let roles = &mut job.settings.roles;
+        (roles.ask, roles.summarise, roles.write) = (RolePlayer::Rules, RolePlayer::Rules, RolePlayer::Rules);
+        debug_assert!(roles.see != RolePlayer::Labels);
+        let RunSettings { perception, evidence, .. } = &mut job.settings;
+        (*perception, *evidence) = (Perception::Structured, EvidenceSources::default());
+        Ok(job)
     }
 
     /// The calls in the ledger.
