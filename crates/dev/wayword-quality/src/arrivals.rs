@@ -7,21 +7,19 @@
 
 use crate::share::area_under_curve;
 use clap::Args;
-use rand::Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
-use wayword_core::{Heading, SceneId, ViewpointId, seeded_rng};
+use wayword_core::{Heading, SceneId, ViewpointId};
+use wayword_experiments::compare::args::AskedPrior;
 use wayword_fit::fit_follower::texts::{FollowerScene, read_scenes};
-use wayword_follower::{FeatureWeights, Guide, GuideTrial, WalkFit, WalkPrior, WalkTree, walk_shares};
-use wayword_metrics::percentile_interval;
+use wayword_follower::{FeatureWeights, Guide, GuideTrial, WalkFit, WalkTree, walk_shares};
+use wayword_metrics::{ResamplingOptions, resampled_intervals};
 use wayword_run::{error::CommandError, output::CommandOutput};
 
-/// The walks from the place of the question that the follower considers: as `reader-map` does by default.
-const PRIOR: WalkPrior = WalkPrior::Shortest(20);
 /// Resamples of the interval.
 const RESAMPLE_COUNT: usize = 2_000;
 
@@ -126,7 +124,9 @@ impl GuideAnswer {
         let arrival = came_by.windows(2).next_back();
         let heading = arrival.and_then(|hop| Heading::towards(scene.position(hop[0]), scene.position(hop[1])));
         let heading_rad = heading.map_or(0.0, |heading| heading.rad());
-        let tree = WalkTree::from_prior(&scene.building, *planned.first()?, heading_rad, PRIOR);
+        // The walks that `reader-map` considers by default.
+        let AskedPrior(prior) = AskedPrior::default();
+        let tree = WalkTree::from_prior(&scene.building, *planned.first()?, heading_rad, prior);
         let arrives = |words: &str| {
             let guide = Guide::read_text(words);
             let fit = WalkFit::new(&GuideTrial::new(&guide, &scene.building), &tree, FeatureWeights::fitted());
@@ -151,13 +151,11 @@ impl ArrivalFigures {
         };
         let all: Vec<usize> = (0..foreseen.len()).collect();
         let [auc, auc_words_hidden, auc_planned_length] = [0, 1, 2].map(|score| area(&all, score));
-        let mut rng = seeded_rng(seed, &["arrivals"]);
-        let gains = (0..RESAMPLE_COUNT).map(|_| {
-            let draws = (0..dialogues).map(|_| &by_dialogue[rng.random_range(0..dialogues)]);
-            let drawn: Vec<usize> = draws.flatten().copied().collect();
-            area(&drawn, 0) - area(&drawn, 1)
+        let drawing = ResamplingOptions { resamples: RESAMPLE_COUNT, level: 0.95, seed };
+        let [(gain_low, gain_high)] = resampled_intervals(dialogues, &drawing, |draws| {
+            let drawn: Vec<usize> = draws.iter().flat_map(|dialogue| &by_dialogue[*dialogue]).copied().collect();
+            [area(&drawn, 0) - area(&drawn, 1)]
         });
-        let [gain_low, gain_high] = percentile_interval(gains.collect(), 0.95).unwrap_or([f64::NAN; 2]);
         Self {
             answers: foreseen.len(),
             left_out,

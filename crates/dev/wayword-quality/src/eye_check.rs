@@ -31,75 +31,72 @@ struct SeenWalk {
     memory: WalkMemory,
 }
 
-/// The verdict of each text by what the eye sees along its walk through a generated house. The eye looks once along each walk; walks are
-/// told apart by their ids.
-///
-/// # Errors
-/// When the eye's provider cannot be started, or a view cannot be had.
-pub(crate) fn check_by_eye(
-    texts: &[(&InstructionRecord, &str)],
-    errors: EyeErrors,
-    seed: u64,
-    output: &CommandOutput,
-) -> Result<Vec<Verdict>, CommandError> {
-    let paths: BTreeMap<&str, &Path> =
-        texts.iter().map(|(record, _)| (record.path.id.as_str(), &record.path)).collect();
-    let walks = see_walks(&paths, errors, seed, output)?;
-    let style = InstructionStyle { name: "r2r".to_owned(), ..InstructionStyle::default() };
-    let verdict = |(record, text): &(&InstructionRecord, &str)| {
-        walks.get(record.path.id.as_str()).map_or(Verdict::Unverified, |seen| {
-            let subject = CheckSubject::closed_world(&seen.evidence, &style, None).with_memory(&seen.memory);
-            check_own_text(text, subject).verdict()
-        })
-    };
-    Ok(texts.par_iter().map(verdict).collect())
+/// What an eye sees along walks through generated houses, by the ids of the walks.
+pub(crate) struct EyeWitness<'a> {
+    walks: BTreeMap<&'a str, SeenWalk>,
 }
 
-fn see_walks<'a>(
-    paths: &BTreeMap<&'a str, &Path>,
-    errors: EyeErrors,
-    seed: u64,
-    output: &CommandOutput,
-) -> Result<BTreeMap<&'a str, SeenWalk>, CommandError> {
-    let world = MeasuredWorldArgs { platform: "house".to_owned(), data: None, scan: None, seed };
-    let stage = MeasurementStage::with_eye(&world, |eye| FlawedEye {
-        miss_share: errors.missed,
-        hedge_share: errors.hedged,
-        ..eye
-    })?;
-    let job = stage.looking_job(1)?;
-    let plan = RunPlan::for_looking(&job, &stage.world)?;
-    let calls = plan.models.open_calls(&fresh_id("eye-check"), output)?;
-    let team = RoleTeam::new(&job.settings, calls.as_ref(), &stage.world)?;
-    let see = |(id, path): (&&'a str, &&Path)| {
-        let world = RememberingPlatform::new(&stage.world);
-        // All around, as labels see: texts also name what lies at the side.
-        let seen = observe_path(&world, path, FrameSelection::Panoramic, team.observers())?;
-        let walk = ObservedWalk::new((*path).clone(), seen);
-        let evidence = walk.evidence();
-        Ok(evidence.map(|evidence| (*id, SeenWalk { memory: WalkMemory::from_path(&evidence, &walk.path), evidence })))
-    };
-    let walks: Vec<_> = paths.par_iter().map(see).collect::<Result<_, CommandError>>()?;
-    Ok(walks.into_iter().flatten().collect())
+impl<'a> EyeWitness<'a> {
+    /// Looks all around along each walk, once.
+    ///
+    /// # Errors
+    /// When the eye's provider cannot be started, or a view cannot be had.
+    pub(crate) fn look(
+        records: impl IntoIterator<Item = &'a InstructionRecord>,
+        errors: EyeErrors,
+        seed: u64,
+        output: &CommandOutput,
+    ) -> Result<Self, CommandError> {
+        let paths: BTreeMap<&str, &Path> =
+            records.into_iter().map(|record| (record.path.id.as_str(), &record.path)).collect();
+        let world = MeasuredWorldArgs { platform: "house".to_owned(), data: None, scan: None, seed };
+        let stage = MeasurementStage::with_eye(&world, |eye| FlawedEye {
+            miss_share: errors.missed,
+            hedge_share: errors.hedged,
+            ..eye
+        })?;
+        let job = stage.looking_job(1)?;
+        let plan = RunPlan::for_looking(&job, &stage.world)?;
+        let calls = plan.models.open_calls(&fresh_id("eye-check"), output)?;
+        let team = RoleTeam::new(&job.settings, calls.as_ref(), &stage.world)?;
+        let see = |(id, path): (&&'a str, &&Path)| {
+            let world = RememberingPlatform::new(&stage.world);
+            // All around, as labels see: texts also name what lies at the side.
+            let seen = observe_path(&world, path, FrameSelection::Panoramic, team.observers())?;
+            let walk = ObservedWalk::new((*path).clone(), seen);
+            let memory = |evidence: &Evidence| WalkMemory::from_path(evidence, &walk.path);
+            Ok(walk.evidence().map(|evidence| (*id, SeenWalk { memory: memory(&evidence), evidence })))
+        };
+        let walks: Vec<_> = paths.par_iter().map(see).collect::<Result<_, CommandError>>()?;
+        Ok(Self { walks: walks.into_iter().flatten().collect() })
+    }
+
+    /// The verdict of each text, in a closed world of what the eye saw along its walk; unverified where it saw nothing.
+    pub(crate) fn check(&self, texts: &[(&InstructionRecord, &str)]) -> Vec<Verdict> {
+        let style = InstructionStyle { name: "r2r".to_owned(), ..InstructionStyle::default() };
+        let verdict = |(record, text): &(&InstructionRecord, &str)| {
+            self.walks.get(record.path.id.as_str()).map_or(Verdict::Unverified, |seen| {
+                let subject = CheckSubject::closed_world(&seen.evidence, &style, None).with_memory(&seen.memory);
+                check_own_text(text, subject).verdict()
+            })
+        };
+        texts.par_iter().map(verdict).collect()
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_data::test_instruction;
-    use wayword_core::{PathRequest, Platform};
-    use wayword_house::HousePlatform;
+    use crate::test_data::house_hop_record;
 
     #[test]
-    fn check_by_eye_fails_a_thing_that_the_eye_did_not_see() {
-        let (platform, scene) = (HousePlatform::default(), HousePlatform::scene_of(0).unwrap());
-        let mut path = platform.sample_path(&scene, &PathRequest::default(), 0).unwrap();
-        path.frames.truncate(2);
-        let record = InstructionRecord::new("house", path, test_instruction("r2r", "Stop.", &[]));
+    fn check_fails_a_thing_that_the_eye_did_not_see() {
+        let record = house_hop_record();
         let texts = [(&record, "Walk past the treadmill. Stop."), (&record, "Stop.")];
         let errors = EyeErrors { missed: 0.15, hedged: 0.1 };
-        let verdicts = check_by_eye(&texts, errors, 1, &CommandOutput::new(true, true)).unwrap();
+        let eye = EyeWitness::look([&record], errors, 1, &CommandOutput::new(true, true)).unwrap();
+        let verdicts = eye.check(&texts);
         assert!(verdicts[0] == Verdict::Fail && verdicts[1] != Verdict::Fail, "{verdicts:?}");
-        assert!(check_by_eye(&[], errors, 1, &CommandOutput::new(true, true)).unwrap().is_empty());
+        assert!(eye.check(&[]).is_empty());
     }
 }

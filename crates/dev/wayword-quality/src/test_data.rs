@@ -4,10 +4,11 @@ use crate::stage::MeasuredWorldArgs;
 use std::path::PathBuf;
 use tempfile::TempDir;
 use wayword_core::{
-    DVec3, Heading, Instruction, MentionKind, Path, PathMotion, SceneId, TextMention, TextProvenance, Verdict,
-    path::PathStop,
+    DVec3, Heading, Instruction, MentionKind, Path, PathMotion, PathRequest, Platform, SceneId, TextMention,
+    TextProvenance, Verdict, path::PathStop,
 };
 use wayword_formats::jsonl::InstructionRecord;
+use wayword_house::HousePlatform;
 
 /// An instruction that passed. Each mention is given by its words, which are searched from the end of the last mention.
 pub(crate) fn test_instruction(style: &str, text: &str, mentions: &[(&str, MentionKind)]) -> Instruction {
@@ -60,6 +61,14 @@ pub(crate) fn test_path(id: &str) -> Path {
 
 pub(crate) fn test_record(id: &str, instruction: Instruction) -> InstructionRecord {
     InstructionRecord::new("made up", test_path(id), instruction)
+}
+
+/// A record of the first hop of a walk through a generated house, on which nothing has to be told.
+pub(crate) fn house_hop_record() -> InstructionRecord {
+    let (platform, scene) = (HousePlatform::default(), HousePlatform::scene_of(0).unwrap());
+    let mut path = platform.sample_path(&scene, &PathRequest::default(), 0).unwrap();
+    path.frames.truncate(2);
+    InstructionRecord::new("house", path, test_instruction("r2r", "Stop.", &[]))
 }
 
 /// The test kit's building on disk.

@@ -86,7 +86,8 @@ pub fn clustered_interval_from_draws<C: Ord>(
 ///
 /// `figures` gets the indices of the drawn clusters, some of them repeatedly, and computes all figures of that draw. A value that is
 /// not finite is left out of its figure's interval; the interval is NaN if no draw gives a finite value.
-pub(crate) fn resampled_intervals<const N: usize>(
+#[must_use]
+pub fn resampled_intervals<const N: usize>(
     clusters: usize,
     drawing: &ResamplingOptions,
     mut figures: impl FnMut(&[usize]) -> [f64; N],

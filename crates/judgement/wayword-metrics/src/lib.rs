@@ -25,6 +25,7 @@ mod trajectory;
 
 pub use bootstrap::{
     MeanEstimate, ResamplingOptions, clustered_interval, clustered_interval_from_draws, percentile_interval,
+    resampled_intervals,
 };
 pub use correlation::{kendall_tau_b, pearson_correlation, spearman_correlation};
 pub use hashed_words::HashedWordEncoder;

@@ -9,7 +9,7 @@ use std::{
     collections::BTreeMap,
     sync::{Arc, Mutex, PoisonError},
 };
-use wayword_core::{DVec3, ViewpointSurvey};
+use wayword_core::{DVec3, ObjectLabel, ViewpointSurvey};
 use wayword_language::lexicon::{find_thing, normalise_name};
 
 /// The known part of a building. Positions are metres, z up, in any one frame of reference.
@@ -60,7 +60,7 @@ const NEARBY_M: f64 = 1.5;
 /// Shorter hops count as staying at the place, metres: some graphs have two viewpoints at one place.
 const MIN_HOP_M: f64 = 0.3;
 /// Things that are farther away do not count as seen, metres: the labels to which the weights were fitted reach this far.
-pub const SEEN_WITHIN_M: f64 = 3.0;
+const SEEN_WITHIN_M: f64 = 3.0;
 /// The least slope (rise over run) of a hop that counts as stairs.
 const STAIRS_SLOPE: f64 = 0.25;
 
@@ -88,7 +88,7 @@ impl KnownBuilding {
                     position: label.position.unwrap_or(viewpoint.position),
                     seen_from: Vec::new(),
                 });
-                if thing.seen_from.last() != Some(&at) && label.distance_m.is_none_or(|far_m| far_m <= SEEN_WITHIN_M) {
+                if thing.seen_from.last() != Some(&at) && counts_as_seen(label) {
                     thing.seen_from.push(at);
                 }
             }
@@ -217,6 +217,12 @@ impl KnownBuilding {
         let off = self.viewpoints[to].position - self.viewpoints[from].position;
         (offset_bearing(off), off.length())
     }
+}
+
+/// Whether a label is near enough that its thing counts as seen. One without a distance is.
+#[must_use]
+pub fn counts_as_seen(label: &ObjectLabel) -> bool {
+    label.distance_m.is_none_or(|far_m| far_m <= SEEN_WITHIN_M)
 }
 
 /// The direction of an offset, radians from +y clockwise; `None` straight up or down.

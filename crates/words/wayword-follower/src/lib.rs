@@ -40,7 +40,7 @@ mod tree;
 mod walk_on_graph;
 mod weights;
 
-pub use building::{KnownBuilding, PathPlace, PathThing, SEEN_WITHIN_M};
+pub use building::{KnownBuilding, PathPlace, PathThing, counts_as_seen};
 pub use fit::{MAX_FOLLOW_WORK, WalkFit};
 pub use guide::{Guide, GuideTrial};
 pub use posterior::{best_walk, walk_shares};

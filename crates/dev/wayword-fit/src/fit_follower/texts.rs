@@ -6,7 +6,9 @@ use std::{
     path::{Path, PathBuf},
     sync::Arc,
 };
-use wayword_core::{ObjectId, Platform, SceneId, SurveyedViewpoint, ViewpointGraph, ViewpointId, ViewpointSurvey};
+use wayword_core::{
+    DVec3, ObjectId, Platform, SceneId, SurveyedViewpoint, ViewpointGraph, ViewpointId, ViewpointSurvey,
+};
 use wayword_follower::{Guide, KnownBuilding};
 use wayword_formats::Episode;
 use wayword_run::{
@@ -119,7 +121,7 @@ impl FollowerScene {
 
     /// The position of a viewpoint by its number, metres.
     #[must_use]
-    pub fn position(&self, viewpoint: usize) -> wayword_core::DVec3 {
+    pub fn position(&self, viewpoint: usize) -> DVec3 {
         self.survey.viewpoints()[viewpoint].position
     }
 

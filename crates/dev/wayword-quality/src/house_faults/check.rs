@@ -66,9 +66,7 @@ fn sort_verdicts(report: &CheckReport, texts: usize) -> Result<Vec<Verdict>, Com
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_data::{test_instruction, test_record};
-    use wayword_core::{PathRequest, Platform};
-    use wayword_house::HousePlatform;
+    use crate::test_data::{house_hop_record, test_instruction, test_record};
     use wayword_run::settings::AskedSettings;
 
     #[test]
@@ -81,11 +79,7 @@ mod tests {
 
     #[test]
     fn check_house_texts_gives_verdicts_in_the_order_of_the_texts() {
-        let (platform, scene) = (HousePlatform::default(), HousePlatform::scene_of(0).unwrap());
-        let mut path = platform.sample_path(&scene, &PathRequest::default(), 0).unwrap();
-        // On the first hop nothing has to be told.
-        path.frames.truncate(2);
-        let record = InstructionRecord::new("house", path, test_instruction("r2r", "Stop.", &[]));
+        let record = house_hop_record();
         let texts = [(&record, "Walk past the treadmill. Stop."), (&record, "Stop.")];
         let quiet = CommandOutput::new(true, true);
         let verdicts = check_house_texts(&texts, &AskedSettings::default().resolve().unwrap(), &quiet).unwrap();

@@ -26,7 +26,7 @@ mod turns;
 mod word_lists;
 mod words;
 
-use crate::eye_check::{EyeErrors, check_by_eye};
+use crate::eye_check::{EyeErrors, EyeWitness};
 use check::check_house_texts;
 use clap::Args;
 use kind::HouseFaultKind;
@@ -105,9 +105,11 @@ pub fn measure_house_faults(flags: &HouseFaultsArgs, output: &CommandOutput) -> 
     };
     let placed: Vec<(&InstructionRecord, &str)> =
         subjects.iter().filter_map(|(number, _)| record_text(&records, *number)).collect();
-    let check = |texts: &[(&InstructionRecord, &str)]| match flags.eye {
-        true => check_by_eye(texts, EYE_ERRORS, flags.seed, output),
-        false => check_house_texts(texts, &settings, output),
+    let look = || EyeWitness::look(placed.iter().map(|(record, _)| *record), EYE_ERRORS, flags.seed, output);
+    let eye = flags.eye.then(look).transpose()?;
+    let check = |texts: &[(&InstructionRecord, &str)]| match &eye {
+        Some(eye) => Ok(eye.check(texts)),
+        None => check_house_texts(texts, &settings, output),
     };
     let old_verdicts = check(&placed)?;
     let old: Vec<TextVerdict<'_>> = name_verdicts(&placed, &old_verdicts);

@@ -6,9 +6,9 @@
 
 use super::AgentView;
 use crate::{directions::named_places, error::WalkError, grounders::labels_of};
-use wayword_core::{CompassPoint, GroundTruth, Heading, ObjectLabel, View, ViewpointId};
+use wayword_core::{CompassPoint, GroundTruth, Heading, View, ViewpointId};
 use wayword_follower::{
-    SEEN_WITHIN_M,
+    counts_as_seen,
     online::{ThingDirection, WalkerHop, WalkerSighting, WalkerThing},
 };
 
@@ -62,9 +62,8 @@ impl AgentView<'_> {
             ThingSource::Labels => {
                 for view in &around.views {
                     let labels = labels_of(view, self.grounder.name())?.0;
-                    let near = |label: &&ObjectLabel| label.distance_m.is_none_or(|far_m| far_m <= SEEN_WITHIN_M);
                     let thing = |label| WalkerThing::from_label(label, &hops, heading);
-                    found.extend(labels.iter().filter(near).filter_map(thing));
+                    found.extend(labels.iter().filter(|label| counts_as_seen(label)).filter_map(thing));
                 }
             }
             ThingSource::Scores { names, .. } if names.is_empty() => {}

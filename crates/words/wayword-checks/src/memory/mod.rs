@@ -31,6 +31,8 @@ const SIDE_DOOR_M: f64 = 2.0;
 pub const MAX_SIDE_DOOR_GAP_M: f64 = 1.0;
 /// A text has words for a way that is longer than this, metres.
 pub const MAX_SILENT_WAY_M: f64 = 5.0;
+/// "Down the hallway" goes at least so far along it, metres.
+const MIN_ALONG_M: f64 = 2.0;
 /// A stop without any place lies at most so far behind the last thing that was named, metres.
 pub const MAX_BARE_STOP_GAP_M: f64 = 1.5;
 
@@ -192,6 +194,14 @@ impl WalkMemory {
     pub fn walked_m(&self, from: usize, to: usize) -> f64 {
         let eyes = self.eyes.get(from..=to).unwrap_or_default();
         eyes.windows(2).map(|hop| hop[0].distance(hop[1])).sum()
+    }
+
+    /// Whether the walk goes far enough along the room of a stay, from a frame on, that "along" says something. False where the motion is
+    /// unknown.
+    #[must_use]
+    pub fn goes_along(&self, stay: &RoomStay, from: usize) -> bool {
+        let last = self.frame_count().saturating_sub(1);
+        self.walked_m(stay.entered.max(from).saturating_sub(1), (stay.left + 1).min(last)) >= MIN_ALONG_M
     }
 
     /// Whether a thing may stand in a room where one of these frames lies; true where a room is not known.

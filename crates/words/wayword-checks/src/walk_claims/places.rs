@@ -27,8 +27,6 @@ const APPROACHED_M: f64 = 3.5;
 const REACHED_SLACK_M: f64 = 1.0;
 /// A thing that the walk comes so near to was passed, metres.
 const TOUCHED_M: f64 = 1.3;
-/// "Down the hallway" goes at least so far along it, metres.
-const ALONG_M: f64 = 2.0;
 /// A turn "at the lamp" is at most this far from it, metres; at a wide thing [`NEAR_M`].
 const TURN_M: f64 = 2.2;
 /// "Turn left past the sofa": the sofa is passed at most so long after the turn begins, metres.
@@ -116,13 +114,6 @@ impl PlaceJudge<'_, '_> {
         self.claim.turn_before.is_none_or(turns)
     }
 
-    /// Whether the walk goes some way along a room from the stretch on: past things that the next steps name.
-    fn goes_along(&self, stay: &RoomStay) -> bool {
-        let first = stay.entered.max(self.stretch[0]).saturating_sub(1);
-        let end = (stay.left + 1).min(self.facts.last_frame());
-        first < end && self.facts.length_m([first, end]) >= ALONG_M
-    }
-
     /// Whether a room that is entered soon after the stretch lies straight ahead at its end.
     fn leads_straight_to(&self, entered: usize) -> bool {
         let to = self.stretch[1];
@@ -154,7 +145,11 @@ impl PlaceJudge<'_, '_> {
             PlaceRole::TurnedAt | PlaceRole::TurnedPast | PlaceRole::Passed | PlaceRole::Near | PlaceRole::InSight => {
                 facts.around(self.stretch).find(|frame| facts.is_in_room(*frame, name))
             }
-            PlaceRole::Along => overlap().filter(|_| stays().any(|stay| self.goes_along(stay))),
+            // From the stretch on, past things that the next steps name.
+            PlaceRole::Along => {
+                let goes_along = |stay: &&RoomStay| facts.memory.goes_along(stay, self.stretch[0]);
+                overlap().filter(|_| stays().any(goes_along))
+            }
             PlaceRole::Through | PlaceRole::Within { at_stop: false } => overlap(),
         };
         match found {

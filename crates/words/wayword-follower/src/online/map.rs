@@ -40,13 +40,12 @@ impl WalkerThing {
     /// The object of a label, for a walker that looks along `heading`; `None` where there is no hop to tell its direction by.
     #[must_use]
     pub fn from_label(label: &ObjectLabel, hops: &[WalkerHop], heading: Heading) -> Option<Self> {
-        let at = |length_m| WalkerHop {
-            turn_rad: heading.turn_to(label.heading),
-            elevation_rad: label.elevation_rad,
-            length_m,
-        };
         let place = match label.distance_m {
-            Some(far_m) => ThingDirection::At(at(far_m)),
+            Some(length_m) => ThingDirection::At(WalkerHop {
+                turn_rad: heading.turn_to(label.heading),
+                elevation_rad: label.elevation_rad,
+                length_m,
+            }),
             None => ThingDirection::Towards(WalkerHop::nearest_hop(hops, heading, label.heading)?),
         };
         Some(Self { name: label.name.clone(), place })

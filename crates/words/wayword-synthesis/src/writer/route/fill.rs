@@ -4,7 +4,6 @@
 use super::{
     FILLER_WEIGHT, MAIN_WEIGHT, OfferRole, SIDE_WEIGHT, ThingOffer, WayClause,
     offer::{OfferThings, free_hops, insert_offer},
-    onward::MIN_ALONG_M,
     usable_room,
 };
 use crate::{
@@ -151,7 +150,7 @@ impl PlanFiller<'_> {
                 continue;
             }
             let is_hall = room_name(&room) == Some("hallway");
-            if is_hall && knows_way && memory.walked_m(stay.entered - 1, stay.left + 1) < MIN_ALONG_M {
+            if is_hall && knows_way && !memory.goes_along(stay, stay.entered) {
                 continue;
             }
             let kind = if is_hall { ClauseKind::Along } else { ClauseKind::Through };

@@ -8,9 +8,6 @@ use rand::Rng;
 use wayword_core::Side;
 use wayword_language::lexicon::room_name;
 
-/// "Go along the hallway" is said of at least such a way, metres.
-pub(super) const MIN_ALONG_M: f64 = 2.0;
-
 impl WayPlanner<'_> {
     /// Adds "go along the hallway".
     pub(super) fn go_along(&mut self, at: usize, room: &str, weight: u8) {
@@ -20,10 +17,8 @@ impl WayPlanner<'_> {
 
     /// Whether the walk goes far enough along the room of a frame, from there on, that "go along the hallway" says something.
     pub(super) fn goes_along(&self, at: usize) -> bool {
-        let Some(stay) = self.memory.stay_at(at) else { return false };
-        let last = self.memory.frame_count().saturating_sub(1);
-        let (first, end) = (stay.entered.max(at).saturating_sub(1), (stay.left + 1).min(last));
-        !self.brief.walk.path.motion.is_known() || self.memory.walked_m(first.min(end), end) >= MIN_ALONG_M
+        let knows_way = self.brief.walk.path.motion.is_known();
+        self.memory.stay_at(at).is_some_and(|stay| !knows_way || self.memory.goes_along(stay, at))
     }
 
     /// A hop within a room: past a thing, along the hallway, or at least straight on.
