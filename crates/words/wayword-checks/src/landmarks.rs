@@ -25,7 +25,7 @@ pub(super) struct LandmarkFindings {
 pub(super) struct ShownFrames {
     /// The frames that show it.
     pub(super) frames: Vec<usize>,
-    /// The frames that may show it, because their objects or rooms are not known.
+    /// The frames that may show it, because their objects or rooms are not known, or a witness was unsure.
     pub(super) unknown: Vec<usize>,
 }
 
@@ -169,6 +169,7 @@ impl<'a> SightingIndex<'a> {
             let agreeing = self.frames_of_things.iter().filter(|(name, _)| names_agree(name, &place.name));
             frames.extend(agreeing.flat_map(|(_, frames)| frames));
             unknown.extend(self.evidence.frames_without_things());
+            unknown.extend(self.evidence.frames_perhaps_with(&place.name));
         }
         if find_thing(&place.name).is_some_and(|thing| thing.class == ThingClass::Stairs) {
             frames.extend(self.evidence.frames_on_stairs());

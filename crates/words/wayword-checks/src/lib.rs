@@ -13,7 +13,7 @@
 //! - `evidence/`: the knowledge of a path, one file for each source; `building.rs` and `surroundings.rs` for the things listed around it.
 //! - [`detection`]: what a detector's finds and misses prove, by its measured figures.
 //! - [`memory`]: what stays in mind of a walk. Writers and prompts get it.
-//! - `walk_claims/`: each claim at its own stretch of the walk, where labels and poses are known and frames lie close together.
+//! - `walk_claims/`: each claim at its own stretch of the walk, where poses are known and frames lie close together.
 //! - `walk_coverage`: which decisions of a walk a text tells.
 //! - `align`, `order`, `goal`: the order and the end of a text where `walk_claims` does not judge them.
 //! - `mentioned_parts`: the parts of a text by its mentions alone, where the motion along its path is unknown.
@@ -87,7 +87,7 @@ pub struct CheckSubject<'a> {
     pub writer_sees: bool,
     /// The index of the style's reference texts; where there is none, it is made for each text.
     pub copies: Option<&'a ReferenceRuns>,
-    /// The memory of the walk, with its poses. In a closed world with labels, each claim is held against its own stretch of it.
+    /// The memory of the walk, with its poses. In a closed world, each claim is held against its own stretch of it.
     pub memory: Option<&'a WalkMemory>,
 }
 
@@ -173,13 +173,25 @@ fn check_against(
     // Where the style asks for no task, the object of one is a landmark like any other.
     let object = reading.task.as_ref().and_then(|task| task.object).filter(|_| ends_in_task);
     let places = landmarks::check_landmarks(&reading, subject.evidence, object, from_captions_alone);
-    let on_walk = check_on_walk(&reading, subject, object);
+    let mut on_walk = check_on_walk(&reading, subject, object);
+    if subject.evidence.source.leaves_out() && !from_captions_alone {
+        // What the witnesses left out may be there all the same.
+        on_walk.iter_mut().for_each(walk_claims::WalkFindings::doubt_places);
+    }
     let walk = order::check_order(&reading, subject.evidence, &places.shown);
     let (mut frames, mut parts) = (walk.frames, Vec::new());
     match (subject.world, on_walk) {
         (CheckWorld::Closed, Some(on_walk)) => {
             findings.extend(places.findings);
             findings.extend(floors::check_floors(&reading, subject.evidence));
+            if subject.evidence.source.leaves_out() {
+                let decided =
+                    |finding: &CheckFinding| finding.check != CheckKind::Turns || finding.verdict == Verdict::Fail;
+                findings.extend(walk.findings.into_iter().filter(decided));
+                if let Some(wrong) = goal::check_goal(&reading, subject.evidence, object) {
+                    add_worse(&mut findings, wrong);
+                }
+            }
             on_walk.findings.into_iter().for_each(|finding| add_worse(&mut findings, finding));
             findings.extend(open::repeats::check_repeats(&reading, subject));
             parts = on_walk.parts;
@@ -205,24 +217,24 @@ fn check_against(
 }
 
 /// The parts of a text, each with the frames of its stretch of the walk: the division of the walk in which the fewest claims of the text
-/// are false. `None` where the labels or the motion of the walk are unknown, or its frames lie far apart.
+/// are false. `None` where nothing is known of what it shows, where its motion is unknown, or its frames lie far apart.
 #[must_use]
 pub fn align_with_walk(text: &str, known: (&Evidence, &WalkMemory)) -> Option<Vec<InstructionPart>> {
     let (evidence, _) = known;
     let reading = || read_instruction(text, &known_names(evidence)).into_claims();
-    (evidence.source == EvidenceSource::Labels)
+    (evidence.source != EvidenceSource::Nothing)
         .then(reading)
         .and_then(|reading| walk_claims::align_steps_with_walk(&reading, known))
 }
 
-/// The findings about each claim at its own stretch of the walk, where the labels and the poses of the walk are known.
+/// The findings about each claim at its own stretch of the walk, where its poses and something of what it shows are known.
 fn check_on_walk(
     reading: &TextReading,
     subject: CheckSubject<'_>,
     object: Option<usize>,
 ) -> Option<walk_claims::WalkFindings> {
     let memory = subject.memory.filter(|_| subject.world == CheckWorld::Closed)?;
-    if subject.evidence.source != EvidenceSource::Labels {
+    if subject.evidence.source == EvidenceSource::Nothing {
         return None;
     }
     let steps = read_steps(reading);

@@ -9,6 +9,9 @@ use wayword_core::{
     ViewGaze, ViewThird, ViewpointGraph,
 };
 
+/// What is farther than this is called far, metres.
+const FAR_M: f64 = 4.0;
+
 /// A platform with a barcode in each view instead of a picture of the scene.
 pub struct BarcodePlatform<P> {
     platform: P,
@@ -58,6 +61,7 @@ impl<P: Platform> Platform for BarcodePlatform<P> {
                 name: label.name.clone(),
                 third: third(label),
                 colour: label.colour.clone(),
+                is_far: label.distance_m.is_some_and(|metres| metres > FAR_M),
             });
             self.gallery.add_picture(id, PictureScenery { room: truth.room.clone(), things: things.collect() });
         }
@@ -170,7 +174,7 @@ mod tests {
             .write_image(picture.rgb_bytes(), picture.width_px(), picture.height_px(), ExtendedColorType::Rgb8)
             .unwrap();
         let scenery = gallery.find_scenery(barcode::read_number(&file).unwrap()).unwrap();
-        let thing = |name: &str, third| GalleryThing { name: name.to_owned(), third, colour: None };
+        let thing = |name: &str, third| GalleryThing { name: name.to_owned(), third, colour: None, is_far: false };
         assert_eq!(scenery.things, [thing("lamp", 1), thing("bed", 2)]);
         assert_eq!(scenery.room.as_deref(), Some("cell"));
     }

@@ -15,6 +15,8 @@ pub struct GalleryThing {
     pub third: u8,
     /// Its colour.
     pub colour: Option<String>,
+    /// Whether it is farther than one would call near.
+    pub is_far: bool,
 }
 
 /// The contents of one picture.

@@ -2,7 +2,9 @@
 
 use super::{Evidence, EvidenceSource, FrameEvidence, SeenThing};
 use std::collections::BTreeSet;
-use wayword_core::{CaptionedView, FormOutcome, FrameObservation, ObjectSighting, Path, ViewThird, WitnessAnswer};
+use wayword_core::{
+    Caption, CaptionedView, FormOutcome, FrameObservation, ObjectSighting, Path, ViewThird, WitnessAnswer,
+};
 use wayword_language::lexicon::{kinds_of, names_agree, normalise_name};
 
 impl Evidence {
@@ -36,23 +38,26 @@ impl Evidence {
     }
 }
 
-/// Moves doubtful things to the guesses: a name of which witnesses were unsure at least as often as they were sure is
-/// only perhaps there, in every frame.
+/// A doubt about a thing counts for this many frames before and after: farther off, another thing of its kind may be meant.
+const DOUBT_FRAMES: usize = 2;
+
+/// Moves doubtful things to the guesses: where witnesses of the frames around were unsure of a name at least as often as they were sure,
+/// it is only perhaps there.
 fn move_doubtful_things(frames: &mut [FrameEvidence]) {
-    // In how many frames a list of things, the sure or the doubtful one, has a name.
-    let count = |list: fn(&FrameEvidence) -> &Vec<SeenThing>, frames: &[FrameEvidence], name: &str| {
-        frames.iter().filter(|frame| list(frame).iter().any(|thing| normalise_name(&thing.name) == name)).count()
-    };
-    let names: BTreeSet<String> =
-        frames.iter().flat_map(|frame| &frame.perhaps.things).map(|thing| normalise_name(&thing.name)).collect();
-    let is_doubtful = |name: &String| {
-        count(|frame| &frame.perhaps.things, frames, name) >= count(|frame| &frame.things, frames, name)
-    };
-    let doubtful: BTreeSet<String> = names.into_iter().filter(is_doubtful).collect();
-    for frame in frames {
-        let (doubted, sure) = frame.things.drain(..).partition(|thing| doubtful.contains(&normalise_name(&thing.name)));
-        frame.things = sure;
-        let mut doubted: Vec<SeenThing> = doubted;
+    let names = |things: &[SeenThing]| things.iter().map(|thing| normalise_name(&thing.name)).collect();
+    let sure: Vec<BTreeSet<String>> = frames.iter().map(|frame| names(&frame.things)).collect();
+    let unsure: Vec<BTreeSet<String>> = frames.iter().map(|frame| names(&frame.perhaps.things)).collect();
+    for (at, frame) in frames.iter_mut().enumerate() {
+        let around = at.saturating_sub(DOUBT_FRAMES)..(at + DOUBT_FRAMES + 1).min(sure.len());
+        let count = |list: &[BTreeSet<String>], name: &str| {
+            list[around.clone()].iter().filter(|names| names.contains(name)).count()
+        };
+        let is_doubtful = |thing: &SeenThing| {
+            let name = normalise_name(&thing.name);
+            count(&unsure, &name) >= count(&sure, &name)
+        };
+        let (mut doubted, kept): (Vec<_>, Vec<_>) = frame.things.drain(..).partition(is_doubtful);
+        frame.things = kept;
         frame.perhaps.things.append(&mut doubted);
     }
 }
@@ -84,9 +89,13 @@ fn frame_from_looks(looks: &[CaptionedView], off_rad: &dyn Fn(&CaptionedView) ->
     evidence
 }
 
-/// Whether a caption lists all that its view shows: it is made from an answer in the form that was asked for.
+/// A list of so many things may leave some out.
+const LONG_LIST: usize = 9;
+
+/// Whether a caption lists all that its view shows: it is made from an answer in the form that was asked for, and not cut short.
 fn is_list(look: &CaptionedView) -> bool {
-    look.caption.is_structured && look.caption.form != Some(FormOutcome::Broken)
+    let Caption { is_structured, form, sightings, .. } = &look.caption;
+    *is_structured && *form != Some(FormOutcome::Broken) && sightings.len() < LONG_LIST
 }
 
 /// A thing that a caption names, in a direction from the heading where the caption places it in its view.
@@ -97,6 +106,8 @@ fn seen_thing(sighting: &ObjectSighting, look: &CaptionedView, off_rad: f64) -> 
         name: sighting.name.clone(),
         colour: sighting.colour.clone(),
         more_colours: sighting.more_colours.clone(),
+        is_far: sighting.is_far,
+        several: sighting.several,
         distance_m: sighting.spot.and_then(|spot| spot.distance_m),
         turn_rad: within_rad.map(|within_rad| off_rad + within_rad),
         ..SeenThing::default()
@@ -113,9 +124,7 @@ pub(super) fn denies_name(denied: &str, name: &str) -> bool {
 mod tests {
     use super::*;
     use crate::{CheckSubject, check_own_text, check_text};
-    use wayword_core::{
-        Caption, CheckKind, DVec3, InstructionStyle, PathMotion, SceneId, Verdict, ViewGaze, path::PathStop,
-    };
+    use wayword_core::{CheckKind, DVec3, InstructionStyle, PathMotion, SceneId, Verdict, ViewGaze, path::PathStop};
 
     /// A path straight ahead, with these captions of its frames.
     fn evidence(captions: Vec<Caption>) -> Evidence {
@@ -175,6 +184,26 @@ mod tests {
         ] {
             assert_eq!(places(text, false), wanted, "{text}");
         }
+    }
+
+    #[test]
+    fn a_doubt_farther_off_is_about_another_thing() {
+        use WitnessAnswer::{Seen, Unsure};
+        let lamp = |witness| listed("hallway", &[("lamp", witness)]);
+        let none = || listed("hallway", &[]);
+        let sure = |captions: Vec<Caption>| evidence(captions).frames_with_thing("lamp");
+        assert_eq!(sure(vec![lamp(Unsure), lamp(Seen)]), [0; 0]);
+        assert_eq!(sure(vec![lamp(Unsure), none(), none(), lamp(Seen)]), [3]);
+    }
+
+    #[test]
+    fn a_long_list_may_leave_things_out() {
+        let named = |count: usize| {
+            let names: Vec<String> = (0..count).map(|number| format!("vase {number}")).collect();
+            let things: Vec<_> = names.iter().map(|name| (name.as_str(), WitnessAnswer::Seen)).collect();
+            evidence(vec![listed("hallway", &things); 2]).frames[1].lists_things
+        };
+        assert!(named(LONG_LIST - 1) && !named(LONG_LIST));
     }
 
     #[test]

@@ -84,6 +84,10 @@ pub struct SeenThing {
     pub turn_rad: Option<f64>,
     /// Its distance from the eye, metres, where it is known: of a label to its centre, of a detector's find over the floor.
     pub distance_m: Option<f64>,
+    /// Whether a witness who knows no distance called it far.
+    pub is_far: bool,
+    /// Whether a witness saw several of its kind there.
+    pub several: bool,
     /// Its centre, metres, world frame, where it is known.
     pub position: Option<DVec3>,
     /// The room that it stands in, where that is known.
@@ -233,6 +237,12 @@ impl Evidence {
     #[must_use]
     pub fn frames_with_thing(&self, name: &str) -> Vec<usize> {
         self.frames_where(|frame| frame.things.iter().any(|thing| names_agree(&thing.name, name)))
+    }
+
+    /// The frames from which a witness may have seen something of that name, without being sure.
+    #[must_use]
+    pub fn frames_perhaps_with(&self, name: &str) -> Vec<usize> {
+        self.frames_where(|frame| frame.may_show(name))
     }
 
     /// The frames that lie in a room of that name.

@@ -63,6 +63,13 @@ pub(super) enum ClaimedFact<'a> {
     Length { low_m: f64, high_m: f64 },
 }
 
+impl ClaimedFact<'_> {
+    /// Whether it is about the walker's motion alone, which the poses decide.
+    pub(super) fn is_motion(&self) -> bool {
+        matches!(self, Self::Turn { .. } | Self::Climb(_) | Self::StairEnd { .. } | Self::Length { .. })
+    }
+}
+
 /// How wide a text says that a turn is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TurnSize {

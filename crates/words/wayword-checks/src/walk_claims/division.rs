@@ -15,6 +15,8 @@ const FALSE_TURN_COST: f64 = 1.5;
 const FALSE_CLIMB_COST: f64 = 2.0;
 /// The cost of any other false claim.
 const FALSE_CLAIM_COST: f64 = 1.0;
+/// The cost of a claim that is doubtful there.
+const DOUBTFUL_CLAIM_COST: f64 = 0.4;
 /// The cost of a claim that cannot be decided there, so that a stretch where it holds is preferred.
 const UNDECIDED_COST: f64 = 0.05;
 /// The cost of a motion by a place on no way at all, so that a stretch with a way is preferred.
@@ -67,8 +69,10 @@ fn claim_cost(facts: &WalkFacts<'_>, claim: &StepClaim<'_>, stretch: [usize; 2])
     match (judge_claim(facts, claim, stretch), claim.what) {
         (ClaimOutcome::Holds(_) | ClaimOutcome::Unjudged, _) => 0.0,
         (ClaimOutcome::Unknown(_), _) => UNDECIDED_COST,
+        (ClaimOutcome::IsDoubtful, _) => DOUBTFUL_CLAIM_COST,
         (ClaimOutcome::Fails(_), ClaimedFact::Turn { .. }) => FALSE_TURN_COST,
         (ClaimOutcome::Fails(_), ClaimedFact::Climb(_)) => FALSE_CLIMB_COST,
+        (ClaimOutcome::Fails(_), _) if facts.evidence.source.leaves_out() => DOUBTFUL_CLAIM_COST,
         (ClaimOutcome::Fails(_), _) => FALSE_CLAIM_COST,
     }
 }

@@ -1,9 +1,10 @@
 //! Decides whether a claim holds on a stretch of the walk: turns, climbs, lengths and ends here, places in `places` and `relations`.
 
 use super::{
+    by_sight::judge_by_sight,
     claims::{ClaimedFact, StepClaim, TurnSize},
     facts::WalkFacts,
-    outcome::ClaimOutcome::{self, Fails, Holds, Unjudged, Unknown},
+    outcome::ClaimOutcome::{self, Fails, Holds, IsDoubtful, Unjudged, Unknown},
     places::PlaceJudge,
     relations::{judge_beside, judge_between},
 };
@@ -18,8 +19,23 @@ const LENGTH_FACTOR: f64 = 1.6;
 /// Two hops of a walk, metres.
 const LENGTH_SLACK_M: f64 = 2.0;
 
-/// Decides a claim on a stretch, given by its first and its last frame.
+/// Decides a claim on a stretch, given by its first and its last frame. Witnesses that leave things out can make few claims about places
+/// false; poses alone decide the others.
 pub(super) fn judge_claim(facts: &WalkFacts<'_>, claim: &StepClaim<'_>, stretch: [usize; 2]) -> ClaimOutcome {
+    if !facts.evidence.source.leaves_out() || claim.what.is_motion() {
+        return decide_claim(facts, claim, stretch);
+    }
+    if matches!(claim.what, ClaimedFact::EndOf(_)) && facts.knows_rooms() {
+        return decide_claim(facts, claim, stretch);
+    }
+    judge_by_sight(facts, claim, stretch).unwrap_or_else(|| match decide_claim(facts, claim, stretch) {
+        Fails(_) => IsDoubtful,
+        Unknown(_) => Unjudged,
+        outcome => outcome,
+    })
+}
+
+fn decide_claim(facts: &WalkFacts<'_>, claim: &StepClaim<'_>, stretch: [usize; 2]) -> ClaimOutcome {
     match claim.what {
         ClaimedFact::Turn { side, size } => judge_turn(facts, (side, size), stretch),
         ClaimedFact::Climb(climb) => judge_climb(facts, climb, stretch),

@@ -1,5 +1,5 @@
-//! Holds each claim of a text against its own stretch of the walk, in a closed world where the labels and the poses of the path are
-//! known.
+//! Holds each claim of a text against its own stretch of the walk, in a closed world where the poses of the path are known, and labels or
+//! witnesses say what it shows.
 //!
 //! The steps of the text divide the walk into consecutive stretches, one for each step. Of all divisions, the one is taken with the
 //! least cost: a sum of weights of its false claims and of the turns and flights that it leaves out. What is false or left out in that
@@ -9,11 +9,13 @@
 //!
 //! - `claims`: what each step claims of its stretch.
 //! - `facts`: what is known of the walk: distances, turns, rooms and doors along it.
-//! - `judge`: whether a claim holds on a stretch; `places` and `relations` decide those about places. `outcome`: what is found.
+//! - `judge`: whether a claim holds on a stretch; `places` and `relations` decide those about places, and `by_sight` where witnesses leave
+//!   things out. `outcome`: what is found.
 //! - `untold`: turns and flights that a step leaves out.
 //! - `gaps`: stretches that the text passes over in silence.
 //! - `division`: the search for the best division.
 
+mod by_sight;
 mod claims;
 mod division;
 mod facts;
@@ -53,6 +55,15 @@ pub(super) struct WalkFindings {
     pub(super) frames: Vec<Option<usize>>,
     /// The parts of the text with their stretches.
     pub(super) parts: Vec<InstructionPart>,
+}
+
+impl WalkFindings {
+    /// Makes false claims about places unverified.
+    pub(super) fn doubt_places(&mut self) {
+        let is_about_place = |check| matches!(check, CheckKind::Landmarks | CheckKind::Order);
+        let wrong = self.findings.iter_mut().filter(|finding| finding.verdict == Verdict::Fail);
+        wrong.filter(|finding| is_about_place(finding.check)).for_each(|finding| finding.verdict = Verdict::Unverified);
+    }
 }
 
 /// A walk, divided among the steps of a text.
@@ -151,7 +162,8 @@ pub(super) fn check_walk_claims(
             found.findings.extend(untold_findings(facts, claims, step, *stretch));
         }
     }
-    if tells_way {
+    // What a text leaves unsaid between two doors is known where all doors are.
+    if tells_way && !facts.evidence.source.leaves_out() {
         found.findings.extend(find_gaps(facts, &judged));
     }
     for check in [CheckKind::Order, CheckKind::Turns] {
@@ -166,7 +178,7 @@ pub(super) fn check_walk_claims(
 fn claim_finding(facts: &WalkFacts<'_>, claim: &StepClaim<'_>, outcome: &ClaimOutcome) -> Option<CheckFinding> {
     let finding = |check, verdict, reason| Some(new_finding(check, verdict, reason, Some(claim.span)));
     match outcome {
-        ClaimOutcome::Holds(_) | ClaimOutcome::Unjudged => None,
+        ClaimOutcome::Holds(_) | ClaimOutcome::Unjudged | ClaimOutcome::IsDoubtful => None,
         ClaimOutcome::Unknown(reason) => finding(CheckKind::Landmarks, Verdict::Unverified, reason.clone()),
         ClaimOutcome::Fails(reason) => {
             let whole = [0, facts.last_frame()];

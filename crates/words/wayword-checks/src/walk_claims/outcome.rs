@@ -7,6 +7,8 @@ pub(super) enum ClaimOutcome {
     Holds(usize),
     /// It does not hold.
     Fails(String),
+    /// No witness confirms it there, but these leave things out.
+    IsDoubtful,
     /// It cannot be decided.
     Unknown(String),
     /// Another check decides it: whether there is such a thing along the walk at all.

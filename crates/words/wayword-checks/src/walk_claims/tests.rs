@@ -1,8 +1,8 @@
 //! Texts about one walk through an invented flat: each kind of claim where it holds, at another stretch, and left out.
 
 use crate::{
-    CheckSubject, EndSurroundings, Evidence, EvidenceSource, FrameEvidence, SeenThing, WalkMemory, align_with_walk,
-    check_text,
+    CheckSubject, EndSurroundings, Evidence, EvidenceSource, FrameEvidence, SeenThing, TextFindings, WalkMemory,
+    align_with_walk, check_own_text, check_text,
 };
 use wayword_core::{
     CheckKind, DVec3, Heading, InstructionStyle, ObjectId, Path, PathMotion, SceneId, StyleConstraints, Verdict,
@@ -52,15 +52,19 @@ const KITCHEN_THINGS: [&str; 1] = ["stove"];
 /// How far a thing is seen, metres.
 const SIGHT_M: f64 = 5.0;
 
-fn flat_walk() -> (Evidence, WalkMemory) {
+fn flat_path() -> Path {
     let stop = |at: &[f64; 2]| PathStop { position: DVec3::new(at[0], at[1], 1.5), viewpoint: None, level: None };
-    let path = Path {
+    Path {
         id: "p".into(),
         scene: SceneId::new("s").unwrap(),
         frames: Path::frames_along(STOPS.iter().map(stop).collect(), None),
         motion: PathMotion::Known,
         target: None,
-    };
+    }
+}
+
+fn flat_walk() -> (Evidence, WalkMemory) {
+    let path = flat_path();
     let frames = path.frames.iter().map(|frame| {
         let eye = frame.pose.position;
         let seen = THINGS.iter().enumerate().map(|(number, (name, at))| {
@@ -93,14 +97,39 @@ fn flat_walk() -> (Evidence, WalkMemory) {
     (evidence, memory)
 }
 
-/// The mistakes in a text about the walk: the check, the verdict, the words and the reason of each.
-fn mistakes(text: &str) -> Vec<(CheckKind, Verdict, String, String)> {
-    let (evidence, memory) = flat_walk();
+/// The walk as a witness describes it that names what it sees, but knows no distances: what is farther than 3 m is far.
+fn described_walk() -> (Evidence, WalkMemory) {
+    let (mut evidence, _) = flat_walk();
+    evidence.source = EvidenceSource::Captions;
+    for frame in &mut evidence.frames {
+        frame.lists_things = true;
+        for thing in &mut frame.things {
+            let is_far = thing.distance_m.is_some_and(|far_m| far_m > 3.0);
+            *thing = SeenThing { name: thing.name.clone(), turn_rad: thing.turn_rad, is_far, ..SeenThing::default() };
+        }
+    }
+    let memory = WalkMemory::from_path(&evidence, &flat_path());
+    (evidence, memory)
+}
+
+/// A mistake in a text: the check, the verdict, the words and the reason.
+type FoundMistake = (CheckKind, Verdict, String, String);
+
+/// The mistakes in a text about the walk.
+fn mistakes(text: &str) -> Vec<FoundMistake> {
+    mistakes_by(&flat_walk(), text, check_text)
+}
+
+fn mistakes_by(
+    (evidence, memory): &(Evidence, WalkMemory),
+    text: &str,
+    check: fn(&str, CheckSubject<'_>) -> TextFindings,
+) -> Vec<FoundMistake> {
     let style = InstructionStyle {
         constraints: StyleConstraints { ends_in_task: false, ..StyleConstraints::default() },
         ..InstructionStyle::default()
     };
-    let checked = check_text(text, CheckSubject::closed_world(&evidence, &style, None).with_memory(&memory));
+    let checked = check(text, CheckSubject::closed_world(evidence, &style, None).with_memory(memory));
     let wrong = checked.findings.into_iter().filter(|finding| finding.verdict != Verdict::Pass);
     wrong
         .map(|finding| {
@@ -279,7 +308,7 @@ fn parts_follow_one_another_from_the_first_to_the_last_frame() {
         words.iter().zip(&frames).filter(|(words, _)| words.contains("urn ")).map(|(_, frames)| *frames).collect();
     // The walk turns at the frames 5 and 10.
     assert!(turns[0][0] <= 5 && turns[0][1] > 5 && turns[1][0] <= 10 && turns[1][1] > 10, "{words:?} {frames:?}");
-    let unknown = Evidence { source: EvidenceSource::Captions, ..evidence };
+    let unknown = Evidence { source: EvidenceSource::Nothing, ..evidence };
     assert_eq!(align_with_walk(WHOLE, (&unknown, &memory)), None);
 }
 
@@ -292,4 +321,28 @@ fn a_text_said_twice_fails() {
         "Turn right and enter the bedroom. Turn right and enter the bedroom.",
     ));
     assert!(sentence.iter().any(|found| found.1 == Verdict::Fail), "{sentence:?}");
+}
+
+#[test]
+fn by_descriptions_motion_is_bound_to_the_walk_and_places_only_where_witnesses_can_tell() {
+    let walk = described_walk();
+    let own = |text: &str| mistakes_by(&walk, text, check_own_text);
+    let end = |end: &str| WHOLE.replace("stop by the armchair", end);
+    assert_eq!(own(WHOLE), []);
+    for (text, check, words) in [
+        (WHOLE.replace("Turn right and enter", "Enter"), CheckKind::Turns, ""),
+        (WHOLE.replace("turn left at", "turn right at"), CheckKind::Turns, "right"),
+        (WHOLE.replace("Walk down", "Walk twenty meters down"), CheckKind::Turns, "twenty meters"),
+        (WHOLE.replace("on your right", "on your left"), CheckKind::Landmarks, "bookshelf"),
+        (end("stop by the wardrobe"), CheckKind::Landmarks, "wardrobe"),
+        (end("stop by the four armchairs"), CheckKind::Landmarks, "armchairs"),
+        (end("stop by the armchair next to the bookshelf"), CheckKind::Landmarks, "bookshelf"),
+        (end("stop between the armchair and the bookshelf"), CheckKind::Landmarks, "armchair"),
+    ] {
+        let found = own(&text);
+        let is_it = |found: &FoundMistake| (found.0, found.1) == (check, Verdict::Fail) && found.2.contains(words);
+        assert!(found.iter().any(is_it), "{text}: {found:?}");
+    }
+    let by_others = mistakes_by(&walk, &end("stop by the four armchairs"), check_text);
+    assert!(by_others.iter().all(|found| found.1 == Verdict::Unverified) && !by_others.is_empty(), "{by_others:?}");
 }

@@ -100,8 +100,12 @@ fn invent_scenery(picture: &[u8]) -> (u64, PictureScenery) {
     let mut rng = ChaCha8Rng::from_seed(hash);
     let mut names = INVENTED_NAMES;
     let (names, _) = names.partial_shuffle(&mut rng, 4);
-    let mut thing =
-        |name: &&str| GalleryThing { name: (*name).to_owned(), third: rng.random_range(0..3), colour: None };
+    let mut thing = |name: &&str| GalleryThing {
+        name: (*name).to_owned(),
+        third: rng.random_range(0..3),
+        colour: None,
+        is_far: false,
+    };
     let things = names.iter().map(&mut thing).collect();
     let room = INVENTED_ROOMS[usize::from(hash[0]) % INVENTED_ROOMS.len()].to_owned();
     (rng.random(), PictureScenery { room: Some(room), things })
@@ -207,27 +211,32 @@ impl PictureLook<'_> {
             return self.describe_picture();
         }
         let side = |third: u8| ["left", "middle", "right"][usize::from(third.min(2))];
-        let colour = |name: &str| self.scenery.things.iter().find(|thing| thing.name == name)?.colour.clone();
-        let item = |name: &str, third: u8, guessed: bool| {
+        let item = |thing: &GalleryThing, guessed: bool| {
+            let name = &thing.name;
             // 30 % of the uncertain things come as two alternatives.
             let name = if guessed && self.draw_chance(0.3, &format!("or {name}")) {
                 format!("{name} or cabinet")
             } else {
-                name.to_owned()
+                name.clone()
             };
             json!({
-                "name": name, "colours": colour(&name).into_iter().collect::<Vec<_>>(), "material": "",
-                "side": side(third), "distance": "near", "sure": if guessed { "perhaps" } else { "sure" },
+                "name": name, "colours": thing.colour.iter().collect::<Vec<_>>(), "material": "",
+                "side": side(thing.third), "distance": if thing.is_far { "far" } else { "near" },
+                "sure": if guessed { "perhaps" } else { "sure" },
             })
         };
         let noticed = self.noticed_things();
-        let real = noticed
-            .iter()
-            .map(|(name, third)| item(name, *third, self.draw_chance(self.eye.hedge_share, &format!("hedge {name}"))));
+        // Who sees several of a kind lists two.
+        let real = noticed.iter().flat_map(|(name, _)| {
+            let is_hedged = self.draw_chance(self.eye.hedge_share, &format!("hedge {name}"));
+            let alike = self.scenery.things.iter().filter(|thing| thing.name == *name).take(2);
+            alike.map(|thing| item(thing, is_hedged)).collect::<Vec<_>>()
+        });
         let hallucinated = self.hallucinated_things();
-        let hallucinated = hallucinated
-            .iter()
-            .map(|(name, third)| item(name, *third, self.draw_chance(self.eye.doubt_share, &format!("doubt {name}"))));
+        let hallucinated = hallucinated.iter().map(|(name, third)| {
+            let thing = GalleryThing { name: (*name).to_owned(), third: *third, colour: None, is_far: false };
+            item(&thing, self.draw_chance(self.eye.doubt_share, &format!("doubt {name}")))
+        });
         let mut things: Vec<Value> = real.chain(hallucinated).collect();
         things.shuffle(&mut self.rng_for_purpose("order"));
         let ways: Vec<Value> = noticed
@@ -311,7 +320,7 @@ mod tests {
     use super::*;
 
     fn thing(name: &str) -> GalleryThing {
-        GalleryThing { name: name.to_owned(), third: 1, colour: None }
+        GalleryThing { name: name.to_owned(), third: 1, colour: None, is_far: false }
     }
 
     fn eye(hallucinated_share: f64) -> FlawedEye {
