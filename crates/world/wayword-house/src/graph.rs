@@ -7,6 +7,7 @@ use super::{
     ground::{GroundCell, HouseGround},
     model::House,
 };
+use std::collections::BTreeMap;
 use wayword_core::{DVec3, ViewpointGraph, ViewpointId, graph::GraphError};
 
 /// Height of the eye above the ground, metres.
@@ -125,6 +126,8 @@ impl HouseRoadMap<'_> {
 
     /// Joins parts of the graph that are not connected, with viewpoints at the corners of the shortest way between them.
     fn connect_parts(&mut self, edges: &mut Vec<(usize, usize)>) {
+        // Most of the nearest pairs are compared again after each way.
+        let mut ways: BTreeMap<(usize, usize), Option<Vec<DVec3>>> = BTreeMap::new();
         loop {
             let parts = self.label_parts(edges);
             let apart = |a: &usize, b: &usize| parts[*a] != parts[*b];
@@ -134,8 +137,8 @@ impl HouseRoadMap<'_> {
             let mut pairs: Vec<_> = pairs.collect();
             pairs.sort_by(|a, b| length_m(a).total_cmp(&length_m(b)).then(a.cmp(b)));
             let places = |(a, b): (usize, usize)| {
-                let way = self.ground.shortest_route(self.nodes[a].1, self.nodes[b].1).ok()?;
-                Some((a, b, way.corners))
+                let find_way = || Some(self.ground.shortest_route(self.nodes[a].1, self.nodes[b].1).ok()?.corners);
+                Some((a, b, ways.entry((a, b)).or_insert_with(find_way).clone()?))
             };
             // A pair with furniture or a ceiling between may have no short way; the next nearest pair may. So the ways of
             // the twelve nearest pairs are compared.
