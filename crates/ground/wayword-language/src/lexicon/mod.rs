@@ -1,11 +1,13 @@
 //! The names of things and rooms, and which names mean the same.
 
+mod affordances;
 mod colours;
 mod forms;
 mod normal_spelling;
 mod rooms;
 mod things;
 
+pub use affordances::affords_task;
 pub use colours::same_colour;
 pub use forms::{
     COUNT_WORDS, counted_name, is_plural, means_several, to_plural, to_singular, with_article, without_article,

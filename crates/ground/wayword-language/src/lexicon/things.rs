@@ -94,7 +94,7 @@ static THINGS: LazyLock<ThingLexicon> = LazyLock::new(|| {
 });
 
 /// The class by its name in the list.
-fn class_named(name: &str) -> ThingClass {
+pub(super) fn class_named(name: &str) -> ThingClass {
     match name {
         "seat" => ThingClass::Seat,
         "surface" => ThingClass::Surface,

@@ -5,8 +5,13 @@
 
 use serde_json::{Value, json};
 use std::{
+    collections::{BTreeMap, BTreeSet},
     fs,
     path::{Path, PathBuf},
+};
+use wayword_language::{
+    lexicon::affords_task,
+    reading::{EventContent, read_instruction},
 };
 
 pub(crate) fn data() -> Option<PathBuf> {
@@ -106,4 +111,34 @@ fn agents_follow_the_instructions_of_people_in_val_seen() {
         assert_eq!(swapped["listening"], "shown", "{swapped}");
     }
     assert_eq!(found["about"]["items"], 501);
+}
+
+/// The task on a thing that a text ends in, from its verb on, and the name of the thing.
+fn task_on_thing(text: &str) -> Option<(String, String)> {
+    let reading = read_instruction(text, &BTreeSet::new());
+    let task = reading.task.as_ref()?;
+    let object = &reading.events[task.object?];
+    let EventContent::Place(place) = &object.what else { return None };
+    let before = text[..object.span[0]].to_lowercase();
+    let at = before.rfind(&*task.verb)?;
+    Some((before[at..].trim().to_owned(), place.name.clone()))
+}
+
+#[test]
+fn nearly_every_task_of_people_is_afforded() {
+    let Some(data) = data() else { return };
+    let episodes: Vec<Value> =
+        serde_json::from_slice(&fs::read(data.join("reverie/REVERIE_train.json")).unwrap()).unwrap();
+    let texts = episodes.iter().filter_map(|episode| episode["instructions"].as_array()).flatten();
+    let asked: Vec<_> = texts.filter_map(|text| task_on_thing(text.as_str()?)).collect();
+    let mut refused: BTreeMap<String, usize> = BTreeMap::new();
+    for (task, thing) in asked.iter().filter(|(task, thing)| !affords_task(task, thing)) {
+        *refused.entry(format!("{task} {thing}")).or_default() += 1;
+    }
+    let count: usize = refused.values().sum();
+    let mut most: Vec<_> = refused.into_iter().collect();
+    most.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    most.truncate(40);
+    println!("{count} of {} tasks are not afforded, most often {most:?}", asked.len());
+    assert!(asked.len() > 5_000 && count * 20 < asked.len(), "{count} of {}", asked.len());
 }

@@ -8,7 +8,7 @@ use crate::weighted_draw::draw_weighted;
 use rand_chacha::ChaCha8Rng;
 use std::{collections::BTreeMap, sync::LazyLock};
 use wayword_core::WordingPolicy;
-use wayword_language::lexicon::{ThingClass, find_thing, kinds_of};
+use wayword_language::lexicon::{ThingClass, affords_task, find_thing, kinds_of};
 
 /// A table of constructions with their shares, or with counts: "go to" has 70, "go into" 2.4.
 pub type WordingShares = BTreeMap<String, f64>;
@@ -48,6 +48,7 @@ impl PlaceWording {
     /// instead.
     pub(super) fn from_counts(counts: BTreeMap<String, WordingShares>, texts: f64) -> Self {
         let mut tables = BUILT_IN.tables.clone();
+        tables.entry("choice".to_owned()).or_default().remove("idle");
         for (name, shares) in &mut tables {
             let Some(counted) = counts.get(name) else { continue };
             if name == "share" {
@@ -105,6 +106,12 @@ impl PlaceWording {
         self.tables.get("choice").and_then(|choice| choice.get("sure")).copied().unwrap_or(1.0).clamp(0.0, 1.0)
     }
 
+    /// How often a property that need not be told is told, relative to people.
+    #[must_use]
+    pub fn idle_factor(&self) -> f64 {
+        self.tables.get("choice").and_then(|choice| choice.get("idle")).copied().unwrap_or(1.0).clamp(0.0, 1.0)
+    }
+
     /// The constructions of a table with their shares.
     #[must_use]
     pub fn table(&self, name: &str) -> &WordingShares {
@@ -137,7 +144,7 @@ impl PlaceWording {
     }
 
     /// The verbs for a thing with their counts: those for its own kind, and, if these are few, also those for its more
-    /// general kinds and its class.
+    /// general kinds and its class that one can do with it.
     fn verbs_of(&self, name: &str) -> Vec<(&str, f64)> {
         let mut found: BTreeMap<&str, f64> = BTreeMap::new();
         let mut tasks = 0.0;
@@ -149,7 +156,9 @@ impl PlaceWording {
             // More general tables only fill up to a sufficient number.
             let weight = if tasks >= ENOUGH_TASKS { break } else { (ENOUGH_TASKS - tasks) / all.max(ENOUGH_TASKS) };
             let weight = if tasks == 0.0 { 1.0 } else { weight };
-            shares.iter().for_each(|(key, count)| *found.entry(key).or_default() += count * weight);
+            for (key, count) in shares.iter().filter(|(key, _)| affords_task(key, name)) {
+                *found.entry(key).or_default() += count * weight;
+            }
             tasks += all * weight;
         }
         // "Wipe down the stairs" reads as a climb.

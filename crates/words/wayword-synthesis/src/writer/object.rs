@@ -188,12 +188,22 @@ fn draw_distinctions<'a>(
     for by in all {
         of_kind.entry(by.iter().map(construction_table).collect()).or_default().push(by);
     }
+    // A description that holds another one says more than it has to.
+    let is_idle = |kind: &Vec<&str>| {
+        of_kind.keys().any(|other| other.len() < kind.len() && other.iter().all(|table| kind.contains(table)))
+    };
+    let idle = |kind| if is_idle(kind) { wording.idle_factor() } else { 1.0 };
+    let weights: Vec<f64> =
+        of_kind.iter().map(|(kind, by)| idle(kind) * distinctions_likelihood(by[0], wording)).collect();
     let kinds: Vec<&Vec<&[ObjectDistinction]>> = of_kind.values().collect();
-    let weights: Vec<f64> = kinds.iter().map(|kind| distinctions_likelihood(kind[0], wording)).collect();
     let Some(kind) = draw_weighted(&weights, rng) else { return &[] };
     let cheaper: Vec<f64> = (0..kinds[kind].len()).map(|at| 0.85_f64.powi(at as i32)).collect();
     draw_weighted(&cheaper, rng).map_or(&[], |at| kinds[kind][at])
 }
+
+/// How often a colour that tells an object from others is named, relative to all properties of objects. It shows from everywhere, and readers
+/// find the object by it more surely than by a neighbour. Scans' labels have no colours, so it is not measured.
+const COLOUR_SHARE: f64 = 0.7;
 
 /// How likely a text of the style uses exactly these properties of an object and its room.
 fn distinctions_likelihood(by: &[ObjectDistinction], wording: &PlaceWording) -> f64 {
@@ -205,6 +215,7 @@ fn distinctions_likelihood(by: &[ObjectDistinction], wording: &PlaceWording) -> 
         ObjectDistinction::Level { .. } => odds("level").max(0.4) * 0.8,
         ObjectDistinction::RoomBy { .. } => odds("room by") * 0.6,
         ObjectDistinction::RoomWith { .. } => odds("room with") * 0.25,
+        ObjectDistinction::Colour { .. } => odds("object") * COLOUR_SHARE,
         ObjectDistinction::OnSide { .. } => odds("object") * share("side") * 2.0,
         // "Near" is almost always possible: of the descriptions that single a target out, most contain it.
         ObjectDistinction::Related { relation: ObjectRelation::Near, .. } => odds("object") * share("near") * 1.2,

@@ -42,7 +42,7 @@ pub(super) struct ListingViewpoint {
     pub(super) eye: DVec3,
     /// The number of its room.
     pub(super) room: usize,
-    level: Option<u32>,
+    pub(super) level: Option<u32>,
     pub(super) sights: Vec<ListingSighting>,
 }
 

@@ -15,7 +15,7 @@ mod tests;
 pub use listing::BuildingListing;
 
 use properties::{TargetContext, TargetProperty};
-use wayword_core::{Frame, ObjectDescription, ObjectDistinction, PathTarget};
+use wayword_core::{Frame, ObjectDescription, ObjectDistinction, ObjectRelation, PathTarget};
 
 /// Most descriptions of a target, the cheapest first; dearer ones are dropped.
 const MAX_DESCRIPTIONS: usize = 32;
@@ -42,8 +42,18 @@ pub fn describe_target(target: &mut PathTarget, last: &Frame, listing: &Building
     target.has_namesake = namesakes.contains(&true);
     target.told_by = distinctions_in_view(&context, &properties, &namesakes);
     target.descriptions = search_descriptions(&context, &properties);
+    if let Some(level) = context.level_of_room() {
+        target.descriptions.iter_mut().for_each(|description| tell_level(description, level));
+    }
     target.hangs = context.target_hangs();
     target.storeys = listing.storeys;
+}
+
+/// Adds the storey to a description: a person who hears of a bedroom goes to the first one.
+fn tell_level(description: &mut ObjectDescription, level: u32) {
+    if !description.by.iter().any(|by| matches!(by, ObjectDistinction::Level { .. })) {
+        description.by.insert(0, ObjectDistinction::Level { level });
+    }
 }
 
 /// The single properties that no namesake in view has, the cheapest first.
@@ -166,13 +176,23 @@ fn push_candidate(
     if repeats {
         return;
     }
+    // "The lamp next to the sofa near the window": which of the two stands near the window?
+    let is_near = |told: &&&TargetProperty| {
+        matches!(
+            told.distinction,
+            ObjectDistinction::NextTo { .. } | ObjectDistinction::Related { relation: ObjectRelation::Near, .. }
+        )
+    };
+    if by.iter().filter(is_near).count() > 1 {
+        return;
+    }
     let of_object = |told: &&&TargetProperty| {
         !told.distinction.is_about_room() && !matches!(told.distinction, ObjectDistinction::Colour { .. })
     };
     let more = by.iter().filter(of_object).count() + usize::from(superlative.is_some());
     let has_side = by.iter().any(|property| matches!(property.distinction, ObjectDistinction::OnSide { .. }));
-    // "The lamp by the sofa on the left": it is unclear which of the two is on the left.
-    if has_side && more > 1 {
+    // "The lamp by the sofa on the left": it is unclear which of the two is on the left, and likewise with "the farthest".
+    if (has_side || superlative.is_some()) && more > 1 {
         return;
     }
     let cost = cost + if more > 1 { SECOND_PROPERTY_COST } else { 0.0 };

@@ -167,6 +167,25 @@ impl<'a> TargetContext<'a> {
         all
     }
 
+    /// The storey of the target's room, where rooms of its kind lie on several.
+    pub(super) fn level_of_room(&self) -> Option<u32> {
+        let name = self.listing.rooms[self.place.room].name.as_deref().filter(|_| self.is_in_end_room())?;
+        let level = self.place.level?;
+        let is_alike = |place: &&ListingViewpoint| {
+            self.listing.rooms[place.room].name.as_deref().is_some_and(|other| same_room(name, other))
+        };
+        let mut levels = self.listing.places.iter().filter(is_alike).filter_map(|place| place.level);
+        levels.any(|other| other != level).then_some(level)
+    }
+
+    /// Whether another object of the target's name is in sight at the end, or in the same room.
+    pub(super) fn has_rival_near(&self) -> bool {
+        let is_near = |rival: &usize| {
+            self.sight_of_object(*rival).is_some() || self.object_at(*rival).rooms.contains(&self.place.room)
+        };
+        self.rivals.iter().any(is_near)
+    }
+
     /// "On the left" or "on the right", where the target is clearly to a side: 25 to 155 degrees from the heading.
     fn side_property(&self) -> Option<TargetProperty> {
         let (side, sign) = match self.bearing_deg(self.target)? {

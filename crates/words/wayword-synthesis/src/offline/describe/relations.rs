@@ -22,6 +22,14 @@ const CLEARLY_NEARER_M: f64 = 0.3;
 const SMALL_NEIGHBOUR_COST: f64 = 0.9;
 /// Distances are compared after rounding to this many units per metre, a tenth of a millimetre each.
 const ROUNDING_STEPS_PER_M: f64 = 10_000.0;
+/// A thing near another one, beside it or between two is at most so much higher or lower, metres: what hangs above it is on no side.
+const MAX_BESIDE_RISE_M: f64 = 0.9;
+/// The centre of a lamp or a screen that stands on a table is at least so much higher, metres.
+const MIN_STANDING_RISE_M: f64 = 0.1;
+/// The centre of a thing that stands on another one is at most so much higher, and so far aside, metres.
+const CARRIED_RISE_M: f64 = 0.9;
+/// See [`CARRIED_RISE_M`].
+const CARRIED_ASIDE_M: f64 = 0.75;
 /// Most neighbours of the target that are considered, the nearest first.
 const MAX_NEIGHBOURS: usize = 8;
 
@@ -32,7 +40,9 @@ impl<'a> TargetContext<'a> {
         let seen = self.place.sights.iter().map(|sight| sight.object);
         let tells = |at: &usize| {
             let thing = self.object_at(*at);
-            *at != self.target && !thing.is_like(own) && !is_unclear(thing)
+            // Chairs stand all around a table, and move.
+            let is_moved = own.class == ThingClass::Surface && thing.class == ThingClass::Seat;
+            *at != self.target && !thing.is_like(own) && !is_unclear(thing) && !is_moved && !carries(own, thing)
         };
         let mut near: Vec<(usize, f64)> =
             seen.filter(tells).filter_map(|at| Some((at, centre_distance_m(own, self.object_at(at))?))).collect();
@@ -78,30 +88,21 @@ impl<'a> TargetContext<'a> {
             all.fold(f64::INFINITY, f64::min)
         };
         let related = |relation| ObjectDistinction::Related { relation, to: to.name.clone() };
-        let mut all = vec![self.new_property(related(ObjectRelation::Near), 1.6, |rival| nearest(rival) <= NOT_NEAR_M)];
-        let is_alone =
-            alike.iter().filter(|other| centre_distance_m(own, other).is_none_or(|m| m <= 2.0 * NOT_NEAR_M)).count()
-                == 1;
-        // No rival may be nearer to it, wherever the rival is.
-        let is_nearest = self
-            .rivals
-            .iter()
-            .all(|rival| centre_distance_m(self.object_at(*rival), to).is_none_or(|m| m > 1.05 * apart_m));
-        if is_alone && is_nearest {
-            let told = ObjectDistinction::NextTo { neighbour: to.name.clone() };
-            let may_be = |rival: usize| {
-                let other_m = centre_distance_m(self.object_at(rival), to).unwrap_or(0.0);
-                let is_elsewhere = other_m > (apart_m / CLEARLY_NEARER_SHARE).max(apart_m + CLEARLY_NEARER_M);
-                let own_one = alike.iter().filter(|other| other.position != to.position);
-                let has_own = own_one
-                    .filter_map(|other| centre_distance_m(self.object_at(rival), other))
-                    .any(|m| m <= NOT_NEAR_M);
-                !is_elsewhere || has_own
-            };
-            all.push(self.new_property(told, 1.5, may_be));
+        let rise_m = own.position.zip(to.position).map_or(0.0, |(own, to)| (own.z - to.z).abs());
+        let mut all: Vec<TargetProperty> = Vec::new();
+        let stands_on_it = relation_holds(ObjectRelation::On, own, to, RelationStrictness::Yes);
+        // A chandelier is not "next to" the vase on the table below it, nor a lamp "near" the desk on which it stands.
+        let is_beside = rise_m <= MAX_BESIDE_RISE_M && !stands_on_it;
+        if is_beside {
+            all.push(self.new_property(related(ObjectRelation::Near), 1.6, |rival| nearest(rival) <= NOT_NEAR_M));
+        }
+        // "Closest to" says that there are several.
+        if is_beside && self.has_rival_near() {
+            all.extend(self.closest_property(at, apart_m, &alike));
         }
         for relation in [ObjectRelation::Above, ObjectRelation::Under, ObjectRelation::On] {
-            if relation_holds(relation, own, to, RelationStrictness::Yes) {
+            let is_on = relation == ObjectRelation::On;
+            if relation_holds(relation, own, to, RelationStrictness::Yes) && (is_on || !stands_on_it) {
                 let may_be = |rival: usize| {
                     alike
                         .iter()
@@ -118,13 +119,39 @@ impl<'a> TargetContext<'a> {
         all
     }
 
+    /// "Closest to" the object with this number: no rival is nearer to it, wherever the rival is. `alike` are the things of its name.
+    fn closest_property(&self, at: usize, apart_m: f64, alike: &[&ListingObject]) -> Option<TargetProperty> {
+        let (own, to) = (self.object_at(self.target), self.object_at(at));
+        let around = alike.iter().filter(|other| centre_distance_m(own, other).is_none_or(|m| m <= 2.0 * NOT_NEAR_M));
+        let is_nearest = self
+            .rivals
+            .iter()
+            .all(|rival| centre_distance_m(self.object_at(*rival), to).is_none_or(|m| m > 1.05 * apart_m));
+        if around.count() != 1 || !is_nearest {
+            return None;
+        }
+        let may_be = |rival: usize| {
+            let other_m = centre_distance_m(self.object_at(rival), to).unwrap_or(0.0);
+            let is_elsewhere = other_m > (apart_m / CLEARLY_NEARER_SHARE).max(apart_m + CLEARLY_NEARER_M);
+            let own_one = alike.iter().filter(|other| other.position != to.position);
+            let has_own =
+                own_one.filter_map(|other| centre_distance_m(self.object_at(rival), other)).any(|m| m <= NOT_NEAR_M);
+            !is_elsewhere || has_own
+        };
+        Some(self.new_property(ObjectDistinction::NextTo { neighbour: to.name.clone() }, 1.5, may_be))
+    }
+
     /// Left or right of a thing, as seen from the end.
     fn beside_property(&self, at: usize, alike: &[&ListingObject]) -> Option<TargetProperty> {
         let (own, to) = (self.object_at(self.target), self.object_at(at));
         let rise_m = (own.position?.z - to.position?.z).abs();
         let off_rad = self.sight_of_object(at)?.heading.turn_to(self.sight_of_object(self.target)?.heading);
         let off_deg = off_rad.to_degrees();
-        if rise_m > 0.9 || !(8.0..70.0).contains(&off_deg.abs()) {
+        // What lies in front of a thing, or behind it, is on no side of it.
+        let (own_m, to_m) = (self.distance_m(self.target)?, self.distance_m(at)?);
+        let aside_m = own_m * libm::sin(off_rad.abs());
+        let deeper_m = (own_m * libm::cos(off_rad) - to_m).abs();
+        if rise_m > MAX_BESIDE_RISE_M || !(8.0..70.0).contains(&off_deg.abs()) || aside_m < deeper_m {
             return None;
         }
         let relation = if off_deg > 0.0 { ObjectRelation::RightOf } else { ObjectRelation::LeftOf };
@@ -156,12 +183,27 @@ impl<'a> TargetContext<'a> {
             all_one.iter().any(|a| all_other.iter().any(|b| is_between(object, a, b, degrees).unwrap_or(true)))
         };
         let own = self.object_at(self.target);
-        if one.is_like(other) || !is_between(own, one, other, 140.0)? {
+        let is_level = |thing: &ListingObject| {
+            own.position.zip(thing.position).is_some_and(|(own, there)| (own.z - there.z).abs() <= MAX_BESIDE_RISE_M)
+        };
+        if one.is_like(other) || !is_between(own, one, other, 140.0)? || !is_level(one) || !is_level(other) {
             return None;
         }
         let told = ObjectDistinction::Between { one: one.name.clone(), other: other.name.clone() };
         Some(self.new_property(told, 3.0, |rival| lies_between(self.object_at(rival), 100.0)))
     }
+}
+
+/// Whether a thing stands on another one, so that this is not "next to" it.
+fn carries(furniture: &ListingObject, thing: &ListingObject) -> bool {
+    let (Some(below), Some(above)) = (furniture.position, thing.position) else { return false };
+    let is_furniture =
+        matches!(furniture.class, ThingClass::Bed | ThingClass::Surface | ThingClass::Seat | ThingClass::Container);
+    let hangs = matches!(thing.class, ThingClass::WallArt | ThingClass::Glass | ThingClass::Drape);
+    is_furniture
+        && !hangs
+        && (0.0..CARRIED_RISE_M).contains(&(above.z - below.z))
+        && (above - below).truncate().length() <= CARRIED_ASIDE_M
 }
 
 /// Metres between two centres; `None` where a position is not known.
@@ -196,15 +238,19 @@ fn relation_holds(relation: ObjectRelation, a: &ListingObject, b: &ListingObject
         ObjectRelation::Under if is_strict => (0.25..1.5).contains(&-rise) && aside <= 0.45 + wide,
         ObjectRelation::Under => (0.0..2.0).contains(&-rise) && aside <= 1.2,
         ObjectRelation::On => {
-            let carried =
+            let is_small =
                 matches!(a.class, ThingClass::Textile | ThingClass::Small | ThingClass::Ornament | ThingClass::Plant);
-            let carries = matches!(b.class, ThingClass::Bed | ThingClass::Surface | ThingClass::Seat);
+            // Lamps and screens stand on tables; beside a bed or a seat, they stand on the table there.
+            let stands = (a.class == ThingClass::Screen || a.kind() == "lamp")
+                && b.class == ThingClass::Surface
+                && (!is_strict || rise >= MIN_STANDING_RISE_M);
+            let is_carrier = matches!(b.class, ThingClass::Bed | ThingClass::Surface | ThingClass::Seat);
             let is_there = if is_strict {
                 (-0.05..0.6).contains(&rise) && aside <= 0.5 + wide
             } else {
                 rise.abs() < 1.2 && aside <= 1.5
             };
-            carried && carries && is_there
+            (is_small && is_carrier || stands) && is_there
         }
         _ => false,
     }

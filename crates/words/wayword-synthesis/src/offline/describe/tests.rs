@@ -2,8 +2,8 @@
 
 use super::{BuildingListing, describe_target};
 use wayword_core::{
-    DVec3, Frame, Heading, ObjectDescription, ObjectDistinction, ObjectId, ObjectLabel, PathTarget, Pose,
-    ViewpointGraph, ViewpointId, ViewpointSurvey, graph::GraphError, survey::ViewpointKnowledge,
+    DVec3, Frame, Heading, ObjectDescription, ObjectDistinction, ObjectId, ObjectLabel, ObjectRelation, PathTarget,
+    Pose, ViewpointGraph, ViewpointId, ViewpointSurvey, graph::GraphError, survey::ViewpointKnowledge,
 };
 
 /// A viewpoint: its name, where it is, its room, and the things that are seen there (id, name, where they are).
@@ -16,7 +16,7 @@ fn id(name: &str) -> ViewpointId {
 fn survey(spots: &[Spot<'_>], joined: &[(&str, &str)], has_positions: bool) -> ViewpointSurvey {
     let mut graph = ViewpointGraph::default();
     for (name, eye, ..) in spots {
-        graph.add_viewpoint(id(name), *eye, Some(1)).unwrap();
+        graph.add_viewpoint(id(name), *eye, Some(if eye.z < 3.0 { 1 } else { 2 })).unwrap();
     }
     for (a, b) in joined {
         graph.join_viewpoints(&id(a), &id(b)).unwrap();
@@ -170,4 +170,55 @@ fn describe_mentions_no_thing_twice() {
             .iter()
             .any(|description| description.by.iter().any(|by| by.named_things().next() == Some("shelf")))
     );
+}
+
+#[test]
+fn the_storey_is_told_where_rooms_of_the_kind_lie_on_several() {
+    let level = |above: &str| {
+        let spots: [Spot<'_>; 2] =
+            [("a", EYE, "bedroom", &[("1", "lamp", LEFT)]), ("b", EYE + DVec3::Z * 3.0, above, &[])];
+        let lamp = described("1", &spots, &[], true);
+        lamp.descriptions.iter().all(|description| description.by.contains(&ObjectDistinction::Level { level: 1 }))
+    };
+    assert!(level("bedroom") && !level("kitchen"));
+}
+
+/// The single properties of a target that describe it in some way.
+fn properties(target: &PathTarget) -> impl Iterator<Item = &ObjectDistinction> {
+    target.told_by.iter().chain(target.descriptions.iter().flat_map(|description| &description.by))
+}
+
+#[test]
+fn the_closest_is_told_only_where_there_are_several() {
+    let sofa = ("3", "sofa", LEFT + DVec3::new(0.0, 0.9, 0.0));
+    let other = [("2", "lamp", FAR + DVec3::X)];
+    let alone: [Spot<'_>; 2] = [("a", EYE, "bedroom", &[("1", "lamp", LEFT), sofa]), ("b", FAR, "bedroom", &other)];
+    let lamp = described("1", &alone, &[], true);
+    assert!(properties(&lamp).all(|by| !matches!(by, ObjectDistinction::NextTo { .. })), "{lamp:?}");
+}
+
+#[test]
+fn a_lamp_on_a_desk_is_not_near_it_and_what_hangs_above_is_not_beside() {
+    let things = [
+        ("1", "lamp", LEFT),
+        ("2", "lamp", RIGHT),
+        ("3", "desk", LEFT - DVec3::Z * 0.4),
+        ("4", "picture", LEFT + DVec3::new(0.6, 0.3, 1.2)),
+    ];
+    let lamp = described("1", &[("a", EYE, "office", &things)], &[], true);
+    let of_object = || properties(&lamp).filter(|by| !by.is_about_room());
+    let to_desk: Vec<_> = of_object().filter(|by| by.named_things().any(|name| name == "desk")).collect();
+    let is_on = |by: &&ObjectDistinction| matches!(by, ObjectDistinction::Related { relation: ObjectRelation::On, .. });
+    assert!(!to_desk.is_empty() && to_desk.iter().all(is_on), "{to_desk:?}");
+    assert!(of_object().all(|by| by.named_things().all(|name| name != "picture")), "{lamp:?}");
+}
+
+#[test]
+fn what_lies_in_front_of_a_thing_is_on_no_side_of_it() {
+    let rug = |at: DVec3| {
+        let things = [("1", "rug", at), ("2", "sofa", DVec3::new(0.0, 3.0, 0.4))];
+        let rug = described("1", &[("a", EYE, "bedroom", &things)], &[], true);
+        properties(&rug).any(|by| matches!(by, ObjectDistinction::Related { relation: ObjectRelation::LeftOf, .. }))
+    };
+    assert!(rug(DVec3::new(-1.2, 3.0, 0.0)) && !rug(DVec3::new(-0.5, 1.9, 0.0)));
 }

@@ -22,6 +22,8 @@ pub(super) struct GoalRoom<'a> {
     level_probability: f64,
     /// How many storeys the building has; 0 where that is not known.
     storeys: usize,
+    /// Whether the storey tells the room from others of its kind.
+    level_decides: bool,
 }
 
 /// How often a text names the storey, relative to the style's average: where the storey changes along the path, where
@@ -46,12 +48,17 @@ impl<'a> GoalRoom<'a> {
         let wording = &brief.profile.wording;
         let level_probability = (wording.share_of_texts("level") * need).clamp(0.0, MAX_LEVEL_PROBABILITY);
         let level = path.frames.last().and_then(|frame| frame.level);
-        Self { wording, room, level, climb: last_climb(brief.walk), level_probability, storeys }
+        let descriptions = path.target.iter().flat_map(|target| &target.descriptions);
+        let mut tells_level = descriptions
+            .map(|description| description.by.iter().any(|by| matches!(by, ObjectDistinction::Level { .. })));
+        let level_decides = tells_level.next().is_some_and(|first| first && tells_level.all(|tells| tells));
+        Self { wording, room, level, climb: last_climb(brief.walk), level_probability, storeys, level_decides }
     }
 
-    /// Draws whether the storey is named although it is not needed.
+    /// Whether the storey is named: where it tells the room from others, and else as often as people name it.
     pub(super) fn names_level(&self, rng: &mut ChaCha8Rng) -> bool {
-        rng.random_bool(self.level_probability)
+        let names_it = rng.random_bool(self.level_probability);
+        names_it || self.level_decides
     }
 
     /// Whether the building is known to have another storey.
