@@ -74,6 +74,12 @@ pub struct ObjectDescription {
 }
 
 impl ObjectDescription {
+    /// Whether it names the storey.
+    #[must_use]
+    pub fn tells_level(&self) -> bool {
+        self.by.iter().any(|by| matches!(by, ObjectDistinction::Level { .. }))
+    }
+
     /// Whether it fits one object alone.
     #[must_use]
     pub fn fits_one_object(&self) -> bool {

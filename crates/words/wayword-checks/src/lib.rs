@@ -173,40 +173,32 @@ fn check_against(
     // Where the style asks for no task, the object of one is a landmark like any other.
     let object = reading.task.as_ref().and_then(|task| task.object).filter(|_| ends_in_task);
     let places = landmarks::check_landmarks(&reading, subject.evidence, object, from_captions_alone);
-    let mut on_walk = check_on_walk(&reading, subject, object);
-    if subject.evidence.source.leaves_out() && !from_captions_alone {
-        // What the witnesses left out may be there all the same.
-        on_walk.iter_mut().for_each(walk_claims::WalkFindings::doubt_places);
-    }
+    let on_walk = check_on_walk(&reading, subject, object, from_captions_alone);
     let walk = order::check_order(&reading, subject.evidence, &places.shown);
     let (mut frames, mut parts) = (walk.frames, Vec::new());
     match (subject.world, on_walk) {
-        (CheckWorld::Closed, Some(on_walk)) => {
+        (CheckWorld::Closed, on_walk) => {
             findings.extend(places.findings);
-            findings.extend(floors::check_floors(&reading, subject.evidence));
-            if subject.evidence.source.leaves_out() {
-                let decided =
-                    |finding: &CheckFinding| finding.check != CheckKind::Turns || finding.verdict == Verdict::Fail;
-                findings.extend(walk.findings.into_iter().filter(decided));
+            // By labels, the walk itself decides the end, the order and the turns; by captions, of these the turns.
+            if on_walk.is_none() || subject.evidence.source.leaves_out() {
                 if let Some(wrong) = goal::check_goal(&reading, subject.evidence, object) {
                     add_worse(&mut findings, wrong);
                 }
+                let is_left = |finding: &CheckFinding| {
+                    on_walk.is_none() || finding.check != CheckKind::Turns || finding.verdict == Verdict::Fail
+                };
+                findings.extend(walk.findings.into_iter().filter(is_left));
             }
-            on_walk.findings.into_iter().for_each(|finding| add_worse(&mut findings, finding));
-            findings.extend(open::repeats::check_repeats(&reading, subject));
-            parts = on_walk.parts;
-            // The check of the order knows a frame for places that this one does not judge.
-            for (frame, judged) in frames.iter_mut().zip(on_walk.frames) {
-                *frame = judged.or(*frame);
-            }
-        }
-        (CheckWorld::Closed, None) => {
-            findings.extend(places.findings);
-            if let Some(wrong) = goal::check_goal(&reading, subject.evidence, object) {
-                add_worse(&mut findings, wrong);
-            }
-            findings.extend(walk.findings);
             findings.extend(floors::check_floors(&reading, subject.evidence));
+            if let Some(on_walk) = on_walk {
+                on_walk.findings.into_iter().for_each(|finding| add_worse(&mut findings, finding));
+                findings.extend(open::repeats::check_repeats(&reading, subject));
+                parts = on_walk.parts;
+                // The check of the order knows a frame for places that this one does not judge.
+                for (frame, judged) in frames.iter_mut().zip(on_walk.frames) {
+                    *frame = judged.or(*frame);
+                }
+            }
         }
         (CheckWorld::Open, _) => findings.extend(open::check_open(whole, &reading, subject)),
     }
@@ -232,6 +224,7 @@ fn check_on_walk(
     reading: &TextReading,
     subject: CheckSubject<'_>,
     object: Option<usize>,
+    from_captions_alone: bool,
 ) -> Option<walk_claims::WalkFindings> {
     let memory = subject.memory.filter(|_| subject.world == CheckWorld::Closed)?;
     if subject.evidence.source == EvidenceSource::Nothing {
@@ -239,7 +232,12 @@ fn check_on_walk(
     }
     let steps = read_steps(reading);
     let tells_way = !subject.style.constraints.ends_in_task;
-    walk_claims::check_walk_claims(reading, &steps, (subject.evidence, memory), object, tells_way)
+    let mut found = walk_claims::check_walk_claims(reading, &steps, (subject.evidence, memory), object, tells_way)?;
+    // What the witnesses left out may be there all the same, unless the writer knows only what they named.
+    if subject.evidence.source.leaves_out() && !from_captions_alone {
+        found.doubt_places();
+    }
+    Some(found)
 }
 
 /// Checks a text that this program wrote. It is stricter than [`check_text`]: where the motion is unknown, the writer must

@@ -127,8 +127,10 @@ fn task_on_thing(text: &str) -> Option<(String, String)> {
 #[test]
 fn nearly_every_task_of_people_is_afforded() {
     let Some(data) = data() else { return };
-    let episodes: Vec<Value> =
-        serde_json::from_slice(&fs::read(data.join("reverie/REVERIE_train.json")).unwrap()).unwrap();
+    let Ok(bytes) = fs::read(data.join("reverie/REVERIE_train.json")) else {
+        return println!("skipped: there is no reverie/REVERIE_train.json in {}", data.display());
+    };
+    let episodes: Vec<Value> = serde_json::from_slice(&bytes).unwrap();
     let texts = episodes.iter().filter_map(|episode| episode["instructions"].as_array()).flatten();
     let asked: Vec<_> = texts.filter_map(|text| task_on_thing(text.as_str()?)).collect();
     let mut refused: BTreeMap<String, usize> = BTreeMap::new();

@@ -26,7 +26,7 @@ const FRAMES_OF_PAIR: usize = 3;
 /// A thing that a step passes is at the side at most so many frames before and after its stretch, of which the witnesses are not sure.
 const FRAMES_OF_PASSING: usize = 3;
 /// A thing that one passes is seen in such directions to the side, degrees.
-const SIDEWAYS_DEG: std::ops::RangeInclusive<f64> = 50.0..=130.0;
+const SIDEWAYS_DEG: RangeInclusive<f64> = 50.0..=130.0;
 /// Two things beside each other are seen in directions that differ by at most this angle; if both are near, by twice as much, degrees.
 const BESIDE_DEG: f64 = 60.0;
 /// A walker between two things sees them in directions that differ by at least this angle, where a witness only names thirds of a view,
@@ -68,6 +68,11 @@ fn seen_from<'f>(
     things.filter(|thing| names_agree(&thing.name, &place.name))
 }
 
+/// Whether a place is too wide, or one of too many, to be near a spot or far from it.
+fn has_no_spot(place: &PlaceMention) -> bool {
+    place.is_room || is_wide(&place.name) || is_any_door(&place.name)
+}
+
 /// Whether the number of a kind of thing is more than any witness names.
 fn judge_count<'f>(
     facts: &WalkFacts<'f>,
@@ -88,17 +93,16 @@ fn judge_stop<'f>(
     place: &'f PlaceMention,
     frames: RangeInclusive<usize>,
 ) -> Option<ClaimOutcome> {
-    if place.is_room || is_wide(&place.name) || is_any_door(&place.name) {
+    if has_no_spot(place) {
         return None;
     }
-    let frames = facts.evidence.frames.get(frames)?;
-    let is_it = |thing: &&SeenThing| names_agree(&thing.name, &place.name);
-    let mut seen = frames.iter().flat_map(|frame| &frame.things).filter(is_it).peekable();
+    let mut seen = frames.clone().flat_map(|frame| seen_from(facts, place, frame)).peekable();
     seen.peek()?;
     if !seen.all(|thing| thing.is_far) {
         return None;
     }
-    Some(match frames.iter().any(|frame| frame.may_show(&place.name)) {
+    let may_show = |frame: &FrameEvidence| frame.may_show(&place.name);
+    Some(match facts.evidence.frames.get(frames)?.iter().any(may_show) {
         true => Unknown(format!("the program cannot check whether {:?} is near the end", place.name)),
         false => Fails(format!("{:?} is seen only far from where the path ends", place.name)),
     })
@@ -134,7 +138,7 @@ fn judge_pair<'f>(
     frames: RangeInclusive<usize>,
     relation: PairRelation,
 ) -> Option<ClaimOutcome> {
-    if [one, other].iter().any(|place| place.is_room || is_wide(&place.name) || is_any_door(&place.name)) {
+    if [one, other].into_iter().any(has_no_spot) {
         return None;
     }
     let fits = |a: &SeenThing, b: &SeenThing| {

@@ -92,24 +92,29 @@ impl PlaceWording {
         }
     }
 
+    /// A number of the table of choices; 1 where it has none of that name.
+    fn choice(&self, name: &str) -> f64 {
+        self.table("choice").get(name).copied().unwrap_or(1.0)
+    }
+
     /// The exponent of shares in [`Self::draw_sharply`]. Over 1, frequent constructions are drawn even more often than
     /// people use them.
     #[must_use]
     pub fn sharp_power(&self) -> f64 {
-        self.tables.get("choice").and_then(|choice| choice.get("sharp")).copied().unwrap_or(1.0).clamp(0.0, 10.0)
+        self.choice("sharp").clamp(0.0, 10.0)
     }
 
     /// The share of texts in which the target has to be singled out, if that is possible. The other texts mention as
     /// much as people do.
     #[must_use]
     pub fn sure_share(&self) -> f64 {
-        self.tables.get("choice").and_then(|choice| choice.get("sure")).copied().unwrap_or(1.0).clamp(0.0, 1.0)
+        self.choice("sure").clamp(0.0, 1.0)
     }
 
     /// How often a property that need not be told is told, relative to people.
     #[must_use]
     pub fn idle_factor(&self) -> f64 {
-        self.tables.get("choice").and_then(|choice| choice.get("idle")).copied().unwrap_or(1.0).clamp(0.0, 1.0)
+        self.choice("idle").clamp(0.0, 1.0)
     }
 
     /// The constructions of a table with their shares.

@@ -51,7 +51,7 @@ pub fn describe_target(target: &mut PathTarget, last: &Frame, listing: &Building
 
 /// Adds the storey to a description: a person who hears of a bedroom goes to the first one.
 fn tell_level(description: &mut ObjectDescription, level: u32) {
-    if !description.by.iter().any(|by| matches!(by, ObjectDistinction::Level { .. })) {
+    if !description.tells_level() {
         description.by.insert(0, ObjectDistinction::Level { level });
     }
 }

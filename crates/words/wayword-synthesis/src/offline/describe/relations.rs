@@ -88,11 +88,10 @@ impl<'a> TargetContext<'a> {
             all.fold(f64::INFINITY, f64::min)
         };
         let related = |relation| ObjectDistinction::Related { relation, to: to.name.clone() };
-        let rise_m = own.position.zip(to.position).map_or(0.0, |(own, to)| (own.z - to.z).abs());
         let mut all: Vec<TargetProperty> = Vec::new();
         let stands_on_it = relation_holds(ObjectRelation::On, own, to, RelationStrictness::Yes);
         // A chandelier is not "next to" the vase on the table below it, nor a lamp "near" the desk on which it stands.
-        let is_beside = rise_m <= MAX_BESIDE_RISE_M && !stands_on_it;
+        let is_beside = height_between_m(own, to).is_none_or(|rise_m| rise_m <= MAX_BESIDE_RISE_M) && !stands_on_it;
         if is_beside {
             all.push(self.new_property(related(ObjectRelation::Near), 1.6, |rival| nearest(rival) <= NOT_NEAR_M));
         }
@@ -144,7 +143,7 @@ impl<'a> TargetContext<'a> {
     /// Left or right of a thing, as seen from the end.
     fn beside_property(&self, at: usize, alike: &[&ListingObject]) -> Option<TargetProperty> {
         let (own, to) = (self.object_at(self.target), self.object_at(at));
-        let rise_m = (own.position?.z - to.position?.z).abs();
+        let rise_m = height_between_m(own, to)?;
         let off_rad = self.sight_of_object(at)?.heading.turn_to(self.sight_of_object(self.target)?.heading);
         let off_deg = off_rad.to_degrees();
         // What lies in front of a thing, or behind it, is on no side of it.
@@ -183,9 +182,7 @@ impl<'a> TargetContext<'a> {
             all_one.iter().any(|a| all_other.iter().any(|b| is_between(object, a, b, degrees).unwrap_or(true)))
         };
         let own = self.object_at(self.target);
-        let is_level = |thing: &ListingObject| {
-            own.position.zip(thing.position).is_some_and(|(own, there)| (own.z - there.z).abs() <= MAX_BESIDE_RISE_M)
-        };
+        let is_level = |thing| height_between_m(own, thing).is_some_and(|rise_m| rise_m <= MAX_BESIDE_RISE_M);
         if one.is_like(other) || !is_between(own, one, other, 140.0)? || !is_level(one) || !is_level(other) {
             return None;
         }
@@ -209,6 +206,11 @@ fn carries(furniture: &ListingObject, thing: &ListingObject) -> bool {
 /// Metres between two centres; `None` where a position is not known.
 fn centre_distance_m(a: &ListingObject, b: &ListingObject) -> Option<f64> {
     Some(a.position?.distance(b.position?))
+}
+
+/// How much higher one of two centres is than the other, metres; `None` where a position is not known.
+fn height_between_m(a: &ListingObject, b: &ListingObject) -> Option<f64> {
+    Some((a.position?.z - b.position?.z).abs())
 }
 
 /// Whether a relation has to hold clearly (for the target) or may just hold (for a rival).

@@ -7,7 +7,7 @@ use crate::{
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
-use wayword_core::{ClimbDirection, ObjectDistinction};
+use wayword_core::{ClimbDirection, ObjectDescription, ObjectDistinction};
 use wayword_language::lexicon::{room_name, with_article};
 
 /// The room where a path ends.
@@ -48,10 +48,8 @@ impl<'a> GoalRoom<'a> {
         let wording = &brief.profile.wording;
         let level_probability = (wording.share_of_texts("level") * need).clamp(0.0, MAX_LEVEL_PROBABILITY);
         let level = path.frames.last().and_then(|frame| frame.level);
-        let descriptions = path.target.iter().flat_map(|target| &target.descriptions);
-        let mut tells_level = descriptions
-            .map(|description| description.by.iter().any(|by| matches!(by, ObjectDistinction::Level { .. })));
-        let level_decides = tells_level.next().is_some_and(|first| first && tells_level.all(|tells| tells));
+        let descriptions = path.target.as_ref().map_or(&[][..], |target| &target.descriptions);
+        let level_decides = !descriptions.is_empty() && descriptions.iter().all(ObjectDescription::tells_level);
         Self { wording, room, level, climb: last_climb(brief.walk), level_probability, storeys, level_decides }
     }
 
