@@ -1,21 +1,21 @@
 //! The memory of a walk: each thing once, the rooms in the order in which one passes them, the bends, the flights of
 //! stairs and the openings between rooms. It is made of the evidence and the path alone, for writers and checks alike.
 
+mod doors;
 mod openings;
 mod stays_and_bends;
 #[cfg(test)]
 mod tests;
 mod things;
 
-pub(crate) use openings::{IN_DOOR_M, frames_at_doors, is_any_door, is_door};
+pub(crate) use openings::{IN_DOOR_M, frames_at_doors, is_any_door, is_door, is_way_through};
 pub use openings::{RoomOpening, leads_through_a_door};
 pub use stays_and_bends::{RoomStay, StairFlight, WalkBend};
 pub use things::{AHEAD_FRAMES, RememberedThing, ThingGlimpse, ThingPassing};
 
 use crate::{Evidence, EvidenceSource};
-use openings::OPENING_DOOR_M;
 use std::ops::RangeInclusive;
-use wayword_core::{DVec3, Heading, Path, Side};
+use wayword_core::{DVec3, Heading, Path, Side, motion};
 use wayword_language::lexicon::{names_agree, same_room};
 
 /// What a walker passed so long before the end of a walk is no thing to stop at, metres; what lies behind the walker there has to be so
@@ -25,8 +25,6 @@ pub(crate) const BEHIND_STOP_M: f64 = 1.0;
 const FIRST_STOP_M: f64 = 2.0;
 /// A walker may go on so far without a word, metres. R2R counts a walker who stops within this of the goal as arrived.
 pub const MAX_TOLD_GAP_M: f64 = 3.0;
-/// A door at the side of the walk lies at most so far from it, metres.
-const SIDE_DOOR_M: f64 = 2.0;
 /// A door "on the left" that is farther than this behind the last thing that was named is not taken for the next one, metres.
 pub const MAX_SIDE_DOOR_GAP_M: f64 = 1.0;
 /// A text has words for a way that is longer than this, metres.
@@ -72,7 +70,7 @@ impl WalkMemory {
         let things = things::remember_things(evidence, &eyes, &headings);
         let bends = stays_and_bends::find_bends(&evidence.moves);
         let mut stays = stays_and_bends::find_stays(evidence);
-        let doors = openings::doors_of_hops(&things, &eyes);
+        let doors = openings::hops_to_doors(&things, &eyes);
         stays_and_bends::turn_before_rooms(&mut stays, &bends, |hop| doors.contains(&hop));
         let openings = openings::find_openings(&stays, evidence);
         let is_on_graph = path.frames.iter().all(|frame| frame.viewpoint.is_some());
@@ -90,22 +88,13 @@ impl WalkMemory {
             knows_doors,
         };
         if knows_doors {
+            let doors = openings::hops_through(&memory.things, &memory.eyes, is_way_through);
+            memory.bends = stays_and_bends::split_at_doors(&memory.bends, &evidence.moves, &doors);
             let has_door: Vec<bool> =
                 memory.openings.iter().map(|opening| memory.doors_at(opening).next().is_some()).collect();
             memory.openings.iter_mut().zip(has_door).for_each(|(opening, has_door)| opening.has_door = has_door);
         }
         memory
-    }
-
-    /// Whether the walk passes a door close by on a side, strictly between two frames.
-    #[must_use]
-    pub fn passes_door(&self, side: Side, after: usize, before: usize) -> bool {
-        let on_side = |door: &&RememberedThing| {
-            let passed =
-                door.passed.filter(|passed| passed.side == side && passed.frame > after && passed.frame < before);
-            passed.is_some_and(|by| self.distance_m(door, by.frame).is_some_and(|far_m| far_m <= SIDE_DOOR_M))
-        };
-        self.things.iter().filter(|thing| is_door(&thing.name)).any(|door| on_side(&door))
     }
 
     /// Whether labels show the doors, with their positions.
@@ -161,16 +150,6 @@ impl WalkMemory {
         things::nearest_hops(&self.eyes, thing.position?)
     }
 
-    /// The doors and doorways of a change of rooms whose positions are known.
-    pub fn doors_at(&self, opening: &RoomOpening) -> impl Iterator<Item = &RememberedThing> {
-        let frames = [opening.before, opening.behind];
-        let is_near = move |door: &&RememberedThing| {
-            let within = |frame: usize| self.distance_m(door, frame).is_some_and(|far_m| far_m <= OPENING_DOOR_M);
-            door.position.is_some() && frames.into_iter().any(within)
-        };
-        self.things.iter().filter(|thing| is_door(&thing.name) || is_any_door(&thing.name)).filter(is_near)
-    }
-
     /// Whether the walk passed a thing long before its end, so that it is no thing to stop at.
     #[must_use]
     pub fn is_left_behind(&self, thing: &RememberedThing) -> bool {
@@ -202,6 +181,15 @@ impl WalkMemory {
     pub fn goes_along(&self, stay: &RoomStay, from: usize) -> bool {
         let last = self.frame_count().saturating_sub(1);
         self.walked_m(stay.entered.max(from).saturating_sub(1), (stay.left + 1).min(last)) >= MIN_ALONG_M
+    }
+
+    /// Whether a walker goes straight on from a frame to another one, but for slight bends. True where the motion is unknown.
+    #[must_use]
+    pub fn goes_straight(&self, from: usize, to: usize) -> bool {
+        // At the start the walker first turns into the way.
+        let heading = |frame: usize| self.headings.get(frame.max(usize::from(from == 0)));
+        let turned_rad = heading(from).zip(heading(to)).map_or(0.0, |(from, to)| from.turn_to(*to));
+        self.eyes.is_empty() || turned_rad.to_degrees().abs() < motion::SLIGHT_DEG
     }
 
     /// Whether a thing may stand in a room where one of these frames lies; true where a room is not known.

@@ -88,14 +88,33 @@ pub(crate) fn is_any_door(name: &str) -> bool {
     find_thing(name).is_some_and(|thing| thing.class == ThingClass::Door)
 }
 
-/// The hops of a walk that lead through a door or doorway, where one hop alone does.
-pub(super) fn doors_of_hops(things: &[RememberedThing], eyes: &[DVec3]) -> BTreeSet<usize> {
-    let doors = things.iter().filter(|thing| is_any_door(&thing.name)).filter_map(|thing| thing.position);
+/// Whether a name means a door or another opening between rooms.
+pub(crate) fn is_way_through(name: &str) -> bool {
+    is_door(name) || is_any_door(name)
+}
+
+/// The hops of a walk that lead through a thing of such a name, a door or doorway, where one hop alone does.
+pub(super) fn hops_through(
+    things: &[RememberedThing],
+    eyes: &[DVec3],
+    is_door: impl Fn(&str) -> bool,
+) -> BTreeSet<usize> {
+    let doors = things.iter().filter(|thing| is_door(&thing.name)).filter_map(|thing| thing.position);
     let hop = |door: DVec3| match nearest_hops(eyes, door)? {
         (hops, near_m) if near_m <= IN_DOOR_M && hops.len() == 1 => hops.first().copied(),
         _ => None,
     };
     doors.filter_map(hop).collect()
+}
+
+/// The hops of a walk from before a door through it. Whoever stands in the door when the hop begins is through it.
+pub(super) fn hops_to_doors(things: &[RememberedThing], eyes: &[DVec3]) -> BTreeSet<usize> {
+    let doors = || things.iter().filter(|thing| is_any_door(&thing.name)).filter_map(|thing| thing.position);
+    let is_before = |hop: &usize| {
+        let far_m = |door: DVec3| (door - eyes[*hop]).truncate().length();
+        doors().map(far_m).fold(f64::INFINITY, f64::min) > STANDS_IN_DOOR_M
+    };
+    hops_through(things, eyes, is_any_door).into_iter().filter(is_before).collect()
 }
 
 /// Whether a door is seen from a frame, near where that is known.
@@ -107,6 +126,9 @@ fn shows_door(evidence: &Evidence, frame: usize) -> bool {
 
 /// A hop that comes so near to the middle of a door leads through it, metres.
 pub(crate) const IN_DOOR_M: f64 = 0.5;
+
+/// A walker so near to the middle of a door stands in it, metres.
+const STANDS_IN_DOOR_M: f64 = 0.3;
 
 /// A door whose position is known lies at most so far from one of the two frames between which it is, metres.
 pub(super) const OPENING_DOOR_M: f64 = 1.4;

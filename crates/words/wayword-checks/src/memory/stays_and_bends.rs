@@ -1,7 +1,7 @@
 //! Finds the rooms, bends and flights of stairs of a walk.
 
 use crate::Evidence;
-use std::{cmp::Ordering, ops::Range};
+use std::{cmp::Ordering, collections::BTreeSet, ops::Range};
 use wayword_core::{ClimbDirection, PathMove, Side, motion};
 use wayword_language::lexicon::room_name;
 
@@ -180,6 +180,27 @@ fn drop_winding(mut bends: Vec<WalkBend>, moves: &[PathMove]) -> Vec<WalkBend> {
         let Some((at, _)) = winding.min_by(|a, b| between_m(a.1).total_cmp(&between_m(b.1))) else { return bends };
         bends.drain(at..at + 2);
     }
+}
+
+/// The bends, where one that leads through a door is two if the part before the door or the part behind it is a turn by itself: "go through
+/// the door and turn left" is not "the door on the left". A small rest needs no word. `doors` has the hops that lead through a door.
+pub(super) fn split_at_doors(bends: &[WalkBend], moves: &[PathMove], doors: &BTreeSet<usize>) -> Vec<WalkBend> {
+    let part = |first: usize, last: usize| WalkBend {
+        first,
+        last,
+        turn_rad: moves[first..=last].iter().map(|step| step.turn_rad).sum(),
+    };
+    let split = |bend: &WalkBend| {
+        let parts = doors
+            .range(bend.first..bend.last)
+            .map(|hop| [part(bend.first, *hop), part(hop + 1, bend.last)])
+            .find(|parts| parts.iter().any(|part| part.turn_rad.to_degrees().abs() >= motion::TOLD_DEG));
+        parts.map_or_else(
+            || vec![*bend],
+            |parts| parts.into_iter().filter(|part| part.turn_rad.to_degrees().abs() >= motion::SLIGHT_DEG).collect(),
+        )
+    };
+    bends.iter().flat_map(split).collect()
 }
 
 /// Two flights with at most this much way between them are one flight that turns at a landing, metres.

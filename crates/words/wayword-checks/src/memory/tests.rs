@@ -600,3 +600,49 @@ fn a_door_leads_into_a_walled_room_and_not_from_one_outside_to_another() {
         assert_eq!(leads_through_a_door(from, to), wanted, "{from} to {to}");
     }
 }
+
+/// The memory of a walk that bends a little in a door and turns left behind it, with this thing in the door.
+fn bent_in_a_door(name: &str) -> WalkMemory {
+    let stops = [(0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (-0.42, 1.91, 0.0), (-1.33, 1.48, 0.0), (-2.24, 1.06, 0.0)];
+    let in_door = placed(name, "1", -0.21, 1.45);
+    memory_of(&stops, vec![vec![in_door.clone()], vec![in_door], vec![], vec![], vec![]])
+}
+
+#[test]
+fn a_turn_behind_a_door_is_a_bend_of_its_own() {
+    let spans = |memory: &WalkMemory| -> Vec<(usize, usize)> {
+        memory.bends.iter().map(|bend| (bend.first, bend.last)).collect()
+    };
+    assert_eq!(spans(&bent_in_a_door("lamp")), [(1, 2)]);
+    assert_eq!(spans(&bent_in_a_door("door")), [(2, 2)]);
+}
+
+#[test]
+fn of_two_doors_ahead_the_walk_takes_the_one_to_which_it_bends() {
+    let stops = [(0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 2.0, 0.0), (-0.42, 2.91, 0.0), (-0.42, 3.91, 0.0)];
+    let taken = placed("doorway", "1", -0.21, 2.45);
+    let with = |others: &[SeenThing]| {
+        let seen: Vec<SeenThing> = others.iter().cloned().chain([taken.clone()]).collect();
+        memory_of(&stops, vec![vec![], vec![], seen, vec![], vec![]])
+    };
+    let ahead = placed("door", "2", 0.6, 4.5);
+    let behind = placed("door", "3", 0.6, -4.5);
+    assert_eq!(with(std::slice::from_ref(&ahead)).side_among_doors(2), Some(Side::Left));
+    assert_eq!(with(&[behind]).side_among_doors(2), None);
+    assert_eq!(with(&[ahead]).side_among_doors(1), None);
+}
+
+#[test]
+fn the_doors_on_a_side_are_counted_from_where_the_walker_sees_them_ahead() {
+    let stops = [(0.0, 0.0, 0.0), (0.0, 2.0, 0.0), (0.0, 4.0, 0.0), (0.0, 6.0, 0.0), (-2.0, 6.5, 0.0)];
+    let doors: Vec<SeenThing> = [(-1.0, 1.0), (-1.0, 3.0), (1.0, 3.0), (-1.0, 6.3)]
+        .into_iter()
+        .enumerate()
+        .map(|(at, (x, y))| placed("door", &at.to_string(), x, y))
+        .collect();
+    let ahead = |frame: usize| doors.iter().skip(frame).cloned().collect();
+    let memory = memory_of(&stops, vec![ahead(0), ahead(1), ahead(3), ahead(3), vec![]]);
+    assert_eq!(memory.door_number(Side::Left, 0, 3), Some(3));
+    assert_eq!(memory.door_number(Side::Left, 1, 3), Some(2));
+    assert_eq!(memory.door_number(Side::Left, 2, 3), Some(1));
+}

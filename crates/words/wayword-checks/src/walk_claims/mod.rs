@@ -18,6 +18,7 @@
 mod by_sight;
 mod claims;
 mod division;
+mod doors;
 mod facts;
 mod gaps;
 mod judge;

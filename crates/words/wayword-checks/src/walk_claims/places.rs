@@ -7,10 +7,7 @@ use super::{
 };
 use crate::{
     goal::{MAX_STOP_DISTANCE_M as STOP_M, is_wide},
-    memory::{
-        AHEAD_FRAMES, BEHIND_STOP_M, IN_DOOR_M, RememberedThing, RoomOpening, RoomStay, ThingPassing, WalkBend,
-        is_any_door, is_door,
-    },
+    memory::{AHEAD_FRAMES, BEHIND_STOP_M, RememberedThing, RoomStay, ThingPassing, WalkBend, is_way_through},
     sides::{lies_on, side_word, wrap_angle},
 };
 use wayword_core::Side;
@@ -39,8 +36,6 @@ const BEHIND_DEG: f64 = 110.0;
 const PASSED_M: f64 = 3.5;
 /// A thing counts as in sight where a frame up to this many frames away shows it.
 const SIGHT_FRAMES: usize = 3;
-/// The way into a doorway "on the right" turns by at least this angle, degrees.
-const SIDEWAYS_DEG: f64 = 15.0;
 
 /// The judge of one place on one stretch.
 pub(super) struct PlaceJudge<'f, 'a> {
@@ -62,7 +57,7 @@ impl PlaceJudge<'_, '_> {
         if is_stairs(name) && self.facts.flights_on(self.wider()).next().is_some() && self.role != PlaceRole::Passed {
             return Holds(self.stretch[0]);
         }
-        if is_door(name) || is_any_door(name) {
+        if is_way_through(name) {
             return self.judge_door();
         }
         let things = &self.claim.things[0];
@@ -76,7 +71,7 @@ impl PlaceJudge<'_, '_> {
         }
     }
 
-    fn name(&self) -> &str {
+    pub(super) fn name(&self) -> &str {
         &self.place.name
     }
 
@@ -97,7 +92,7 @@ impl PlaceJudge<'_, '_> {
 
     /// Whether a change of rooms whose first frame behind it is `behind` belongs to the stretch. A turn just before it may belong to the
     /// step before; a turn at the end of the stretch comes before a change behind it.
-    fn changes_room_at(&self, behind: usize) -> bool {
+    pub(super) fn changes_room_at(&self, behind: usize) -> bool {
         let [from, to] = self.stretch;
         let turns_at =
             |frame: usize| self.facts.memory.bends.iter().any(|bend| (bend.first..=bend.last).contains(&frame));
@@ -109,7 +104,7 @@ impl PlaceJudge<'_, '_> {
     }
 
     /// Whether the turn that the step makes before it comes to a change of rooms comes before it in the walk as well.
-    fn turns_before(&self, behind: usize) -> bool {
+    pub(super) fn turns_before(&self, behind: usize) -> bool {
         let turns = |side| self.facts.told_bend(side, [self.stretch[0], behind]).is_some();
         self.claim.turn_before.is_none_or(turns)
     }
@@ -172,73 +167,6 @@ impl PlaceJudge<'_, '_> {
             return Holds(frame);
         }
         self.way_on_side(frame.saturating_sub(1), frame)
-    }
-
-    /// Whether the way through a change of rooms turns to the side that the text gives it.
-    fn way_on_side(&self, before: usize, behind: usize) -> ClaimOutcome {
-        let Some(side @ (Side::Left | Side::Right)) = self.place.side else { return Holds(behind) };
-        let sign = if side == Side::Left { -1.0 } else { 1.0 };
-        // A turn behind the opening says nothing of its side.
-        let has_bend = self.facts.told_bend(side, [before.saturating_sub(1), behind]).is_some();
-        let net_deg = self.facts.net_turn_deg(before.saturating_sub(1)..=behind) * sign;
-        match net_deg {
-            _ if has_bend || net_deg >= SIDEWAYS_DEG => Holds(behind),
-            deg if deg <= -SIDEWAYS_DEG => {
-                Fails(format!("{:?} is not on the {} where the path enters it", self.name(), side_word(side)))
-            }
-            _ => Unknown(format!("the program cannot check on which side {:?} is", self.name())),
-        }
-    }
-
-    /// Decides a door or doorway.
-    fn judge_door(&self) -> ClaimOutcome {
-        let (facts, name, last) = (self.facts, self.name(), self.facts.last_frame());
-        let around = facts.around(self.stretch);
-        let far_m =
-            |thing: &RememberedThing, frame: usize| facts.memory.distance_m(thing, frame).unwrap_or(f64::INFINITY);
-        let doors = || self.claim.things[0].iter();
-        let unknown = || Unknown(format!("the program cannot check which {name:?} is meant"));
-        if matches!(self.place.ordinal, Some(PlaceOrdinal::Last))
-            || matches!(self.place.ordinal, Some(PlaceOrdinal::Number(number)) if number > 1)
-        {
-            return unknown();
-        }
-        let mut openings = facts.memory.openings.iter();
-        match self.role {
-            PlaceRole::Entered | PlaceRole::Through | PlaceRole::Left => {
-                let has_door = |opening: &&RoomOpening| {
-                    facts.memory.doors_at(opening).any(|there| doors().any(|door| **door == *there))
-                };
-                let is_here =
-                    |opening: &&RoomOpening| self.changes_room_at(opening.behind) && self.turns_before(opening.behind);
-                if let Some(opening) = openings.filter(has_door).find(is_here) {
-                    return self.way_on_side(opening.before, opening.behind);
-                }
-                // Two rooms of one name have no change of rooms between them.
-                let crossed = doors().filter_map(|door| facts.memory.nearest_hops(door));
-                let mut crossed = crossed.filter(|(_, near_m)| *near_m <= IN_DOOR_M).flat_map(|(hops, _)| hops);
-                match crossed.find(|hop| self.changes_room_at(hop + 1) && self.turns_before(hop + 1)) {
-                    Some(hop) => self.way_on_side(hop, hop + 1),
-                    None if facts.knows_rooms() => Fails(format!("the path does not go through a {name} here")),
-                    None => unknown(),
-                }
-            }
-            PlaceRole::Stopped | PlaceRole::Within { .. } => {
-                let ends_in_door = openings.any(|opening| opening.behind + 1 >= last && opening.before <= last);
-                match ends_in_door || doors().any(|door| far_m(door, last) <= STOP_M) {
-                    true => Holds(last),
-                    false => unknown(),
-                }
-            }
-            _ => {
-                let is_near = |frame: usize| doors().any(|door| far_m(door, frame) <= NEAR_M);
-                let opening =
-                    openings.find(|opening| around.contains(&opening.before) || around.contains(&opening.behind));
-                let found =
-                    opening.map(|opening| opening.before).or_else(|| around.clone().find(|frame| is_near(*frame)));
-                found.map_or_else(unknown, Holds)
-            }
-        }
     }
 
     /// Decides a thing, of which one of `things` may be meant.
