@@ -67,7 +67,7 @@ catalogue! {
     Curtain "curtain" [60 8 220] +- 0 "fabric" [Beige Grey Blue Green Red White];
     Vase "vase" [22 22 44] +- 2 "ceramic" [White Blue Teal Red];
     Piano "piano" [148 60 122] +- 2 "wood" [Black Brown White];
-    Photos "photos" [120 3 150] +- 20 "paper" [Black];
+    Photos "pictures" [120 3 150] +- 20 "paper" [Black];
     Tapestry "tapestry" [100 4 160] +- 20 "wool" [Red Blue Green Orange Purple Teal Beige];
     CoatHooks "coat hooks" [100 12 150] +- 10 "wood" [White Brown Wooden Black];
     BulletinBoard "bulletin board" [110 3 90] +- 10 "cork" [Wooden];
@@ -89,7 +89,7 @@ catalogue! {
     FruitBowl "fruit bowl" [32 32 16] +- 0 "ceramic" [White];
     Toilet "toilet" [40 68 78] +- 0 "ceramic" [White];
     Vanity "sink" [80 48 86] +- 12 "ceramic" [White];
-    Mirror "mirror" [64 4 84] +- 8 "glass" [Silver];
+    Mirror "mirror" [64 4 84] +- 8 "glass" [Gold White Black];
     Bathtub "bathtub" [165 76 58] +- 4 "ceramic" [White];
     Shower "shower" [92 92 205] +- 4 "glass" [LightBlue];
     Towel "towel" [56 8 74] +- 0 "fabric" [Blue White Teal Red Yellow Pink];
@@ -140,6 +140,11 @@ impl FurnitureKind {
     pub(crate) fn draw_colour(self, dice: &mut HouseDice) -> Colour {
         let colours = self.entry().colours;
         colours[dice.index(colours.len())]
+    }
+
+    /// Whether its colour shows: several photographs have many.
+    pub(crate) fn has_one_colour(self) -> bool {
+        !matches!(self, Self::Photos | Self::CoatHooks)
     }
 
     /// Whether it is flat enough to walk over.

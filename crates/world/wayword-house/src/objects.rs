@@ -107,7 +107,7 @@ pub(super) fn objects_by_id(house: &House) -> BTreeMap<u32, NumberedObject> {
     }
     for piece in &house.furniture {
         let bounds_m = box_bounds(&piece.footprint, piece.base_cm, piece.base_cm + piece.height_cm);
-        let colour = Some(piece.colour.word());
+        let colour = piece.kind.has_one_colour().then(|| piece.colour.word());
         let object = NumberedObject {
             name: piece.name.clone(),
             colour,

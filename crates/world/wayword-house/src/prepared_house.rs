@@ -129,10 +129,18 @@ impl PreparedHouse {
     pub(super) fn labels_around(&self, pose: Pose) -> Result<Vec<ObjectLabel>, PlatformError> {
         let mut all = Vec::new();
         for gaze in ViewGaze::around_heading(pose.heading) {
-            let labels = visible_labels(&self.scene, pose.position, gaze, LABELS_SIZE_PX);
-            all.extend(labels.map_err(|error| self.not_drawn_error(&error))?);
+            all.extend(self.labels_in(pose, gaze)?);
         }
         Ok(all)
+    }
+
+    /// What a picture ahead from a pose shows.
+    pub(super) fn labels_ahead(&self, pose: Pose) -> Result<Vec<ObjectLabel>, PlatformError> {
+        self.labels_in(pose, ViewGaze::quarter_view(pose.heading))
+    }
+
+    fn labels_in(&self, pose: Pose, gaze: ViewGaze) -> Result<Vec<ObjectLabel>, PlatformError> {
+        visible_labels(&self.scene, pose.position, gaze, LABELS_SIZE_PX).map_err(|error| self.not_drawn_error(&error))
     }
 
     /// The largest distance between two viewpoints along the graph. Since the graph's edges can be walked, no shortest way is

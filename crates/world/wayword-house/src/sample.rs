@@ -1,9 +1,15 @@
 //! Draws random paths through a house: a shortest way between two viewpoints, with frames along it and a target at its
 //! end.
 
-use super::{dice::HouseDice, graph::EYE_M, ground::HouseRoute, objects::ObjectRole, prepared_house::PreparedHouse};
+use super::{
+    dice::HouseDice,
+    graph::EYE_M,
+    ground::HouseRoute,
+    objects::{NumberedObject, ObjectRole},
+    prepared_house::PreparedHouse,
+};
 use wayword_core::{
-    DVec3, Frame, ObjectLabel, Path, PathRequest, PathTarget, PlatformError, Pose, SceneId, path::PathStop,
+    DVec3, Frame, Heading, ObjectLabel, Path, PathRequest, PathTarget, PlatformError, Pose, SceneId, path::PathStop,
     seed::derive_seed,
 };
 use wayword_world::open_ground::{OpenGroundScene, no_such_walk, sample_open_path};
@@ -16,6 +22,12 @@ const MAX_ROUTE_EXCESS_FACTOR: f64 = 1.03;
 const ON_FLOOR_M: f64 = 0.05;
 /// Largest distance of a target from the last frame, to the nearest side of its box along the floor, metres.
 const TARGET_REACH_M: f64 = 2.5;
+/// A target is seen ahead from one of so many last frames, where one can be.
+const APPROACH_FRAMES: usize = 5;
+/// Half the width of what a picture ahead shows, degrees.
+const PICTURE_HALF_DEG: f64 = 35.0;
+/// What is nearer to a walker than this, along the floor, lies below the picture, metres.
+const MIN_PICTURED_M: f64 = 1.2;
 
 /// Draws a path of a length that `request` allows, with frames at most `interval_m` apart and at every corner.
 ///
@@ -62,8 +74,8 @@ impl OpenGroundScene for HouseWalker<'_> {
         Ok(self.home.ground.shortest_route(from, to).ok().map(|way| stops_along(&way, self.interval_m)))
     }
 
-    fn target_at(&mut self, last: &Frame) -> Result<Option<PathTarget>, PlatformError> {
-        choose_target(self.home, &mut self.dice, last.pose)
+    fn target_at(&mut self, frames: &[Frame]) -> Result<Option<PathTarget>, PlatformError> {
+        choose_target(self.home, &mut self.dice, frames)
     }
 }
 
@@ -113,39 +125,78 @@ fn stop_at(place: DVec3) -> PathStop {
     }
 }
 
-/// Chooses a target among the pieces of furniture in reach. A piece without a namesake in sight comes first; otherwise
-/// one that differs in colour from its namesakes.
-fn choose_target(home: &PreparedHouse, dice: &mut HouseDice, last: Pose) -> Result<Option<PathTarget>, PlatformError> {
+/// Chooses a target among the pieces of furniture in reach. A piece that the walker comes to see ahead comes first; of those, one without
+/// a namesake in the room, and otherwise one that differs in colour from its namesakes.
+fn choose_target(
+    home: &PreparedHouse,
+    dice: &mut HouseDice,
+    frames: &[Frame],
+) -> Result<Option<PathTarget>, PlatformError> {
+    let Some(last) = frames.last().map(|frame| frame.pose) else { return Ok(None) };
+    let house = &home.scene.house;
     let labels = home.labels_around(last)?;
-    let namesakes = |label: &ObjectLabel| labels.iter().filter(|other| other.name == label.name).count() - 1;
-    let twins = |label: &ObjectLabel| {
-        labels.iter().filter(|other| other.name == label.name && other.colour == label.colour).count() - 1
+    let room_of = |pose: &Pose| {
+        let feet = pose.position - DVec3::Z * EYE_M;
+        house.room_at(feet.x, feet.y, feet.z)
     };
-    let feet = last.position - DVec3::Z * EYE_M;
-    let room = home.scene.house.room_at(feet.x, feet.y, feet.z);
-    let stands_here = |label: &&ObjectLabel| {
-        let id: Option<u32> = label.object.as_str().parse().ok();
-        let object =
-            id.and_then(|id| home.scene.objects.get(&id)).filter(|object| object.role == ObjectRole::Furniture);
-        object.is_some_and(|object| {
-            home.scene.house.rooms.get(object.room) == room && floor_distance_m(feet, object.bounds_m) <= TARGET_REACH_M
+    let room = room_of(&last);
+    let furniture = || {
+        let here = |object: &&NumberedObject| house.rooms.get(object.room) == room;
+        home.scene.objects.values().filter(|object| object.role == ObjectRole::Furniture).filter(here)
+    };
+    let object_of = |label: &ObjectLabel| home.scene.objects.get(&label.object.as_str().parse::<u32>().ok()?);
+    let in_reach = |label: &&ObjectLabel| {
+        let feet = last.position - DVec3::Z * EYE_M;
+        object_of(label).is_some_and(|object| {
+            furniture().any(|other| other == object) && floor_distance_m(feet, object.bounds_m) <= TARGET_REACH_M
         })
     };
     let can_be_target = |label: &&ObjectLabel| label.name != "ceiling light" && label.name != "curtain";
-    let near: Vec<&ObjectLabel> = labels.iter().filter(stands_here).filter(can_be_target).collect();
-    let alone: Vec<&ObjectLabel> = near.iter().copied().filter(|label| namesakes(label) == 0).collect();
-    let by_colour: Vec<&ObjectLabel> = near.iter().copied().filter(|label| twins(label) == 0).collect();
-    let likely = if alone.is_empty() { by_colour } else { alone };
-    let chosen = (!likely.is_empty()).then(|| likely[dice.index(likely.len())]);
-    Ok(chosen.map(|label| PathTarget {
+    let near: Vec<&ObjectLabel> = labels.iter().filter(in_reach).filter(can_be_target).collect();
+    let approach =
+        frames.iter().rev().take(APPROACH_FRAMES).map(|frame| frame.pose).filter(|pose| room_of(pose) == room);
+    let views = approach.map(|pose| Ok((pose, home.labels_ahead(pose)?))).collect::<Result<Vec<_>, PlatformError>>()?;
+    let is_ahead = |label: &&ObjectLabel| {
+        let is_seen = |seen: &[ObjectLabel]| seen.iter().any(|other| other.object == label.object);
+        let sees = |pose: &Pose| label.position.is_some_and(|at| is_in_picture(pose, at));
+        views.iter().any(|(pose, seen)| sees(pose) && is_seen(seen))
+    };
+    // How many pieces in the room have the label's kind, and pass the test.
+    let alike = |label: &ObjectLabel, is_alike: &dyn Fn(&NumberedObject) -> bool| {
+        furniture()
+            .filter(|other| kind_word(&other.name) == kind_word(&label.name))
+            .filter(|other| is_alike(other))
+            .count()
+    };
+    let is_alone = |label: &&ObjectLabel| alike(label, &|_| true) == 1;
+    let differs = |label: &&ObjectLabel| alike(label, &|other| other.colour == label.colour.as_deref()) == 1;
+    let ahead: Vec<&ObjectLabel> = near.into_iter().filter(is_ahead).collect();
+    let choices: [Vec<&ObjectLabel>; 2] =
+        [ahead.iter().copied().filter(is_alone).collect(), ahead.iter().copied().filter(differs).collect()];
+    let likely = choices.into_iter().find(|labels| !labels.is_empty());
+    Ok(likely.map(|likely| likely[dice.index(likely.len())]).map(|label| PathTarget {
         object: label.object.clone(),
         name: label.name.clone(),
         told_by: Vec::new(),
-        has_namesake: namesakes(label) > 0,
+        has_namesake: labels.iter().filter(|other| other.name == label.name).count() > 1,
         descriptions: Vec::new(),
         hangs: false,
         storeys: 0,
     }))
+}
+
+/// The word of a name that says what kind of thing it is: the last one.
+fn kind_word(name: &str) -> &str {
+    name.rsplit(' ').next().unwrap_or(name)
+}
+
+/// Whether a place is in the field of view of a picture ahead from a pose.
+fn is_in_picture(pose: &Pose, at: DVec3) -> bool {
+    let to = at - pose.position;
+    let is_far_enough = to.truncate().length() >= MIN_PICTURED_M;
+    is_far_enough
+        && Heading::towards(pose.position, at)
+            .is_some_and(|towards| pose.heading.turn_to(towards).to_degrees().abs() <= PICTURE_HALF_DEG)
 }
 
 /// The distance along the floor from a walker's feet to a box, metres.

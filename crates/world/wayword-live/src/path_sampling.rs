@@ -61,7 +61,8 @@ impl<R: Rng> OpenGroundScene for LivePathSampler<'_, R> {
         Ok(self.world.shortest_way(from, to)?.map(|way| stops_along(&way, self.interval_m)))
     }
 
-    fn target_at(&mut self, last: &Frame) -> Result<Option<PathTarget>, PlatformError> {
+    fn target_at(&mut self, frames: &[Frame]) -> Result<Option<PathTarget>, PlatformError> {
+        let Some(last) = frames.last() else { return Ok(None) };
         Ok(choose_target(&self.world.labels_around(last.pose)?, &mut self.dice))
     }
 }

@@ -18,11 +18,11 @@ pub trait OpenGroundScene {
     /// When the platform cannot answer.
     fn stops_between(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<PathStop>>, PlatformError>;
 
-    /// A target for a path that ends at `last`; `None` if no suitable object is visible there.
+    /// A target for a path with these frames; `None` if no suitable object is visible from the last one.
     ///
     /// # Errors
     /// When the platform cannot give a view.
-    fn target_at(&mut self, last: &Frame) -> Result<Option<PathTarget>, PlatformError>;
+    fn target_at(&mut self, frames: &[Frame]) -> Result<Option<PathTarget>, PlatformError>;
 
     /// Whether the objects of the scene are known at all. Without them, the search for a target is useless.
     fn knows_objects(&self) -> bool {
@@ -60,9 +60,11 @@ pub fn sample_open_path(
             motion: PathMotion::Known,
             target: None,
         };
-        let Some(last) = path.frames.last().filter(|_| request.allows_length_of(&path)) else { continue };
+        if path.frames.is_empty() || !request.allows_length_of(&path) {
+            continue;
+        }
         if world.knows_objects() {
-            path.target = world.target_at(last)?;
+            path.target = world.target_at(&path.frames)?;
         }
         if path.target.is_some() || !world.knows_objects() {
             return Ok(Some(path));
@@ -107,7 +109,7 @@ mod tests {
             Ok((to.x != 3.0).then(|| vec![stop(from), stop(to)]))
         }
 
-        fn target_at(&mut self, last: &Frame) -> Result<Option<PathTarget>, PlatformError> {
+        fn target_at(&mut self, frames: &[Frame]) -> Result<Option<PathTarget>, PlatformError> {
             let object = ObjectId::new("1").unwrap();
             let target = PathTarget {
                 object,
@@ -118,7 +120,7 @@ mod tests {
                 hangs: false,
                 storeys: 0,
             };
-            Ok((self.seen)(last.pose.position.x as usize).then_some(target))
+            Ok((self.seen)(frames.last().unwrap().pose.position.x as usize).then_some(target))
         }
 
         fn knows_objects(&self) -> bool {

@@ -65,7 +65,8 @@ impl<R: Rng> OpenGroundScene for GroundWalker<'_, R> {
         Ok(stops.iter().all(upright).then_some(stops))
     }
 
-    fn target_at(&mut self, last: &Frame) -> Result<Option<PathTarget>, PlatformError> {
+    fn target_at(&mut self, frames: &[Frame]) -> Result<Option<PathTarget>, PlatformError> {
+        let Some(last) = frames.last() else { return Ok(None) };
         Ok(choose_target(&self.home.labels_around(last.pose.position, Heading::NORTH)?, &mut self.dice))
     }
 

@@ -68,11 +68,16 @@ fn painting_number(colour: Colour) -> u8 {
     order.iter().position(|each| *each == colour).unwrap_or(0) as u8 % ART_COUNT
 }
 
-/// A framed surface with the bluish sheen of glass. It does not reflect the room.
+/// A framed surface with the bluish sheen of glass; the piece's colour is that of the frame. It does not reflect the room.
 pub(super) fn build_mirror(look: &FurnitureLook) -> HouseShape {
     let mut shape = HouseShape::default();
-    let frame = HouseSurface::for_wood([Colour::Gold, Colour::White, Colour::Black][look.variant as usize % 3]);
-    add_framed(&mut shape, look, frame, 0.045, HouseSurface::for_picture(SurfacePattern::Reflection).glowing());
+    add_framed(
+        &mut shape,
+        look,
+        HouseSurface::for_wood(look.colour),
+        0.045,
+        HouseSurface::for_picture(SurfacePattern::Reflection).glowing(),
+    );
     shape
 }
 
