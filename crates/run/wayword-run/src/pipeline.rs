@@ -284,19 +284,27 @@ pub fn item_path(
     Ok(path)
 }
 
-/// Fills in the description that distinguishes the target of a path from everything else in its building; if the building has no
-/// list of objects, from everything around the path's end.
+/// What a walker sees ahead so near to the end of the way belongs to the arrival, metres.
+const APPROACH_M: f64 = 4.0;
+
+/// Fills in the description that distinguishes the target of a path from everything that is known of its building, and of the
+/// surroundings of the path's end.
 fn describe_path_target(path: &mut Path, platform: &dyn Platform, scenes: &KnownScenes) -> Result<(), CommandError> {
-    let (Some(target), Some(last)) = (&mut path.target, path.frames.last()) else { return Ok(()) };
-    let seen = list_around_frame(
-        last,
-        &look_without_pictures(platform, &path.scene, last, &ViewGaze::around_heading(last.pose.heading))?,
-    );
-    if !seen.knows_frame(last) {
+    let Path { scene, frames, target, .. } = path;
+    let (Some(target), Some(last)) = (target, frames.last()) else { return Ok(()) };
+    let known = scenes.get_or_survey(platform, scene)?;
+    if known.listing.knows_frame(last) {
+        describe_target(target, frames, &known.listing);
         return Ok(());
     }
-    let scene = scenes.get_or_survey(platform, &path.scene)?;
-    describe_target(target, last, if scene.listing.knows_frame(last) { &scene.listing } else { &seen });
+    let views = look_without_pictures(platform, scene, last, &ViewGaze::around_heading(last.pose.heading))?;
+    let is_near = |frame: &&Frame| frame.pose.position.distance(last.pose.position) <= APPROACH_M;
+    let look = |frame: &Frame| platform.look_without_picture(scene, frame, ViewGaze::quarter_view(frame.pose.heading));
+    let ahead = frames.iter().rev().take_while(is_near).map(look).collect::<Result<Vec<View>, PlatformError>>()?;
+    let listing = list_around_frame(known.listing.clone(), last, &views, &ahead);
+    if listing.knows_frame(last) {
+        describe_target(target, frames, &listing);
+    }
     Ok(())
 }
 

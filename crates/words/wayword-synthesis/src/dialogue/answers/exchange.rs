@@ -8,16 +8,25 @@ use super::{
     polarity::{AnswerPolarity, is_unsure, polarity_of},
     question::{QuestionSubject, read_question},
 };
-use std::collections::BTreeSet;
-use wayword_core::{DialogueExchange, ObjectSighting, ViewThird, WitnessAnswer};
+use std::{collections::BTreeSet, convert::Infallible, sync::LazyLock};
+use wayword_core::{DialogueExchange, ObjectSighting, RecentCache, ViewThird, WitnessAnswer};
 use wayword_language::{
     answers::FREE_SPEECH,
     lexicon::{COUNT_WORDS, find_thing, is_thing, names_agree, normalise_name, to_singular, without_article},
 };
 
+/// Most exchanges whose sightings are kept. A dialogue is read again after each answer, and answers about several views are alike.
+const MAX_KEPT_EXCHANGES: usize = 1024;
+
+/// The sightings of the exchanges that were read last, by question and answer.
+static READ_EXCHANGES: LazyLock<RecentCache<[String; 2], Vec<AnswerSighting>>> =
+    LazyLock::new(|| RecentCache::new(MAX_KEPT_EXCHANGES));
+
 /// All sightings of an exchange, attributed to `by`.
 pub(super) fn read_exchange(exchange: &DialogueExchange, by: &str) -> Vec<AnswerSighting> {
-    let mut sightings = sightings_from_answer(exchange);
+    let key = [exchange.question.clone(), exchange.answer.clone()];
+    let Ok(read) = READ_EXCHANGES.get_or_make(key, || Ok::<_, Infallible>(sightings_from_answer(exchange)));
+    let mut sightings = Vec::clone(&read);
     for answered in &mut sightings {
         by.clone_into(&mut answered.sighting.by);
     }

@@ -29,6 +29,7 @@ pub(crate) use {
 };
 
 /// A sighting from one answer, and whether the question was about that very thing.
+#[derive(Clone)]
 pub(super) struct AnswerSighting {
     pub(super) sighting: ObjectSighting,
     /// Whether the question asked for this thing; `false` where the answer mentions the thing in passing.

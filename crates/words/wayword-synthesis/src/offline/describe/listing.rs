@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{DMat3, DVec3, Frame, Heading, ObjectId, ObjectLabel, ViewpointId, ViewpointSurvey};
-use wayword_language::lexicon::{ThingClass, find_thing, kinds_of};
+use wayword_language::lexicon::{ThingClass, find_thing, kinds_of, same_room};
 
 /// Every object that the platform lists in a building, or around one frame.
 #[derive(Debug, Clone, Default)]
@@ -17,6 +17,10 @@ pub struct BuildingListing {
     by_id: BTreeMap<ObjectId, usize>,
     /// The number of each viewpoint in `places`.
     place_of: BTreeMap<ViewpointId, usize>,
+    /// The number in `places` of the frame that was added, if it is no viewpoint of the building.
+    added_place: Option<usize>,
+    /// The objects that a walker sees ahead before coming to that frame; `None` where that is not known.
+    pictured: Option<BTreeSet<ObjectId>>,
 }
 
 /// An object of the building.
@@ -28,6 +32,8 @@ pub(super) struct ListingObject {
     pub(super) class: ThingClass,
     pub(super) salience: u8,
     pub(super) colour: Option<String>,
+    /// The name of its room, where labels say it.
+    pub(super) room_name: Option<String>,
     /// Its centre, metres, world frame.
     pub(super) position: Option<DVec3>,
     /// The numbers of the rooms in which it may be.
@@ -101,24 +107,62 @@ impl BuildingListing {
         listing
     }
 
-    /// The listing of the objects around one frame, where no survey of the building exists.
+    /// The listing with a frame that is no viewpoint of the building: in the nearest room of that name on its storey, or in a room of
+    /// its own.
     #[must_use]
-    pub fn around_frame<'a>(frame: &Frame, labels: impl Iterator<Item = &'a ObjectLabel>) -> Self {
-        let mut listing = Self { rooms: vec![ListingRoom::default()], ..Self::default() };
-        listing.add_place(frame.pose.position, 0, frame.level, labels);
-        listing.place_of.extend(frame.viewpoint.clone().map(|id| (id, 0)));
-        listing.locate_objects();
-        listing
+    pub fn with_frame<'a>(
+        mut self,
+        frame: &Frame,
+        room: Option<&str>,
+        labels: impl Iterator<Item = &'a ObjectLabel>,
+    ) -> Self {
+        let is_there = |place: &&ListingViewpoint| {
+            let name = self.rooms[place.room].name.as_deref();
+            place.level == frame.level && name.zip(room).is_some_and(|(name, room)| same_room(name, room))
+        };
+        let how_far = |place: &ListingViewpoint| place.eye.distance(frame.pose.position);
+        let nearest = self.places.iter().filter(is_there).min_by(|a, b| how_far(a).total_cmp(&how_far(b)));
+        let number = nearest.map_or(self.rooms.len(), |place| place.room);
+        if number == self.rooms.len() {
+            self.rooms.push(ListingRoom { name: room.map(str::to_owned), ..ListingRoom::default() });
+        }
+        self.added_place = Some(self.places.len());
+        self.add_place(frame.pose.position, number, frame.level, labels);
+        self.locate_objects();
+        self
+    }
+
+    /// The listing with the labels of the pictures that a walker sees ahead before coming to the frame that was added. Where they show
+    /// nothing, what a walker sees ahead is not known.
+    #[must_use]
+    pub fn with_pictured<'a>(mut self, labels: impl Iterator<Item = &'a ObjectLabel>) -> Self {
+        let pictured: BTreeSet<ObjectId> = labels.map(|label| label.object.clone()).collect();
+        self.pictured = Some(pictured).filter(|pictured| !pictured.is_empty());
+        self
+    }
+
+    /// Whether a walker on the way sees an object ahead, as far as that is known.
+    pub(super) fn is_pictured(&self, object: usize) -> bool {
+        let shows = |pictured: &BTreeSet<ObjectId>| {
+            pictured.iter().any(|id| self.by_id.get(id).is_some_and(|at| *at == object))
+        };
+        self.pictured.as_ref().is_none_or(shows)
     }
 
     pub(super) fn object_index(&self, id: &ObjectId) -> Option<usize> {
         self.by_id.get(id).copied()
     }
 
-    /// The place of a frame. Where its viewpoint is not known, there is one place at most.
+    /// The place of a frame: its viewpoint, or the frame that was added.
     pub(super) fn place_index(&self, frame: &Frame) -> Option<usize> {
-        let only = || (self.places.len() == 1).then_some(0);
-        frame.viewpoint.as_ref().and_then(|id| self.place_of.get(id).copied()).or_else(only)
+        frame.viewpoint.as_ref().and_then(|id| self.place_of.get(id).copied()).or(self.added_place)
+    }
+
+    /// The room of the place nearest to a frame on its storey, by number.
+    pub(super) fn room_near(&self, frame: &Frame) -> Option<usize> {
+        let how_far = |place: &&ListingViewpoint| place.eye.distance(frame.pose.position);
+        let places = self.places.iter().filter(|place| place.level == frame.level);
+        places.min_by(|a, b| how_far(a).total_cmp(&how_far(b))).map(|place| place.room)
     }
 
     /// Whether the place of a frame is listed, with something in view.
@@ -164,6 +208,7 @@ impl BuildingListing {
             class,
             salience,
             colour: label.colour.clone(),
+            room_name: label.room.clone(),
             position: label.position,
             rooms: Vec::new(),
             level: None,
@@ -180,6 +225,7 @@ impl BuildingListing {
         }
         let levels: BTreeSet<u32> = self.places.iter().filter_map(|place| place.level).collect();
         self.storeys = levels.len();
+        self.rooms.iter_mut().for_each(|room| room.things.clear());
         for (object, seen) in seen.iter().enumerate() {
             let rays: Vec<(DVec3, DVec3)> = seen
                 .iter()
@@ -187,10 +233,17 @@ impl BuildingListing {
                 .collect();
             let position = self.objects[object].position.or_else(|| meeting_point(&rays));
             let how_far = |at: usize| position.map_or(0.0, |position| self.places[at].eye.distance(position));
-            let nearest = seen.iter().map(|(at, _)| *at).min_by(|a, b| how_far(*a).total_cmp(&how_far(*b)));
+            // Where labels say in which room a thing is, it is not in the one from which a door shows it.
+            let own_room = self.objects[object].room_name.as_deref();
+            let is_there = |at: &usize| {
+                let here = self.rooms[self.places[*at].room].name.as_deref();
+                own_room.zip(here).is_none_or(|(own, here)| same_room(own, here))
+            };
+            let knows_room = seen.iter().any(|(at, _)| is_there(at));
+            let seen = || seen.iter().map(|(at, _)| *at).filter(|at| !knows_room || is_there(at));
+            let nearest = seen().min_by(|a, b| how_far(*a).total_cmp(&how_far(*b)));
             let Some(nearest) = nearest else { continue };
-            let near =
-                seen.iter().map(|(at, _)| *at).filter(|at| how_far(*at) <= ALSO_IN_ROOM_RATIO * how_far(nearest));
+            let near = seen().filter(|at| how_far(*at) <= ALSO_IN_ROOM_RATIO * how_far(nearest));
             let rooms: BTreeSet<usize> = near.map(|at| self.places[at].room).collect();
             self.rooms[self.places[nearest].room].things.push(object);
             let level = self.places[nearest].level;

@@ -30,11 +30,11 @@ const SECOND_PROPERTY_COST: f64 = 1.0;
 const IDLE_PROPERTY_COST: f64 = 1.0;
 
 /// Fills in how a target can be described: for a listener at the last frame, who sees other objects of the same name
-/// there, and for a listener who knows the whole building. Does nothing if the target is not listed.
-pub fn describe_target(target: &mut PathTarget, last: &Frame, listing: &BuildingListing) {
-    let (Some(own), Some(place)) = (listing.object_index(&target.object), listing.place_index(last)) else { return };
-    let place = &listing.places[place];
-    let context = TargetContext::new(listing, last, place, own);
+/// there, and for a listener who knows the whole building. `frames` are those of the path. Does nothing if the target is not listed.
+pub fn describe_target(target: &mut PathTarget, frames: &[Frame], listing: &BuildingListing) {
+    let place = frames.last().and_then(|last| listing.place_index(last));
+    let (Some(own), Some(place)) = (listing.object_index(&target.object), place) else { return };
+    let context = TargetContext::new(listing, frames, &listing.places[place], own);
     let mut properties = context.all_properties();
     properties.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     properties.truncate(MAX_PROPERTIES);
@@ -144,15 +144,15 @@ fn add_candidates(
 ) {
     let count = |left: &[bool]| left.iter().filter(|left| **left).count();
     push_candidate(by, count(left), None, found);
-    let in_view: Vec<bool> = left
-        .iter()
-        .zip(&context.rivals)
-        .map(|(left, rival)| *left && context.sight_of_object(*rival).is_some())
-        .collect();
+    let in_view: Vec<bool> =
+        left.iter().zip(&context.rivals).map(|(left, rival)| *left && context.is_seen_in_room(*rival)).collect();
     if in_view.contains(&true) {
-        let unclear = if count(left) > count(&in_view) { UNCLEAR_SUPERLATIVE_COST } else { 0.0 };
+        let elsewhere = count(left) - count(&in_view);
+        let unclear = if elsewhere > 0 { UNCLEAR_SUPERLATIVE_COST } else { 0.0 };
+        // Of a panorama, "the leftmost" is what its listener sees; a walker has passed others.
+        let elsewhere = if context.has_panorama { 0 } else { elsewhere };
         for (cost, superlative) in context.superlatives_among(&in_view) {
-            push_candidate(by, 0, Some((cost + unclear, superlative)), found);
+            push_candidate(by, elsewhere, Some((cost + unclear, superlative)), found);
         }
     }
 }
@@ -168,6 +168,11 @@ fn push_candidate(
     // Two properties of the object and two of its room are enough.
     let of_room = by.iter().filter(|property| property.distinction.is_about_room()).count();
     if of_room > 2 || by.len() + usize::from(superlative.is_some()) - of_room > 2 {
+        return;
+    }
+    // "The bedroom with a plant with a wardrobe".
+    let is_with = |told: &&&TargetProperty| matches!(told.distinction, ObjectDistinction::RoomWith { .. });
+    if by.iter().filter(is_with).count() > 1 {
         return;
     }
     // No thing is mentioned twice in a description.

@@ -1,9 +1,9 @@
 //! Properties of the target (room, colour, side, relations), each with the rivals that share it. In doubt a rival
 //! counts as sharing a property, so a description never seems to fit fewer objects than it does.
 
-use super::listing::{BuildingListing, ListingObject, ListingSighting, ListingViewpoint};
+use super::listing::{BuildingListing, ListingObject, ListingRoom, ListingSighting, ListingViewpoint};
 use std::collections::BTreeSet;
-use wayword_core::{DVec3, Frame, Heading, ObjectDistinction, Side};
+use wayword_core::{DVec3, Frame, Heading, ObjectDistinction, Pose, Side};
 use wayword_language::lexicon::{ThingClass, room_name, same_room};
 
 /// A property that the target has.
@@ -24,6 +24,12 @@ pub(super) struct TargetContext<'a> {
     pub(super) place: &'a ListingViewpoint,
     /// The heading with which the walker arrives there.
     pub(super) heading: Heading,
+    /// Whether the walk ends at a viewpoint, where a panorama shows what is all around.
+    pub(super) has_panorama: bool,
+    /// The rooms through which the walk leads, by number.
+    passed_rooms: BTreeSet<usize>,
+    /// The poses with which the walker comes near to the end, if there is no panorama.
+    approach: Vec<Pose>,
     /// The number of the target in the listing.
     pub(super) target: usize,
     /// The numbers of the rivals in the listing.
@@ -34,13 +40,26 @@ pub(super) struct TargetContext<'a> {
 const IN_SIGHT_M: f64 = 8.0;
 /// A thing on a wall counts as hanging if it is less than this far below the eye, metres.
 const MAX_BELOW_EYE_M: f64 = 0.4;
+/// What a walker sees ahead so near to the end of the way belongs to the arrival, metres.
+const APPROACH_M: f64 = 4.0;
 
 impl<'a> TargetContext<'a> {
-    pub(super) fn new(listing: &'a BuildingListing, last: &Frame, place: &'a ListingViewpoint, target: usize) -> Self {
+    /// `frames` are those of the path to the place; there is at least one.
+    pub(super) fn new(
+        listing: &'a BuildingListing,
+        frames: &[Frame],
+        place: &'a ListingViewpoint,
+        target: usize,
+    ) -> Self {
         let own = &listing.objects[target];
         let is_rival = |at: &usize| *at != target && listing.objects[*at].is_like(own);
         let rivals = (0..listing.objects.len()).filter(is_rival).collect();
-        Self { listing, place, heading: last.pose.heading, target, rivals }
+        let heading = frames.last().map_or(Heading::NORTH, |last| last.pose.heading);
+        let has_panorama = frames.last().is_some_and(|last| last.viewpoint.is_some());
+        let is_near = |frame: &&Frame| !has_panorama && frame.pose.position.distance(place.eye) <= APPROACH_M;
+        let approach = frames.iter().rev().take_while(is_near).map(|frame| frame.pose).collect();
+        let passed_rooms = frames.iter().filter_map(|frame| listing.room_near(frame)).collect();
+        Self { listing, place, heading, has_panorama, passed_rooms, approach, target, rivals }
     }
 
     pub(super) fn object_at(&self, at: usize) -> &'a ListingObject {
@@ -50,6 +69,11 @@ impl<'a> TargetContext<'a> {
     /// The object as it is seen at the end; `None` if it is not seen there.
     pub(super) fn sight_of_object(&self, object: usize) -> Option<&'a ListingSighting> {
         self.place.sights.iter().find(|sight| sight.object == object)
+    }
+
+    /// Whether an object is seen at the end, in the room there.
+    pub(super) fn is_seen_in_room(&self, object: usize) -> bool {
+        self.sight_of_object(object).is_some() && self.object_at(object).rooms.contains(&self.place.room)
     }
 
     /// The direction of an object from the heading of arrival, radians, positive right, where it is seen at the end.
@@ -92,7 +116,8 @@ impl<'a> TargetContext<'a> {
     pub(super) fn all_properties(&self) -> Vec<TargetProperty> {
         let mut all = self.room_properties();
         let own = self.object_at(self.target);
-        if let Some(colour) = &own.colour {
+        // "The white whiteboard".
+        if let Some(colour) = own.colour.as_ref().filter(|colour| !own.name.contains(&***colour)) {
             let told = ObjectDistinction::Colour { colour: colour.clone() };
             all.push(self.new_property(told, 0.8, |rival| {
                 self.object_at(rival)
@@ -134,7 +159,7 @@ impl<'a> TargetContext<'a> {
         if !self.is_in_end_room() {
             return all;
         }
-        if let Some(level) = own.level.filter(|_| listing.storeys > 1) {
+        if let Some(level) = own.level.filter(|_| self.level_of_room().is_some()) {
             let told = ObjectDistinction::Level { level };
             all.push(
                 self.new_property(told, 1.0, |rival| self.object_at(rival).level.is_none_or(|other| other == level)),
@@ -142,14 +167,29 @@ impl<'a> TargetContext<'a> {
         }
         let room = &listing.rooms[self.place.room];
         let Some(name) = room.name.as_deref() else { return all };
+        // "The garage with the garage door" says nothing: a property has to tell the room from another of its kind.
+        let is_kind = |other: &&ListingRoom| {
+            !std::ptr::eq(*other, room) && other.name.as_deref().is_some_and(|other| same_room(other, name))
+        };
+        let alike: Vec<&ListingRoom> = listing.rooms.iter().filter(is_kind).collect();
         let others: BTreeSet<&String> = room.beside.iter().filter(|other| !same_room(other, name)).collect();
-        for other in others.into_iter().filter(|other| room_name(other).is_some()) {
-            let is_beside = |at: &usize| listing.rooms[*at].beside.iter().any(|beside| same_room(beside, other));
+        // A walker knows the neighbouring room by having come through it.
+        let is_known = |other: &str| {
+            let mut passed = self.passed_rooms.iter().filter_map(|at| listing.rooms[*at].name.as_deref());
+            self.has_panorama || passed.any(|passed| same_room(passed, other))
+        };
+        for other in others.into_iter().filter(|other| room_name(other).is_some() && is_known(other)) {
+            let lies_by = |room: &ListingRoom| room.beside.iter().any(|beside| same_room(beside, other));
+            if alike.iter().all(|room| lies_by(room)) {
+                continue;
+            }
+            let is_beside = |at: &usize| lies_by(&listing.rooms[*at]);
             let told = ObjectDistinction::RoomBy { room: other.clone() };
             all.push(self.new_property(told, 2.0, |rival| self.object_at(rival).rooms.iter().any(is_beside)));
         }
         let mut told: Vec<&str> = Vec::new();
-        for thing in room.things.iter().map(|at| self.object_at(*at)) {
+        let pictured = room.things.iter().filter(|at| self.has_panorama || listing.is_pictured(**at));
+        for thing in pictured.map(|at| self.object_at(*at)) {
             let has_this_name = |name: &&str| **name == *thing.name;
             if thing.salience < 2
                 || thing.class == ThingClass::Stairs
@@ -160,7 +200,11 @@ impl<'a> TargetContext<'a> {
                 continue;
             }
             told.push(&thing.name);
-            let has = |at: &usize| listing.rooms[*at].things.iter().any(|other| self.object_at(*other).is_like(thing));
+            let holds = |room: &ListingRoom| room.things.iter().any(|other| self.object_at(*other).is_like(thing));
+            if alike.iter().all(|room| holds(room)) {
+                continue;
+            }
+            let has = |at: &usize| holds(&listing.rooms[*at]);
             let with = ObjectDistinction::RoomWith { thing: thing.name.clone() };
             all.push(self.new_property(with, 2.2, |rival| self.object_at(rival).rooms.iter().any(has)));
         }
@@ -193,9 +237,19 @@ impl<'a> TargetContext<'a> {
             deg if (25.0..155.0).contains(&-deg) => (Side::Left, -1.0),
             _ => return None,
         };
+        if self.approach.iter().any(|pose| self.lies_opposite(pose, sign)) {
+            return None;
+        }
         // "On the left" describes the view on arrival.
         let may_be = |rival: usize| self.bearing_deg(rival).is_some_and(|deg| (5.0..175.0).contains(&(deg * sign)));
         Some(self.new_property(ObjectDistinction::OnSide { side }, 3.4, may_be))
+    }
+
+    /// Whether a walker on the way to the end sees the target ahead on the other side.
+    fn lies_opposite(&self, pose: &Pose, sign: f64) -> bool {
+        let towards = self.object_at(self.target).position.and_then(|there| Heading::towards(pose.position, there));
+        let deg = towards.map(|towards| pose.heading.turn_to(towards).to_degrees() * sign);
+        deg.is_some_and(|deg| (-60.0..-5.0).contains(&deg))
     }
 
     /// Whether no rival is farther to the target's side.

@@ -4,11 +4,11 @@
 //! rival.
 
 use super::{
-    listing::ListingObject,
+    listing::{ListingObject, ListingViewpoint},
     properties::{TargetContext, TargetProperty, is_unclear},
 };
 use wayword_core::{DVec3, ObjectDistinction, ObjectRelation};
-use wayword_language::lexicon::ThingClass;
+use wayword_language::lexicon::{ThingClass, same_room};
 
 /// Two things are near each other within this distance, metres.
 const NEAR_M: f64 = 1.5;
@@ -24,7 +24,7 @@ const SMALL_NEIGHBOUR_COST: f64 = 0.9;
 const ROUNDING_STEPS_PER_M: f64 = 10_000.0;
 /// A thing near another one, beside it or between two is at most so much higher or lower, metres: what hangs above it is on no side.
 const MAX_BESIDE_RISE_M: f64 = 0.9;
-/// The centre of a lamp or a screen that stands on a table is at least so much higher, metres.
+/// The centre of a thing that stands on another one is at least so much higher, metres.
 const MIN_STANDING_RISE_M: f64 = 0.1;
 /// The centre of a thing that stands on another one is at most so much higher, and so far aside, metres.
 const CARRIED_RISE_M: f64 = 0.9;
@@ -32,6 +32,8 @@ const CARRIED_RISE_M: f64 = 0.9;
 const CARRIED_ASIDE_M: f64 = 0.75;
 /// Most neighbours of the target that are considered, the nearest first.
 const MAX_NEIGHBOURS: usize = 8;
+/// A walker who looks at the target sees a thing at most so far aside, degrees.
+const MAX_APART_IN_VIEW_DEG: f64 = 60.0;
 
 impl<'a> TargetContext<'a> {
     /// The things near the target that a walker at the end can see too, the nearest first.
@@ -42,7 +44,18 @@ impl<'a> TargetContext<'a> {
             let thing = self.object_at(*at);
             // Chairs stand all around a table, and move.
             let is_moved = own.class == ThingClass::Surface && thing.class == ThingClass::Seat;
-            *at != self.target && !thing.is_like(own) && !is_unclear(thing) && !is_moved && !carries(own, thing)
+            // What stands near a rug mostly stands on it.
+            let is_rug = thing.class == ThingClass::Floor;
+            *at != self.target
+                && self.is_beside_in_view(*at)
+                && !thing.is_like(own)
+                && !is_unclear(thing)
+                && !is_moved
+                && !is_rug
+                && !carries(own, thing)
+                && !share_a_word(own, thing)
+                && self.may_share_room(*at)
+                && (self.has_panorama || self.listing.is_pictured(*at))
         };
         let mut near: Vec<(usize, f64)> =
             seen.filter(tells).filter_map(|at| Some((at, centre_distance_m(own, self.object_at(at))?))).collect();
@@ -51,6 +64,21 @@ impl<'a> TargetContext<'a> {
         near.sort_by_key(|(_, apart_m)| (apart_m * ROUNDING_STEPS_PER_M).round() as i64);
         near.truncate(MAX_NEIGHBOURS);
         near
+    }
+
+    /// Whether labels put a thing in no other room than the target: behind a wall there may be a desk.
+    fn may_share_room(&self, at: usize) -> bool {
+        let (own, other) = (self.object_at(self.target), self.object_at(at));
+        own.room_name.as_deref().zip(other.room_name.as_deref()).is_none_or(|(own, other)| same_room(own, other))
+    }
+
+    /// Whether a walker at the end sees a thing and the target without turning away from one of them.
+    fn is_beside_in_view(&self, at: usize) -> bool {
+        let (to, own) = (self.sight_of_object(at), self.sight_of_object(self.target));
+        self.has_panorama
+            || to
+                .zip(own)
+                .is_none_or(|(to, own)| to.heading.turn_to(own.heading).to_degrees().abs() <= MAX_APART_IN_VIEW_DEG)
     }
 
     /// The relations of the target to its neighbours: one set for each name of a neighbour, and "between" for pairs.
@@ -90,8 +118,9 @@ impl<'a> TargetContext<'a> {
         let related = |relation| ObjectDistinction::Related { relation, to: to.name.clone() };
         let mut all: Vec<TargetProperty> = Vec::new();
         let stands_on_it = relation_holds(ObjectRelation::On, own, to, RelationStrictness::Yes);
+        let is_stacked = stands_on_it || carries(to, own) || may_stand_on_rug(to, own);
         // A chandelier is not "next to" the vase on the table below it, nor a lamp "near" the desk on which it stands.
-        let is_beside = height_between_m(own, to).is_none_or(|rise_m| rise_m <= MAX_BESIDE_RISE_M) && !stands_on_it;
+        let is_beside = height_between_m(own, to).is_none_or(|rise_m| rise_m <= MAX_BESIDE_RISE_M) && !is_stacked;
         if is_beside {
             all.push(self.new_property(related(ObjectRelation::Near), 1.6, |rival| nearest(rival) <= NOT_NEAR_M));
         }
@@ -99,9 +128,10 @@ impl<'a> TargetContext<'a> {
         if is_beside && self.has_rival_near() {
             all.extend(self.closest_property(at, apart_m, &alike));
         }
+        let carry = stands_on_it || carries(to, own) || carries(own, to);
         for relation in [ObjectRelation::Above, ObjectRelation::Under, ObjectRelation::On] {
             let is_on = relation == ObjectRelation::On;
-            if relation_holds(relation, own, to, RelationStrictness::Yes) && (is_on || !stands_on_it) {
+            if relation_holds(relation, own, to, RelationStrictness::Yes) && (is_on || !carry) {
                 let may_be = |rival: usize| {
                     alike
                         .iter()
@@ -110,7 +140,9 @@ impl<'a> TargetContext<'a> {
                 all.push(self.new_property(related(relation), 1.4, may_be));
             }
         }
-        all.extend(self.beside_property(at, &alike));
+        if !is_stacked && to.class != ThingClass::Bed {
+            all.extend(self.beside_property(at, &alike));
+        }
         // A small thing such as a plate is hard to find itself.
         if to.salience < 2 {
             all.iter_mut().for_each(|property| property.cost += SMALL_NEIGHBOUR_COST);
@@ -140,10 +172,17 @@ impl<'a> TargetContext<'a> {
         Some(self.new_property(ObjectDistinction::NextTo { neighbour: to.name.clone() }, 1.5, may_be))
     }
 
+    /// Whether no other thing of its kind is near the target: "left of the curtain" where two curtains hang?
+    fn is_only_one_near(&self, thing: &ListingObject) -> bool {
+        let own = self.object_at(self.target);
+        let is_near = |other: &&&ListingObject| centre_distance_m(own, other).is_none_or(|m| m <= 2.0 * NOT_NEAR_M);
+        self.objects_like(thing).iter().filter(is_near).count() == 1
+    }
+
     /// Left or right of a thing, as seen from the end.
     fn beside_property(&self, at: usize, alike: &[&ListingObject]) -> Option<TargetProperty> {
         let (own, to) = (self.object_at(self.target), self.object_at(at));
-        let rise_m = height_between_m(own, to)?;
+        let rise_m = height_between_m(own, to).filter(|_| self.is_only_one_near(to))?;
         let off_rad = self.sight_of_object(at)?.heading.turn_to(self.sight_of_object(self.target)?.heading);
         let off_deg = off_rad.to_degrees();
         // What lies in front of a thing, or behind it, is on no side of it.
@@ -151,6 +190,15 @@ impl<'a> TargetContext<'a> {
         let aside_m = own_m * libm::sin(off_rad.abs());
         let deeper_m = (own_m * libm::cos(off_rad) - to_m).abs();
         if rise_m > MAX_BESIDE_RISE_M || !(8.0..70.0).contains(&off_deg.abs()) || aside_m < deeper_m {
+            return None;
+        }
+        // Whoever enters the room on another side has to see the same.
+        let is_opposite = |place: &ListingViewpoint| {
+            let towards = |object: usize| place.sights.iter().find(|sight| sight.object == object);
+            let turn_rad = towards(at).zip(towards(self.target)).map(|(to, own)| to.heading.turn_to(own.heading));
+            turn_rad.is_some_and(|turn_rad| turn_rad * off_rad.signum() < 0.0)
+        };
+        if self.listing.places.iter().any(is_opposite) {
             return None;
         }
         let relation = if off_deg > 0.0 { ObjectRelation::RightOf } else { ObjectRelation::LeftOf };
@@ -183,12 +231,26 @@ impl<'a> TargetContext<'a> {
         };
         let own = self.object_at(self.target);
         let is_level = |thing| height_between_m(own, thing).is_some_and(|rise_m| rise_m <= MAX_BESIDE_RISE_M);
+        if [one, other].iter().any(|thing| may_stand_on_rug(thing, own) || !self.is_only_one_near(thing)) {
+            return None;
+        }
         if one.is_like(other) || !is_between(own, one, other, 140.0)? || !is_level(one) || !is_level(other) {
             return None;
         }
         let told = ObjectDistinction::Between { one: one.name.clone(), other: other.name.clone() };
         Some(self.new_property(told, 3.0, |rival| lies_between(self.object_at(rival), 100.0)))
     }
+}
+
+/// Whether the names of two things share a word, so that one says nothing of the other: a tv near a tv stand.
+fn share_a_word(one: &ListingObject, other: &ListingObject) -> bool {
+    one.kind().split(' ').any(|word| other.kind().split(' ').any(|other| other == word))
+}
+
+/// Whether something is a rug on which a thing near it may stand.
+fn may_stand_on_rug(thing: &ListingObject, rug: &ListingObject) -> bool {
+    use ThingClass::{Container, Drape, Glass, WallArt};
+    rug.class == ThingClass::Floor && !matches!(thing.class, WallArt | Glass | Drape | Container)
 }
 
 /// Whether a thing stands on another one, so that this is not "next to" it.
@@ -199,7 +261,7 @@ fn carries(furniture: &ListingObject, thing: &ListingObject) -> bool {
     let hangs = matches!(thing.class, ThingClass::WallArt | ThingClass::Glass | ThingClass::Drape);
     is_furniture
         && !hangs
-        && (0.0..CARRIED_RISE_M).contains(&(above.z - below.z))
+        && (MIN_STANDING_RISE_M..CARRIED_RISE_M).contains(&(above.z - below.z))
         && (above - below).truncate().length() <= CARRIED_ASIDE_M
 }
 
@@ -244,7 +306,7 @@ fn relation_holds(relation: ObjectRelation, a: &ListingObject, b: &ListingObject
                 matches!(a.class, ThingClass::Textile | ThingClass::Small | ThingClass::Ornament | ThingClass::Plant);
             // Lamps and screens stand on tables; beside a bed or a seat, they stand on the table there.
             let stands = (a.class == ThingClass::Screen || a.kind() == "lamp")
-                && b.class == ThingClass::Surface
+                && matches!(b.class, ThingClass::Surface | ThingClass::Container)
                 && (!is_strict || rise >= MIN_STANDING_RISE_M);
             let is_carrier = matches!(b.class, ThingClass::Bed | ThingClass::Surface | ThingClass::Seat);
             let is_there = if is_strict {

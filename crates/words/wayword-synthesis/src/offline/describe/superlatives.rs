@@ -11,6 +11,8 @@ const MAX_ROW_WIDTH_DEG: f64 = 150.0;
 const CLEARLY_NEAREST_SHARE: f64 = 0.75;
 /// The highest object has to be higher than the next by this, metres.
 const HIGHER_M: f64 = 0.3;
+/// Things above one another are at most so far aside, metres.
+const STACKED_M: f64 = 1.5;
 /// The longest row in which people count ("the third from the left"), objects.
 const MAX_COUNTED_ROW: usize = 5;
 
@@ -61,7 +63,15 @@ impl TargetContext<'_> {
 
     /// "The highest" or "the lowest", where that is clear.
     fn height_superlative(&self, others: &[usize]) -> Option<(f64, ObjectDistinction)> {
-        let own_m = self.object_at(self.target).position?.z;
+        let own = self.object_at(self.target).position?;
+        // Only of things above one another, one is the lower.
+        let is_aside = |other: &usize| {
+            self.object_at(*other).position.is_none_or(|there| (there - own).truncate().length() > STACKED_M)
+        };
+        if others.iter().any(is_aside) {
+            return None;
+        }
+        let own_m = own.z;
         let others: Option<Vec<f64>> = others.iter().map(|other| Some(self.object_at(*other).position?.z)).collect();
         let others = others?;
         let highest = others.iter().all(|other_m| own_m > other_m + HIGHER_M);

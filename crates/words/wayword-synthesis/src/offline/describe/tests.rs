@@ -57,7 +57,7 @@ fn described(target: &str, spots: &[Spot<'_>], joined: &[(&str, &str)], has_posi
         hangs: false,
         storeys: 0,
     };
-    describe_target(&mut target, &frame, &BuildingListing::from_survey(&survey));
+    describe_target(&mut target, &[frame], &BuildingListing::from_survey(&survey));
     target
 }
 
@@ -215,10 +215,69 @@ fn a_lamp_on_a_desk_is_not_near_it_and_what_hangs_above_is_not_beside() {
 
 #[test]
 fn what_lies_in_front_of_a_thing_is_on_no_side_of_it() {
-    let rug = |at: DVec3| {
-        let things = [("1", "rug", at), ("2", "sofa", DVec3::new(0.0, 3.0, 0.4))];
-        let rug = described("1", &[("a", EYE, "bedroom", &things)], &[], true);
-        properties(&rug).any(|by| matches!(by, ObjectDistinction::Related { relation: ObjectRelation::LeftOf, .. }))
+    let plant = |at: DVec3| is_left_of_sofa(&[("a", EYE, "bedroom", &[("1", "plant", at), SOFA])]);
+    assert!(plant(DVec3::new(-1.2, 3.0, 0.0)) && !plant(DVec3::new(-0.5, 1.9, 0.0)));
+}
+
+const SOFA: (&str, &str, DVec3) = ("2", "sofa", DVec3::new(0.0, 3.0, 0.4));
+
+fn is_left_of_sofa(spots: &[Spot<'_>]) -> bool {
+    let thing = described("1", spots, &[], true);
+    properties(&thing).any(|by| matches!(by, ObjectDistinction::Related { relation: ObjectRelation::LeftOf, .. }))
+}
+
+#[test]
+fn a_side_of_a_thing_holds_from_wherever_both_are_seen() {
+    let things = [("1", "plant", DVec3::new(-1.2, 3.0, 0.0)), SOFA];
+    let behind = EYE + DVec3::Y * 6.0;
+    assert!(is_left_of_sofa(&[("a", EYE, "bedroom", &things)]));
+    assert!(!is_left_of_sofa(&[("a", EYE, "bedroom", &things), ("b", behind, "bedroom", &things)]));
+}
+
+#[test]
+fn what_may_stand_on_a_rug_is_on_no_side_of_it() {
+    let things = [("1", "sofa", LEFT), ("2", "rug", LEFT + DVec3::new(0.9, 0.0, -0.9)), ("3", "tv stand", RIGHT)];
+    let names = |target: &str, name: &str| {
+        let target = described(target, &[("a", EYE, "bedroom", &things)], &[], true);
+        properties(&target).any(|by| by.named_things().any(|named| named == name))
     };
-    assert!(rug(DVec3::new(-1.2, 3.0, 0.0)) && !rug(DVec3::new(-0.5, 1.9, 0.0)));
+    assert!(!names("1", "rug") && !names("2", "sofa"));
+}
+
+#[test]
+fn a_room_is_told_only_by_what_another_of_its_kind_lacks() {
+    let with = |there: &[(&str, &str, DVec3)]| {
+        let here = [("1", "lamp", LEFT), ("2", "bed", RIGHT)];
+        let lamp = described("1", &[("a", EYE, "bedroom", &here), ("b", FAR, "bedroom", there)], &[], true);
+        properties(&lamp).any(|by| matches!(by, ObjectDistinction::RoomWith { .. }))
+    };
+    assert!(with(&[("3", "lamp", FAR + DVec3::X)]));
+    assert!(!with(&[("3", "lamp", FAR + DVec3::X), ("4", "bed", FAR - DVec3::X)]));
+}
+
+#[test]
+fn a_frame_beside_the_viewpoints_is_told_from_the_rest_of_its_building() {
+    let other = [("2", "lamp", FAR + DVec3::X)];
+    let survey = survey(&[("a", EYE, "bedroom", &[("1", "lamp", LEFT)]), ("b", FAR, "bedroom", &other)], &[], true);
+    let aside =
+        Frame { pose: Pose::looking_level(EYE + DVec3::X * 0.5, Heading::NORTH), viewpoint: None, level: Some(1) };
+    let known = survey.viewpoints()[0].known.things.clone().unwrap();
+    let told = |listing: BuildingListing| {
+        let mut target = PathTarget {
+            object: ObjectId::new("1").unwrap(),
+            name: "lamp".into(),
+            told_by: Vec::new(),
+            has_namesake: false,
+            descriptions: Vec::new(),
+            hangs: false,
+            storeys: 0,
+        };
+        describe_target(
+            &mut target,
+            std::slice::from_ref(&aside),
+            &listing.with_frame(&aside, Some("bedroom"), known.iter()),
+        );
+        target.descriptions[0].leaves
+    };
+    assert_eq!((told(BuildingListing::from_survey(&survey)), told(BuildingListing::default())), (2, 1));
 }
