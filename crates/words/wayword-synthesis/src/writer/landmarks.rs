@@ -15,7 +15,7 @@ use wayword_language::lexicon::{
 /// Chooses landmarks, each kind of thing once in a text.
 pub(super) struct LandmarkChooser<'a> {
     brief: &'a WritingBrief<'a>,
-    /// Names that other parts of the text use: that of the target.
+    /// Names that other parts of the text use: that of the task's target.
     reserved: Vec<String>,
     /// Names that checks complained about in earlier texts.
     avoided: Vec<String>,
@@ -27,6 +27,8 @@ pub(super) struct LandmarkChooser<'a> {
 pub(super) struct LandmarkSearch {
     /// The frame from which the thing has to be seen.
     pub(super) frame: usize,
+    /// The frame behind what the text tells before: from there the walker looks for the thing.
+    pub(super) since: usize,
     /// The least salience, as the lexicon rates things, from 0.
     pub(super) salience: u8,
     /// The use of the landmark.
@@ -71,19 +73,25 @@ pub(super) struct ChosenLandmark {
 const NEAR_M: f64 = 2.5;
 /// Greatest distance of a thing at which the walker turns, metres.
 const MAX_TURN_DISTANCE_M: f64 = 2.2;
+/// A thing at which the walker turns is passed at most so long before the turn, metres.
+const MAX_PASSED_BEFORE_TURN_M: f64 = 0.8;
 /// Greatest distance of a thing that the walker stops at, metres.
 const MAX_STOP_DISTANCE_M: f64 = 1.9;
 
 /// How far to either side a walker who looks ahead sees, radians.
 const VISIBLE_AHEAD_RAD: f64 = 1.05;
-/// From this angle on a thing lies behind a walker who stops, radians.
+/// From this angle on a thing lies behind a walker who stops at a viewpoint, radians.
 const BEHIND_RAD: f64 = 1.9;
+/// The same for a walker whose frames lie close together: the stop is where the thing comes beside the walker.
+const BESIDE_RAD: f64 = 1.5;
 /// A thing closer to the walking direction than this is in front, radians.
 const IN_FRONT_RAD: f64 = 1.1;
 /// Things of one name are "the two chairs" if they are at most this far apart, metres.
 const TOGETHER_M: f64 = 1.5;
 /// Bonus, in units of a thing's value, of a thing in front of the walker at a stop.
 const IN_FRONT_BONUS: f64 = 1.5;
+/// Things of one name are passed together if the way between them is at most this long, metres.
+const PASSED_TOGETHER_M: f64 = 0.8;
 /// Greatest distance between two things that are named together, metres.
 const BESIDE_M: f64 = 1.5;
 
@@ -110,6 +118,8 @@ const STOP_BONUS: f64 = 0.5;
 pub(super) enum LandmarkUse {
     /// It is named while the walker is at a frame.
     Here,
+    /// The walker turns there.
+    Turn,
     /// The walker goes to it or past it on the way to a frame.
     Onward,
     /// The walker stops there.
@@ -158,14 +168,13 @@ impl LandmarkSearch {
 }
 
 impl<'a> LandmarkChooser<'a> {
-    /// Avoids names that checks complained about in earlier texts, and the target, which the task names.
+    /// Avoids names that checks complained about in earlier texts.
     pub(super) fn new(brief: &'a WritingBrief<'a>, dice: TextDice) -> Self {
         let blamed = brief.complaints.iter().flat_map(|complaint| {
             let failed = complaint.findings.iter().filter(|finding| finding.verdict != Verdict::Pass);
             failed.filter_map(|finding| complaint.text.get(finding.span?[0]..finding.span?[1])).map(normalise_name)
         });
-        let target = brief.walk.path.target.as_ref().map(|target| normalise_name(&target.name));
-        Self { brief, reserved: target.into_iter().collect(), avoided: blamed.collect(), dice }
+        Self { brief, reserved: Vec::new(), avoided: blamed.collect(), dice }
     }
 
     /// Whether a name may be used: neither reserved nor avoided.
@@ -184,7 +193,7 @@ impl<'a> LandmarkChooser<'a> {
 
     /// The landmark of at least that salience that identifies a frame best, if there is one.
     pub(super) fn choose_for_frame(&self, frame: usize, salience: u8) -> Option<ChosenLandmark> {
-        let search = LandmarkSearch { frame, salience, purpose: LandmarkUse::Here };
+        let search = LandmarkSearch { frame, since: frame, salience, purpose: LandmarkUse::Here };
         let found = self.brief.memory.seen_from(frame).filter(|seen| self.search_finds(search, seen));
         let best = found.max_by(|a, b| self.landmark_worth(a, search).total_cmp(&self.landmark_worth(b, search)))?;
         Some(self.describe_landmark(best, frame))
@@ -247,15 +256,19 @@ impl<'a> LandmarkChooser<'a> {
     }
 
     /// Whether a search finds a thing.
-    fn search_finds(
-        &self,
-        LandmarkSearch { frame, salience, purpose: to }: LandmarkSearch,
-        seen: &RememberedThing,
-    ) -> bool {
-        seen.glimpse_from(frame).is_some()
-            && is_tellable(&seen.name, salience)
+    fn search_finds(&self, search: LandmarkSearch, seen: &RememberedThing) -> bool {
+        seen.glimpse_from(search.frame).is_some()
+            && is_tellable(&seen.name, search.salience)
             && self.is_free(&seen.name)
-            && self.fits_use(seen, frame, to)
+            && self.fits_use(seen, search.frame, search.purpose)
+            && (search.purpose != LandmarkUse::Onward || self.shows_way(seen, search))
+    }
+
+    /// Whether a walker who has done what the text tells before, and goes straight on, comes to see a thing ahead.
+    fn shows_way(&self, seen: &RememberedThing, LandmarkSearch { frame, since, .. }: LandmarkSearch) -> bool {
+        let memory = self.brief.memory;
+        let is_ahead = |at: usize| seen.is_ahead_from(&(at..=at)) && memory.goes_straight(since, at);
+        frame >= since && (memory.is_on_graph() || seen.position.is_none() || (since..=frame).any(is_ahead))
     }
 
     /// The value of a thing as the landmark of a search.
@@ -305,58 +318,87 @@ impl<'a> LandmarkChooser<'a> {
         };
         let most_m = match to {
             LandmarkUse::Stop | LandmarkUse::StopAtAny => MAX_STOP_DISTANCE_M,
-            LandmarkUse::Here => MAX_TURN_DISTANCE_M,
+            LandmarkUse::Here | LandmarkUse::Turn => MAX_TURN_DISTANCE_M,
             LandmarkUse::Onward => NEAR_M + wide_m,
         };
         let is_near = memory.distance_m(seen, frame).is_none_or(|distance_m| distance_m <= most_m);
         let side = memory.side_at(seen, frame);
         let is_there = match to {
             // A walker who comes to a rug or stands on it is at no one place.
-            LandmarkUse::Here | LandmarkUse::Stop if lies_on_floor(&seen.name) && seen.position.is_some() => false,
-            LandmarkUse::Here => side != Some(Side::Behind) && was_seen(seen, frame, VISIBLE_AHEAD_RAD),
+            LandmarkUse::Here | LandmarkUse::Turn | LandmarkUse::Stop
+                if lies_on_floor(&seen.name) && seen.position.is_some() =>
+            {
+                false
+            }
+            // Whoever turns where a thing is passed turns before what comes after it.
+            LandmarkUse::Turn if self.is_passed_before(seen, frame) => false,
+            LandmarkUse::Here | LandmarkUse::Turn => {
+                side != Some(Side::Behind) && was_seen(seen, frame, VISIBLE_AHEAD_RAD)
+            }
+            // Whoever is sent to a thing just before the end goes on until it is reached.
+            LandmarkUse::Onward if self.lies_beyond_end(seen, frame) => false,
             LandmarkUse::Onward => was_ahead(seen, frame) && (side == Some(Side::Ahead) || self.is_passed(seen, frame)),
             LandmarkUse::Stop | LandmarkUse::StopAtAny => {
-                let fixes_spot = || self.ends_at(seen, frame) && memory.shares_room(seen, frame..=frame);
-                side != Some(Side::Behind)
-                    && !hangs_overhead(&seen.name)
-                    && (self.has_twin(seen) || !self.has_other_before(seen, MAX_TOLD_GAP_M))
-                    && (to == LandmarkUse::StopAtAny || fixes_spot())
+                side != Some(Side::Behind) && self.can_stop_at(seen, frame, to)
             }
         };
         let before = frame.saturating_sub(1);
         let is_in_room = match to {
             LandmarkUse::Stop | LandmarkUse::StopAtAny => true,
-            LandmarkUse::Here => memory.shares_room(seen, frame..=frame),
+            LandmarkUse::Here | LandmarkUse::Turn => memory.shares_room(seen, frame..=frame),
             LandmarkUse::Onward => memory.shares_room(seen, before..=frame),
         };
         // Without positions the directions of things are unknown.
         is_near && is_in_room && (is_there || side.is_none())
     }
 
+    /// Whether a thing fixes the spot where the walk stops. At viewpoints, which lie far apart, any thing may where nothing does it better.
+    fn can_stop_at(&self, seen: &RememberedThing, frame: usize, to: LandmarkUse) -> bool {
+        let memory = self.brief.memory;
+        let is_any = to == LandmarkUse::StopAtAny;
+        let is_fixed = || self.ends_at(seen, frame) && memory.shares_room(seen, frame..=frame);
+        let is_alone = || !self.has_other_before(seen, MAX_BARE_STOP_GAP_M) && !self.has_other_ahead(seen, frame);
+        !hangs_overhead(&seen.name)
+            && !self.has_other_before(seen, MAX_TOLD_GAP_M)
+            && (is_any && memory.is_on_graph() || is_fixed())
+            && (is_any && (memory.is_on_graph() || !is_picture(&seen.name)) || is_alone())
+    }
+
     /// Whether a walker who stops at a frame comes to a thing: it was ahead just before, and was not left behind.
     fn ends_at(&self, seen: &RememberedThing, frame: usize) -> bool {
         let memory = self.brief.memory;
-        let is_behind = memory.turn_towards(seen, frame).is_some_and(|turn_rad| turn_rad.abs() > BEHIND_RAD);
-        was_ahead(seen, frame)
-            && !is_behind
-            && !memory.is_left_behind(seen)
-            && !self.has_other_before(seen, MAX_BARE_STOP_GAP_M)
+        let behind_rad = if memory.is_on_graph() { BEHIND_RAD } else { BESIDE_RAD };
+        let is_behind = memory.turn_towards(seen, frame).is_some_and(|turn_rad| turn_rad.abs() > behind_rad);
+        was_ahead(seen, frame) && !is_behind && !memory.is_left_behind(seen)
     }
 
-    /// Whether another thing of the same name stands beside it, so that a text may name both: "the photos".
-    fn has_twin(&self, seen: &RememberedThing) -> bool {
-        let is_beside = |other: &&RememberedThing| {
-            let apart_m = seen.position.zip(other.position).map(|(here, there)| here.distance(there));
-            *other != seen && apart_m.is_some_and(|apart_m| apart_m <= TOGETHER_M)
-        };
-        self.brief.memory.things.iter().filter(is_beside).any(|other| names_agree(&other.name, &seen.name))
-    }
-
-    /// Whether the walk comes to another thing of the same name in its last room, more than `gap_m` metres before its end.
+    /// Whether the walk comes to another thing of the same name, not beside it, in its last room, more than `gap_m` metres before its end.
     fn has_other_before(&self, seen: &RememberedThing, gap_m: f64) -> bool {
         let memory = self.brief.memory;
-        let is_other = |other: &&RememberedThing| *other != seen && names_agree(&other.name, &seen.name);
+        let is_other = |other: &&RememberedThing| {
+            *other != seen && names_agree(&other.name, &seen.name) && !stand_together(seen, other)
+        };
         memory.things.iter().filter(is_other).any(|other| memory.is_met_before_end(other, gap_m))
+    }
+
+    /// Whether a walker who comes to a frame sees another thing of the same name ahead in the room, not beside it.
+    fn has_other_ahead(&self, seen: &RememberedThing, frame: usize) -> bool {
+        let memory = self.brief.memory;
+        let is_other = |other: &&RememberedThing| {
+            *other != seen && names_agree(&other.name, &seen.name) && !stand_together(seen, other)
+        };
+        let is_here = |other: &RememberedThing| {
+            memory.shares_room(other, frame..=frame) && was_seen(other, frame, VISIBLE_AHEAD_RAD)
+        };
+        !memory.is_on_graph() && memory.things.iter().filter(is_other).any(is_here)
+    }
+
+    /// Whether a frame lies just before the end, and a thing ahead lies farther than the walk goes.
+    fn lies_beyond_end(&self, seen: &RememberedThing, frame: usize) -> bool {
+        let memory = self.brief.memory;
+        let end = memory.frame_count().saturating_sub(1);
+        let is_far = memory.distance_m(seen, end).is_some_and(|far_m| far_m > MAX_STOP_DISTANCE_M);
+        is_far && memory.walked_m(frame, end) <= MAX_BARE_STOP_GAP_M && memory.side_at(seen, end) == Some(Side::Ahead)
     }
 
     /// Whether the walker passes a thing on the way to a frame, behind the turn with which that way begins.
@@ -368,6 +410,18 @@ impl<'a> LandmarkChooser<'a> {
         seen.passed.is_some_and(|passed| {
             (before..=frame).contains(&passed.frame)
                 && (turn.is_none() || seen.position.is_none() || passed.along_m >= begin_m)
+        })
+    }
+
+    /// Whether the walker has passed a thing some way before a frame.
+    fn is_passed_before(&self, seen: &RememberedThing, frame: usize) -> bool {
+        let here_m = self.brief.memory.walked_m(0, frame);
+        let has_door_between = |from: usize| {
+            self.brief.memory.openings.iter().any(|opening| from <= opening.before && opening.behind <= frame)
+        };
+        seen.passed.filter(|_| seen.position.is_some()).is_some_and(|passed| {
+            passed.along_m < here_m - MAX_PASSED_BEFORE_TURN_M
+                || self.brief.memory.knows_doors() && has_door_between(passed.frame)
         })
     }
 
@@ -404,7 +458,12 @@ impl<'a> LandmarkChooser<'a> {
             (Some(here), Some(there)) => here.distance(there) <= TOGETHER_M,
             _ => true,
         };
-        let alike = memory.seen_from(frame).filter(is_alike).filter(stands_by).count();
+        // Of several that stand together the walker may turn off before the second.
+        let is_passed_with = |other: &&RememberedThing| match (seen.passed, other.passed) {
+            (Some(own), Some(other)) => own.side == other.side && other.along_m - own.along_m <= PASSED_TOGETHER_M,
+            (own, _) => own.is_none() || memory.is_on_graph(),
+        };
+        let alike = memory.seen_from(frame).filter(is_alike).filter(stands_by).filter(is_passed_with).count();
         let like = |other: &&RememberedThing| normalise_name(&other.name) == normalise_name(&seen.name);
         let needs_colour = memory.seen_from(frame).filter(like).any(|other| other.colour != seen.colour);
         let passed = seen.passed.map(|passed| (passed.frame, passed.side));
@@ -420,6 +479,11 @@ impl<'a> LandmarkChooser<'a> {
             with: None,
         }
     }
+}
+
+/// Whether two things of one name stand so close together that a text means both.
+fn stand_together(one: &RememberedThing, other: &RememberedThing) -> bool {
+    one.position.zip(other.position).is_some_and(|(here, there)| here.distance(there) <= TOGETHER_M)
 }
 
 /// The kind of a thing, which names its random draws: it is the same from other frames and on other platforms.
@@ -446,8 +510,13 @@ fn was_seen(seen: &RememberedThing, frame: usize, aside_rad: f64) -> bool {
     seen.glimpses.iter().any(|glimpse| glimpse.frame <= frame && within(glimpse.turn_rad))
 }
 
+/// Whether a thing is a picture or the like, of which a room has many.
+fn is_picture(name: &str) -> bool {
+    find_thing(name).is_some_and(|thing| thing.class == ThingClass::WallArt)
+}
+
 /// Whether a thing is a part of the floor, as a rug.
-fn lies_on_floor(name: &str) -> bool {
+pub(super) fn lies_on_floor(name: &str) -> bool {
     find_thing(name).is_some_and(|thing| thing.class == ThingClass::Floor)
 }
 

@@ -3,8 +3,9 @@
 use super::{
     WritingBrief,
     dice::TextDice,
-    phrases::{draw_option, fill_gaps, stay_phrase},
-    route::{OfferRole, WayClause, side_word, stands_still, suits_motion},
+    landmarks::lies_on_floor,
+    phrases::{draw_option, fill_gaps, ordinal_of, stay_phrase},
+    route::{OfferRole, WayClause, side_word, stands_still, suits_motion, told_until},
 };
 use crate::style::way::{ClauseKind, WayWording, is_door_word, is_until};
 use rand::Rng;
@@ -57,6 +58,8 @@ fn walked_in_m(at: usize, brief: &WritingBrief<'_>) -> f64 {
 #[derive(Clone, Copy)]
 struct ShapeNeeds<'n> {
     motion: PathMotion,
+    /// Whether the walk goes from viewpoint to viewpoint, which lie far apart.
+    is_on_graph: bool,
     /// Whether it has to name its room.
     names_room: bool,
     /// Whether it leaves the room of the start, or names the room that it leaves.
@@ -67,6 +70,8 @@ struct ShapeNeeds<'n> {
     may_run: bool,
     /// The names of the doors at its change of rooms; `None` where they are not known.
     doors: Option<&'n [&'n str]>,
+    /// Which of the doors on its side it means, where that is not the first.
+    door_number: Option<usize>,
 }
 
 /// The names that a text gives to rooms and things: one for each.
@@ -103,9 +108,12 @@ impl<'a> ChosenNames<'a> {
             None => before.is_some_and(ClauseKind::goes_on),
         };
         let doors = door_names(clause, brief);
+        let number = door_number(clauses, at, brief);
         let needs = ShapeNeeds {
             motion,
+            is_on_graph: brief.memory.is_on_graph(),
             doors: doors.as_deref(),
+            door_number: number,
             names_room: has_to_name(clauses, at, brief),
             walked_in_m: walked_in_m(clause.at, brief),
             leaves: goes_out(clause, brief),
@@ -137,6 +145,7 @@ impl<'a> ChosenNames<'a> {
             ("{a}", from.as_str()),
         ];
         let is_clause = !["in", "at", "with"].contains(&shape.split(' ').next().unwrap_or_default());
+        let shape = number.and_then(|number| number_door(&shape, number)).unwrap_or(shape);
         ClausePhrase { text: fill_gaps(&shape, &gaps), is_clause }
     }
 
@@ -146,7 +155,7 @@ impl<'a> ChosenNames<'a> {
         let shapes = self.way.shapes.get(&clause.kind).or(own);
         let ahead = clause.thing.as_ref().is_none_or(|thing| thing.in_front);
         let is_near_door = clause.kind != ClauseKind::StopIn || needs.walked_in_m <= JUST_INSIDE_M;
-        let is_passed = |passed: (usize, Side)| passed.0 <= clause.at;
+        let is_passed = |passed: (usize, Side)| passed.0 < clause.at || needs.is_on_graph && passed.0 == clause.at;
         let is_passed_before = clause.kind != ClauseKind::TurnAt
             || clause.thing.as_ref().is_none_or(|thing| {
                 thing.side.is_none() || !is_long(&thing.name) && thing.passed.is_some_and(is_passed)
@@ -166,12 +175,15 @@ impl<'a> ChosenNames<'a> {
                 && (ahead || !shape.contains("front"))
                 && is_room(shape)
                 && (is_open_air || !shape.contains("onto the {r}") && !shape.contains("out into the {r}"))
-                && (is_near_door || !["just inside", "once you", "doorway"].iter().any(|near| shape.contains(near)))
+                && (is_near_door
+                    || !["just inside", "once you", "doorway", "at the {r}"].iter().any(|near| shape.contains(near)))
                 && (needs.leaves || !["exit", "leave", "out "].iter().any(|out| shape.contains(out)))
                 && (needs.may_run || !is_until(shape))
                 && (is_passed_before || !["past", "after"].iter().any(|past| shape.contains(past)))
                 && needs.doors.is_none_or(|doors| fits_doors(shape, doors))
+                && needs.door_number.is_none_or(|number| number_door(shape, number).is_some())
                 && !(is_inside && shape.contains("at the {r}"))
+                && (needs.is_on_graph || !shape.contains("all the way"))
         };
         let all: Vec<(f64, &String)> = shapes
             .into_iter()
@@ -217,8 +229,30 @@ fn door_names<'n>(clause: &WayClause, brief: &'n WritingBrief<'_>) -> Option<Vec
 
 /// Whether the words for doors in a shape name one of these doors.
 fn fits_doors(shape: &str, doors: &[&str]) -> bool {
-    let mut words = shape.split(' ').filter(|word| is_door_word(word));
+    // The first word is the verb: "exit".
+    let mut words = shape.split(' ').skip(1).filter(|word| is_door_word(word));
     words.all(|word| doors.iter().any(|door| names_agree(word, door)))
+}
+
+/// Which of the doors on its side a clause means, counted from the last place that the text names before; `None` for the first, and
+/// where doors are not known.
+fn door_number(clauses: &[WayClause], at: usize, brief: &WritingBrief<'_>) -> Option<usize> {
+    let (clause, memory) = (&clauses[at], brief.memory);
+    let side = clause.side.filter(|_| clause.kind == ClauseKind::DoorOnSide)?;
+    let before = &clauses[..at];
+    let things = before.iter().filter_map(|before| before.thing.as_ref()).filter(|thing| !lies_on_floor(&thing.name));
+    let thing = things.filter_map(|thing| thing.passed).map(|(frame, _)| frame).max();
+    let from = told_until(before, memory).max(thing.unwrap_or(0)).min(clause.at);
+    memory.door_number(side, from, clause.at).filter(|number| *number > 1)
+}
+
+/// A shape whose door gets a number: "the second door on the {p}".
+fn number_door(shape: &str, number: usize) -> Option<String> {
+    let number = ordinal_of(u32::try_from(number).ok()?)?;
+    let mut words: Vec<&str> = shape.split(' ').collect();
+    let at = (1..words.len()).find(|at| is_door_word(words[*at]) && words[at - 1] == "the")?;
+    words.insert(at, number);
+    Some(words.join(" "))
 }
 
 /// Whether a clause has to name its room, because "the room" would be unclear: it is the room of the end, a later

@@ -4,7 +4,7 @@
 use crate::{
     style::PlaceWording,
     weighted_draw::draw_weighted,
-    writer::{WriteError, WritingBrief, phrases::storey_ordinal},
+    writer::{WriteError, WritingBrief, phrases::ordinal_of},
 };
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -265,7 +265,7 @@ fn superlative_phrase(
         ObjectDistinction::InRow { place, from, .. } => (*place as u32, *from == Side::Right),
         _ => (1, false),
     };
-    let way = way.replace("{th}", storey_ordinal(place)?);
+    let way = way.replace("{th}", ordinal_of(place)?);
     let way = if is_right { way.replace("leftmost", "rightmost").replace("left", "right") } else { way };
     Some(way.replace("{o}", name))
 }

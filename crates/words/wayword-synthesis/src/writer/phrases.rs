@@ -42,7 +42,7 @@ pub(super) fn draw_measure(values: &[usize], rng: &mut ChaCha8Rng) -> usize {
 }
 
 /// The ordinal of a storey or place, from "first" to "fifth"; `None` beyond.
-pub(super) fn storey_ordinal(level: u32) -> Option<&'static str> {
+pub(super) fn ordinal_of(level: u32) -> Option<&'static str> {
     ["first", "second", "third", "fourth", "fifth"].get(level.checked_sub(1)? as usize).copied()
 }
 

@@ -42,6 +42,10 @@ const OVER_LIMIT_COST: usize = 10;
 const MIN_PLANNED_WORDS: usize = 8;
 /// Only clauses below this weight are dropped from a text that is too long.
 const OPTIONAL_BELOW_WEIGHT: u8 = 3;
+/// A turn so near to the start is made at once, metres.
+const MAX_AT_ONCE_M: f64 = 1.0;
+/// A door or room "on the right" so near to the start is the first one there, metres.
+const MAX_FIRST_DOOR_M: f64 = 2.0;
 
 /// A text that describes the way step by step. `task` is what to do at the end, in words, with the name of its object.
 pub(super) fn write_way_text(brief: &WritingBrief<'_>, task: Option<&(String, String)>, dice: TextDice) -> String {
@@ -189,6 +193,15 @@ fn mend_clauses(clauses: &mut Vec<WayClause>, brief: &WritingBrief<'_>) {
         if clauses[at].is_bare() && clauses[at - 1].is_bare() {
             give_place(&mut clauses[at], brief);
         }
+    }
+    // Whoever hears of a turn or a door first takes it at once.
+    let walks_first = |first: &WayClause| {
+        let takes_door = first.side.is_some() && first.thing.is_none() && brief.memory.knows_doors();
+        let most_m = if takes_door && !first.is_bare() { MAX_FIRST_DOOR_M } else { MAX_AT_ONCE_M };
+        (first.is_bare() || takes_door) && brief.walk.walked_m(0, first.at) > most_m
+    };
+    if clauses.first().is_some_and(walks_first) {
+        clauses.insert(0, WayClause::straight_on(&clauses[0]));
     }
     while let Some(at) = (1..clauses.len()).find(|at| clauses[*at].is_bare() && clauses[*at - 1].is_bare()) {
         let onward = clauses[at].straight_on();

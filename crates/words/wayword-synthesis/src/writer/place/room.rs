@@ -2,7 +2,7 @@
 
 use crate::{
     style::PlaceWording,
-    writer::{WritingBrief, phrases::storey_ordinal, route::last_climb},
+    writer::{WritingBrief, phrases::ordinal_of, route::last_climb},
 };
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -107,9 +107,9 @@ impl<'a> GoalRoom<'a> {
         let qualifiers: Vec<String> =
             with.into_iter().chain(beside).filter_map(|by| self.room_qualifier(by, rng)).collect();
         let Some(level) = level else { return join_words(&[format!("the {room}")], &qualifiers) };
-        let has_ordinal = |way: &str| storey_ordinal(level).is_some() || !way.contains("{th}");
+        let has_ordinal = |way: &str| ordinal_of(level).is_some() || !way.contains("{th}");
         let way = self.wording.draw("level", rng, has_ordinal).unwrap_or("the {r} on level {n}");
-        let filled = way.replace("{n}", &level.to_string()).replace("{th}", storey_ordinal(level).unwrap_or_default());
+        let filled = way.replace("{n}", &level.to_string()).replace("{th}", ordinal_of(level).unwrap_or_default());
         // "The bathroom next to the hall on level 2": the storey may also come last.
         let is_last = filled.starts_with("the {r} ") && rng.random_bool(LEVEL_LAST_SHARE);
         if is_last && !qualifiers.is_empty() {

@@ -8,6 +8,7 @@ use crate::writer::{
     phrases::draw_option,
 };
 use std::collections::{BTreeMap, BTreeSet};
+use wayword_checks::WalkMemory;
 use wayword_core::Side;
 
 /// The clauses of a plan, with a thing in each place where there is one.
@@ -17,7 +18,7 @@ pub(in crate::writer) fn carry_out(
     landmarks: &LandmarkChooser<'_>,
     dice: TextDice,
 ) -> Vec<WayClause> {
-    let mut things = choose_things(plan, landmarks);
+    let mut things = choose_things(plan, landmarks, brief.memory);
     let (mut clauses, mut passed) = (Vec::new(), 0);
     let mut follows_offer = false;
     for (at, clause) in plan.iter().enumerate() {
@@ -41,9 +42,14 @@ pub(in crate::writer) fn carry_out(
 
 /// The thing of each place, by the number of its clause. An offer that replaces another one keeps its thing only if no
 /// other offer of that hop got one.
-fn choose_things(plan: &[WayClause], landmarks: &LandmarkChooser<'_>) -> BTreeMap<usize, ChosenLandmark> {
+fn choose_things(
+    plan: &[WayClause],
+    landmarks: &LandmarkChooser<'_>,
+    memory: &WalkMemory,
+) -> BTreeMap<usize, ChosenLandmark> {
     let offers = || plan.iter().enumerate().filter_map(|(at, clause)| Some((at, clause.offer.as_ref()?)));
-    let spots: Vec<LandmarkSpot> = offers().map(|(_, offer)| offer.landmark_spot()).collect();
+    let spots: Vec<LandmarkSpot> =
+        offers().map(|(at, offer)| offer.landmark_spot(told_until(&plan[..at], memory))).collect();
     let found = offers().zip(landmarks.landmarks_at(&spots)).filter_map(|((at, _), thing)| Some((at, thing?)));
     let mut things: BTreeMap<usize, ChosenLandmark> = found.collect();
     let mut served_hops: BTreeSet<usize> = plan
@@ -58,6 +64,15 @@ fn choose_things(plan: &[WayClause], landmarks: &LandmarkChooser<'_>) -> BTreeMa
         }
     }
     things
+}
+
+/// The frame behind what these clauses tell, places for things left out.
+pub(in crate::writer) fn told_until(before: &[WayClause], memory: &WalkMemory) -> usize {
+    let last = before.iter().rfind(|clause| !clause.is_offer() && !clause.kind.goes_on());
+    last.map_or(0, |clause| {
+        let bend = memory.bends.iter().find(|bend| bend.first == clause.at && clause.side.is_some());
+        bend.map_or(clause.at, |bend| bend.last) + 1
+    })
 }
 
 /// Whether a clause exists for a thing and is no replacement of another.
@@ -93,7 +108,12 @@ fn with_thing(
         OfferRole::Turn => {
             // "Go to the lamp. Turn left" where the thing is ahead, or else "turn left at the lamp".
             let ahead = if thing.side == Some(Side::Ahead) { 1.8 } else { 0.0 };
-            if draw_option(&[(3.0, false), (ahead, true)], &mut rng) == Some(true) {
+            // "Turn left at the lamp" is no slight turn.
+            let is_slight = clause.kind == ClauseKind::TurnSlightly;
+            if is_slight && ahead == 0.0 {
+                return without_thing(clause);
+            }
+            if is_slight || draw_option(&[(3.0, false), (ahead, true)], &mut rng) == Some(true) {
                 let to = WayClause { kind: ClauseKind::To, thing: Some(thing), ..bare_clause(&clause) };
                 return vec![to, WayClause { follows_offer: true, ..clause }];
             }

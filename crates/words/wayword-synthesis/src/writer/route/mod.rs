@@ -11,7 +11,7 @@ mod rooms;
 mod stop;
 mod turns;
 
-pub(super) use carry_out::carry_out;
+pub(super) use carry_out::{carry_out, told_until};
 pub(super) use offer::{OfferRole, ThingOffer, with_stand_ins};
 
 use super::{WritingBrief, dice::TextDice, landmarks::ChosenLandmark};
@@ -199,7 +199,10 @@ impl WayPlanner<'_> {
                     self.add_turn(bend);
                     self.go_onwards(at);
                 }
-                (None, Some(opening)) => self.change_room(opening),
+                (None, Some(opening)) => match self.memory.side_among_doors(opening.before) {
+                    Some(side) => self.choose_door(side, opening),
+                    None => self.change_room(opening),
+                },
                 (None, None) => self.go_onwards(at),
             }
             at += 1;
@@ -242,8 +245,8 @@ impl WayPlanner<'_> {
         self.brief.profile.way.kind_count(kind)
     }
 
-    /// The frame up to which the text so far describes the walk, at most `at`.
-    fn told_until(&self, at: usize) -> usize {
+    /// The frame up to which the plan so far describes the walk, places for things included, at most `at`.
+    fn planned_until(&self, at: usize) -> usize {
         self.clauses.last().map_or(0, |before| before.at + 1).min(at)
     }
 

@@ -70,12 +70,13 @@ impl ThingOffer {
         Self { things, ..self }
     }
 
-    /// The spot with the searches for its thing.
-    pub(super) fn landmark_spot(&self) -> LandmarkSpot {
-        let at = |frame, salience, to| LandmarkSearch { frame, salience, purpose: to };
+    /// The spot with the searches for its thing; `since` is the frame behind what the plan tells before it.
+    pub(super) fn landmark_spot(&self, since: usize) -> LandmarkSpot {
+        let at = |frame, salience, to| LandmarkSearch { frame, since, salience, purpose: to };
         let frame = self.frame;
         let mut searches = match self.role {
-            OfferRole::Turn | OfferRole::EnterWith => vec![at(frame, MIN_PASSED_SALIENCE, LandmarkUse::Here)],
+            OfferRole::Turn => vec![at(frame, MIN_PASSED_SALIENCE, LandmarkUse::Turn)],
+            OfferRole::EnterWith => vec![at(frame, MIN_PASSED_SALIENCE, LandmarkUse::Here)],
             OfferRole::PassEnter | OfferRole::Onward => vec![at(frame, MIN_PASSED_SALIENCE, LandmarkUse::Onward)],
             OfferRole::Stop(_) => {
                 let purposes = [LandmarkUse::Stop, LandmarkUse::StopAtAny];

@@ -1,11 +1,13 @@
 //! Plans hops that go straight on: past things, and along hallways.
 
 use super::{
-    FILLER_WEIGHT, LONG_HOP_M, MAIN_WEIGHT, OfferRole, SIDE_WEIGHT, ThingOffer, WayClause, WayPlanner, usable_room,
+    FILLER_WEIGHT, LONG_HOP_M, MAIN_WEIGHT, OfferRole, SIDE_WEIGHT, STRETCH_M, ThingOffer, WayClause, WayPlanner,
+    usable_room,
 };
 use crate::style::way::{ClauseKind, WayWording};
 use rand::Rng;
-use wayword_core::Side;
+use wayword_checks::memory::WalkBend;
+use wayword_core::{Side, motion};
 use wayword_language::lexicon::room_name;
 
 impl WayPlanner<'_> {
@@ -13,6 +15,15 @@ impl WayPlanner<'_> {
     pub(super) fn go_along(&mut self, at: usize, room: &str, weight: u8) {
         self.push(WayClause::new(ClauseKind::Along, at, weight).with_room(room));
         self.along = true;
+    }
+
+    /// Whether the walk goes far along the room of a frame before it turns.
+    fn goes_far_along(&self, at: usize) -> bool {
+        let is_turn = |bend: &&WalkBend| bend.first >= at && bend.turn_rad.to_degrees().abs() >= motion::TOLD_DEG;
+        let turn = self.memory.bends.iter().find(is_turn).map_or(usize::MAX, |bend| bend.first);
+        let left = self.memory.stay_at(at).map_or(at, |stay| stay.left);
+        let knows_way = self.brief.walk.path.motion.is_known();
+        self.goes_along(at) && (!knows_way || self.memory.walked_m(at - 1, left.min(turn)) >= STRETCH_M)
     }
 
     /// Whether the walk goes far enough along the room of a frame, from there on, that "go along the hallway" says something.
@@ -31,7 +42,7 @@ impl WayPlanner<'_> {
         let offers = self.rng.random_bool(offer_share) || self.is_first_hop_of_untold_turn(at);
         let room = self.memory.room_at(at + 1).and_then(usable_room);
         let hall = room.filter(|room| room_name(room) == Some("hallway"));
-        if let Some(hall) = hall.filter(|_| !self.along && self.rng.random_bool(0.5) && self.goes_along(at + 1)) {
+        if let Some(hall) = hall.filter(|_| !self.along && self.rng.random_bool(0.5) && self.goes_far_along(at + 1)) {
             let left = self.memory.stay_at(at + 1).map_or(at, |stay| stay.left);
             let weight = if self.brief.walk.walked_m(at, left) >= LONG_HOP_M { MAIN_WEIGHT } else { SIDE_WEIGHT };
             return self.go_along(at, &hall, weight);

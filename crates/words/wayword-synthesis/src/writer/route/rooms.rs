@@ -3,7 +3,9 @@
 //! Several kinds of clauses can describe a change ("leave the kitchen", "go through the door"). One is drawn by how
 //! often the style uses it, times a factor for the situation.
 
-use super::{MAIN_WEIGHT, OfferRole, SIDE_WEIGHT, ThingOffer, WayClause, WayPlanner, usable_room};
+use super::{
+    MAIN_WEIGHT, OfferRole, SIDE_WEIGHT, ThingOffer, WayClause, WayPlanner, carry_out::told_until, usable_room,
+};
 use crate::{style::way::ClauseKind, writer::phrases::draw_option};
 use rand::Rng;
 use wayword_checks::memory::{MAX_SIDE_DOOR_GAP_M, RoomOpening, WalkBend};
@@ -71,7 +73,9 @@ impl WayPlanner<'_> {
                 kinds.push((self.kind_count(ClauseKind::Through) * 1.5, ClauseKind::Through));
             }
         }
-        if from.is_some() {
+        // A hallway is left by one of several doors, and stairs belong to the hall where they begin.
+        let says_way = self.can_say_leave(opening);
+        if from.is_some() && says_way {
             kinds.push((self.kind_count(ClauseKind::Leave) * if is_last { 0.3 } else { 1.0 }, ClauseKind::Leave));
             if to.is_some() {
                 kinds.push((self.kind_count(ClauseKind::LeaveEnter) * 1.5, ClauseKind::LeaveEnter));
@@ -82,7 +86,9 @@ impl WayPlanner<'_> {
                 self.kind_count(ClauseKind::ThroughDoor) * if is_last { 2.0 } else { 4.0 },
                 ClauseKind::ThroughDoor,
             ));
-            kinds.push((self.kind_count(ClauseKind::ToDoor) * 1.5, ClauseKind::ToDoor));
+            if to.is_some() {
+                kinds.push((self.kind_count(ClauseKind::ToDoor) * 1.5, ClauseKind::ToDoor));
+            }
             if from.is_some() {
                 kinds.push((self.kind_count(ClauseKind::LeaveByDoor) * 2.0, ClauseKind::LeaveByDoor));
             }
@@ -101,7 +107,8 @@ impl WayPlanner<'_> {
         // A walker who turns on the way through the next room needs to know which room it is.
         let until = next.map_or(self.memory.frame_count(), |next| next.before + 1);
         let turns = self.memory.bends.iter().any(|bend| (at..until).contains(&bend.first));
-        let weight = if is_last || at == 0 || turns { MAIN_WEIGHT } else { SIDE_WEIGHT };
+        let is_main = is_last || at == 0 || turns || self.memory.knows_doors();
+        let weight = if is_main { MAIN_WEIGHT } else { SIDE_WEIGHT };
         let mut clause = WayClause::new(kind, at, weight);
         match kind {
             ClauseKind::Leave | ClauseKind::LeaveByDoor => {
@@ -137,6 +144,66 @@ impl WayPlanner<'_> {
         self.enter_room(to.as_deref().filter(|_| names_new_room));
     }
 
+    /// Whether the walk passes no other door on a side between what the text tells before and a frame.
+    fn is_next_door(&self, side: Side, at: usize) -> bool {
+        let told = self.planned_until(at);
+        // A walker passes the door beside the last thing, too.
+        let after = if self.memory.knows_doors() { told.saturating_sub(1) } else { told };
+        let is_near = !self.memory.knows_doors() && self.memory.walked_m(told, at) <= MAX_SIDE_DOOR_GAP_M;
+        is_near || !self.memory.passes_door(side, after, at)
+    }
+
+    /// Says that the walk goes on before a door that is not the next one.
+    fn go_past_doors(&mut self, at: usize) {
+        if self.clauses.last().is_some_and(|before| before.kind.goes_on()) {
+            return;
+        }
+        let told = self.planned_until(at);
+        let hall = self.memory.room_at(told).and_then(usable_room).filter(|room| room_name(room) == Some("hallway"));
+        match hall.filter(|_| self.goes_along(told)) {
+            Some(hall) => self.go_along(told, &hall, MAIN_WEIGHT),
+            None => self.push(WayClause::new(ClauseKind::Straight, told, MAIN_WEIGHT)),
+        }
+    }
+
+    /// Whether "leave the room" tells the way: not out of a hallway, unless it ends there, nor onto stairs.
+    fn can_say_leave(&self, opening: &RoomOpening) -> bool {
+        let is_hall = room_name(&opening.from) == Some("hallway");
+        usable_room(&opening.to).is_some() && (!is_hall || self.is_end_of_hall(opening))
+    }
+
+    /// Plans the change into another room by one of several doors: that on this side.
+    pub(super) fn choose_door(&mut self, side: Side, opening: &RoomOpening) {
+        self.go_on_to(opening.before);
+        if self.is_counted_door(side, opening) {
+            return self.take_door(side, opening);
+        }
+        let to = usable_room(&opening.to);
+        let mut kinds: Vec<(f64, ClauseKind)> = Vec::new();
+        if opening.has_door {
+            kinds.push((self.kind_count(ClauseKind::DoorOnSide) * 4.0, ClauseKind::DoorOnSide));
+        }
+        if to.is_some() {
+            kinds.push((self.kind_count(ClauseKind::EnterOnSide) * 1.5, ClauseKind::EnterOnSide));
+        }
+        let Some(kind) = draw_option(&kinds, &mut self.rng) else { return self.change_room(opening) };
+        self.push(WayClause::new(kind, opening.before, MAIN_WEIGHT).with_side(side).with_room(&opening.to));
+        self.enter_room(to.as_deref().filter(|_| kind == ClauseKind::EnterOnSide));
+    }
+
+    /// Whether the walk passes other doors on a side before it takes this one, so that "the door on the left" gets a number.
+    fn is_counted_door(&self, side: Side, opening: &RoomOpening) -> bool {
+        let told = told_until(&self.clauses, self.memory).min(opening.before);
+        opening.has_door && self.memory.door_number(side, told, opening.before).is_some_and(|number| number > 1)
+    }
+
+    /// Plans the change into another room by the door on a side.
+    fn take_door(&mut self, side: Side, opening: &RoomOpening) {
+        let clause = WayClause::new(ClauseKind::DoorOnSide, opening.before, MAIN_WEIGHT);
+        self.push(clause.with_side(side).with_room(&opening.to));
+        self.enter_room(None);
+    }
+
     /// Whether a hallway ends where the walk leaves it: the walk went along the hallway, and straight on into the room
     /// behind it.
     fn is_end_of_hall(&self, opening: &RoomOpening) -> bool {
@@ -165,22 +232,29 @@ impl WayPlanner<'_> {
             return self.change_room(opening);
         }
         if bend.turn_rad.to_degrees().abs() < motion::TOLD_DEG {
+            if self.memory.faces_other_door(at) {
+                return self.choose_door(side, opening);
+            }
             self.push(WayClause::new(ClauseKind::TurnSlightly, at, MAIN_WEIGHT).with_side(side));
             return self.change_room(opening);
+        }
+        if self.is_counted_door(side, opening) {
+            return self.take_door(side, opening);
         }
         let mut kinds: Vec<(f64, ClauseKind)> = Vec::new();
         if to.is_some() {
             kinds.push((self.kind_count(ClauseKind::TurnInto) * 1.5, ClauseKind::TurnInto));
             kinds.push((self.kind_count(ClauseKind::EnterOnSide) * 1.5, ClauseKind::EnterOnSide));
         }
-        let told = self.told_until(at);
-        let is_next_door =
-            self.memory.walked_m(told, at) <= MAX_SIDE_DOOR_GAP_M || !self.memory.passes_door(side, told, at);
+        let is_next_door = self.is_next_door(side, at);
+        if !is_next_door {
+            self.go_past_doors(at);
+        }
         if opening.has_door && is_next_door {
             kinds.push((self.kind_count(ClauseKind::DoorOnSide) * 4.0, ClauseKind::DoorOnSide));
             kinds.push((self.kind_count(ClauseKind::TurnThroughDoor) * 3.0, ClauseKind::TurnThroughDoor));
         }
-        if can_leave {
+        if can_leave && self.can_say_leave(opening) {
             kinds.push((self.kind_count(ClauseKind::TurnOut) * 2.0, ClauseKind::TurnOut));
             kinds.push((self.kind_count(ClauseKind::Leave) * 0.15, ClauseKind::Leave));
         }

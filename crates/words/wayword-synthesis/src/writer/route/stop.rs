@@ -1,6 +1,9 @@
 //! Plans the last clause: where the walk stops.
 
-use super::{KEPT_WEIGHT, MAX_DOORWAY_HOP_M, OfferRole, ThingOffer, WayClause, WayPlanner, usable_room};
+use super::{
+    KEPT_WEIGHT, MAIN_WEIGHT, MAX_DOORWAY_HOP_M, OfferRole, ThingOffer, WayClause, WayPlanner, offer::OfferThings,
+    usable_room,
+};
 use crate::{style::way::ClauseKind, writer::phrases::draw_option};
 use wayword_checks::memory::{MAX_BARE_STOP_GAP_M, MAX_TOLD_GAP_M, StairFlight};
 use wayword_core::ClimbDirection;
@@ -8,6 +11,10 @@ use wayword_language::lexicon::{names_agree, room_name};
 
 /// Factor on the weight of "stop in the room" where the text has just named the room.
 const NAMED_AGAIN_FACTOR: f64 = 0.1;
+/// The same as [`MAX_BARE_STOP_GAP_M`] for a walk whose frames lie close together, where one sees how far it goes on, metres.
+const MAX_CLOSE_STOP_GAP_M: f64 = 0.8;
+/// After so many texts that failed, the text names what is passed last, because nothing else may fix the spot.
+const TRIES_BEFORE_LAST_THING: usize = 2;
 
 impl WayPlanner<'_> {
     /// The end: at a thing within reach, in the room, in the doorway, or at the stairs.
@@ -66,10 +73,16 @@ impl WayPlanner<'_> {
                 matches!(kind, ClauseKind::StopIn | ClauseKind::StopAtIn | ClauseKind::StopInDoorwayOf)
             });
         }
+        if self.brief.complaints.len() >= TRIES_BEFORE_LAST_THING && end > 0 {
+            let last = ThingOffer::new(OfferRole::Onward, end).with_things(OfferThings::Any);
+            self.push(WayClause { weight: MAIN_WEIGHT, ..WayClause::for_a_thing(end - 1, last) });
+        }
         let kind = draw_option(&kinds, &mut self.rng).unwrap_or(ClauseKind::Stop);
         let needs_thing = |kind: ClauseKind| matches!(kind, ClauseKind::StopAt | ClauseKind::StopAtIn);
         kinds.retain(|(_, kind)| !needs_thing(*kind));
-        let without = draw_option(&kinds, &mut self.rng).unwrap_or(ClauseKind::Stop);
+        let is_in_room = room.as_deref().is_some_and(|room| room_name(room) != Some("hallway"));
+        let plain = if is_in_room && self.memory.knows_doors() { ClauseKind::StopIn } else { ClauseKind::Stop };
+        let without = draw_option(&kinds, &mut self.rng).unwrap_or(plain);
         let mut clause = WayClause::new(if needs_thing(kind) { without } else { kind }, end, KEPT_WEIGHT);
         clause.offer = needs_thing(kind).then(|| ThingOffer::new(OfferRole::Stop(kind), end));
         clause.room = room;
@@ -89,8 +102,14 @@ impl WayPlanner<'_> {
         // A room alone fixes the spot only near the door by which one enters it.
         let entered = self.memory.stay_at(end).map_or(end, |stay| stay.entered);
         let in_room_m = self.memory.walked_m(entered.saturating_sub(1), end);
+        let is_hall = self.memory.room_at(end).and_then(room_name) == Some("hallway");
         let fixes_spot = |kind: &ClauseKind| match kind {
+            // Behind a door that tells nothing of its room the walker is anywhere.
+            ClauseKind::Stop if self.here.is_none() && self.memory.knows_doors() => false,
+            ClauseKind::Stop if self.memory.knows_doors() => gap_m <= MAX_CLOSE_STOP_GAP_M,
             ClauseKind::Stop => gap_m <= MAX_BARE_STOP_GAP_M,
+            // A hallway is long.
+            ClauseKind::StopIn if is_hall => in_room_m <= MAX_BARE_STOP_GAP_M,
             ClauseKind::StopIn => in_room_m <= MAX_TOLD_GAP_M,
             _ => true,
         };

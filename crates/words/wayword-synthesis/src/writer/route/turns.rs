@@ -47,7 +47,7 @@ impl WayPlanner<'_> {
         if is_hall && !self.along && self.walked_in(at) >= 2 && self.goes_along(at.saturating_sub(1)) {
             kinds.push((3.0, ClauseKind::Along));
         }
-        if room.is_some() && !is_small {
+        if room.is_some() && room != self.here && !is_small {
             kinds.push((0.4, ClauseKind::TurnIn));
         }
         let kind = draw_option(&kinds, &mut self.rng).unwrap_or(bare);
@@ -82,14 +82,14 @@ impl WayPlanner<'_> {
     /// Where the walker has gone a long way in a room since the last clause, its first frame and the room.
     fn walked_since(&self, at: usize) -> Option<(usize, &str)> {
         let stay = self.memory.stay_at(at)?;
-        let from = stay.entered.max(self.told_until(at));
+        let from = stay.entered.max(self.planned_until(at));
         (!self.along && self.brief.walk.walked_m(from, at) >= LONG_HOP_M).then_some((from, stay.room.as_str()))
     }
 
     /// Whether a walker who hears of a slight turn at a frame would take it at once, some way before it.
     fn is_untold_before(&self, at: usize) -> bool {
         let Some(before) = self.clauses.last() else { return false };
-        !before.kind.goes_on() && self.memory.walked_m(self.told_until(at), at) > MAX_BARE_STOP_GAP_M
+        !before.kind.goes_on() && self.memory.walked_m(self.planned_until(at), at) > MAX_BARE_STOP_GAP_M
     }
 
     /// Whether a turn that gets no thing needs a "go straight" before it.
@@ -108,17 +108,17 @@ impl WayPlanner<'_> {
         }
     }
 
-    /// Plans the turn at the start. It is often left out, because the first landmark shows the direction too.
+    /// Plans the turn at the start. It is mostly left out, because the first landmark shows the direction, and nothing shows where to turn.
     fn first_turn(&mut self, bend: WalkBend) {
         let side = bend.side();
         let leaves_soon =
             self.memory.openings.first().is_some_and(|opening| opening.before <= 1) && self.here.is_some();
         let kind = if side == Side::Behind { ClauseKind::TurnAround } else { ClauseKind::Turn };
         let is_told = match (side, leaves_soon) {
-            (Side::Behind, true) => self.rng.random_bool(0.15),
-            (Side::Behind, false) => self.rng.random_bool(0.5),
-            (_, true) => bend.turn_rad.to_degrees().abs() >= motion::TOLD_DEG && self.rng.random_bool(0.15),
-            (_, false) => !bend.is_slight() && self.rng.random_bool(0.4),
+            (Side::Behind, true) => self.rng.random_bool(0.03),
+            (Side::Behind, false) => self.rng.random_bool(0.1),
+            (_, true) => bend.turn_rad.to_degrees().abs() >= motion::TOLD_DEG && self.rng.random_bool(0.03),
+            (_, false) => !bend.is_slight() && self.rng.random_bool(0.08),
         };
         if is_told {
             self.push(WayClause::new(kind, 0, MAIN_WEIGHT).with_side(side));
@@ -128,7 +128,7 @@ impl WayPlanner<'_> {
     /// Whether a turn is left out: people do not mention small turns that the way requires anyway. All candidates of a
     /// text leave out the same ones, and the way back the same ones as the way there.
     pub(super) fn is_left_out(&self, bend: WalkBend) -> bool {
-        if bend.turn_rad.to_degrees().abs() >= motion::TOLD_DEG {
+        if bend.turn_rad.to_degrees().abs() >= motion::TOLD_DEG || self.memory.faces_other_door(bend.first) {
             return false;
         }
         let brief = self.brief;
