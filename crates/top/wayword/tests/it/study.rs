@@ -312,10 +312,17 @@ fn pictures_of_others_need_the_right_and_a_recording_is_not_walked() {
 fn the_same_texts_with_marks_and_without_are_two_conditions() {
     let folder = houses();
     let folder = folder.path();
-    // A wrong turn in every text, so that there are words to mark.
+    // A wrong turn in every text, so that there are words to mark. Its spans would lie elsewhere.
     let records = fs_text(&folder.join("run/instructions.jsonl"));
-    let wrong = records.replace("right", "\u{0}").replace("left", "right").replace('\u{0}', "left");
-    std::fs::write(folder.join("wrong.jsonl"), wrong).unwrap();
+    let with_wrong_turns = |line: &str| {
+        let mut record: Value = serde_json::from_str(line).unwrap();
+        let text = record["text"].as_str().unwrap();
+        record["text"] = text.replace("right", "\u{0}").replace("left", "right").replace('\u{0}', "left").into();
+        (record["mentions"], record["parts"]) = (Value::Array(Vec::new()), Value::Array(Vec::new()));
+        record["findings"] = Value::Array(Vec::new());
+        format!("{record}\n")
+    };
+    std::fs::write(folder.join("wrong.jsonl"), records.lines().map(with_wrong_turns).collect::<String>()).unwrap();
     let sets = ["--run", "plain=wrong.jsonl", "--run", "marked=wrong.jsonl", "--doubts", "marked", "--per-item", "1"];
     let make = [&["study", "new", "--mode", "follow", "--items", "2", "--out", "study", "--json"], &sets[..]].concat();
     wayword(folder, &make);
