@@ -40,8 +40,13 @@ impl WalkMemory {
     /// from the frame `from` on; the first is 1. `None` where doors are not known.
     #[must_use]
     pub fn door_number(&self, side: Side, from: usize, before: usize) -> Option<usize> {
-        let is_met =
-            |door: &&RememberedThing| door.passed.is_some_and(|passed| door.is_ahead_from(&(from..=passed.frame)));
+        // Before a turn the door that the walk takes lies at the side, too.
+        let is_taken = |door: &RememberedThing| {
+            self.nearest_hops(door).is_some_and(|(hops, near_m)| near_m <= IN_DOOR_M && hops.contains(&before))
+        };
+        let is_met = |door: &&RememberedThing| {
+            door.passed.is_some_and(|passed| door.is_ahead_from(&(from..=passed.frame))) && !is_taken(door)
+        };
         self.knows_doors.then(|| self.doors_passed(side, from..before).filter(is_met).count() + 1)
     }
 

@@ -97,9 +97,9 @@ pub(crate) fn is_way_through(name: &str) -> bool {
 pub(super) fn hops_through(
     things: &[RememberedThing],
     eyes: &[DVec3],
-    is_door: impl Fn(&str) -> bool,
+    is_meant: impl Fn(&str) -> bool,
 ) -> BTreeSet<usize> {
-    let doors = things.iter().filter(|thing| is_door(&thing.name)).filter_map(|thing| thing.position);
+    let doors = things.iter().filter(|thing| is_meant(&thing.name)).filter_map(|thing| thing.position);
     let hop = |door: DVec3| match nearest_hops(eyes, door)? {
         (hops, near_m) if near_m <= IN_DOOR_M && hops.len() == 1 => hops.first().copied(),
         _ => None,

@@ -44,13 +44,13 @@ impl PlaceJudge<'_, '_> {
             |thing: &RememberedThing, frame: usize| facts.memory.distance_m(thing, frame).unwrap_or(f64::INFINITY);
         let doors = || self.claim.things[0].iter();
         let unknown = || Unknown(format!("the program cannot check which {name:?} is meant"));
-        let is_counted = match self.place.ordinal {
-            Some(PlaceOrdinal::Number(number)) => number > 1,
-            other => other == Some(PlaceOrdinal::Last),
-        };
         let leads_through = matches!(self.role, PlaceRole::Entered | PlaceRole::Through | PlaceRole::Left);
-        if is_counted && !(leads_through && facts.memory.knows_doors() && self.place.side.is_some()) {
-            return unknown();
+        let is_at_side = matches!(self.place.side, Some(Side::Left | Side::Right));
+        let can_count = leads_through && is_at_side && facts.memory.knows_doors();
+        match self.place.ordinal {
+            Some(PlaceOrdinal::Last) => return unknown(),
+            Some(PlaceOrdinal::Number(number)) if number > 1 && !can_count => return unknown(),
+            _ => {}
         }
         let mut openings = facts.memory.openings.iter();
         match self.role {
@@ -94,7 +94,8 @@ impl PlaceJudge<'_, '_> {
     /// the step begins, or where the walk comes into the room.
     fn door_by_number(&self, before: usize, behind: usize) -> ClaimOutcome {
         let found = self.way_on_side(before, behind);
-        let (Holds(_), Some(side), Some(PlaceOrdinal::Number(number))) = (&found, self.place.side, self.place.ordinal)
+        let (Holds(_), Some(side @ (Side::Left | Side::Right)), Some(PlaceOrdinal::Number(number))) =
+            (&found, self.place.side, self.place.ordinal)
         else {
             return found;
         };

@@ -64,10 +64,15 @@ fn flat_path() -> Path {
 }
 
 fn flat_walk() -> (Evidence, WalkMemory) {
+    flat_walk_with(&[])
+}
+
+/// The walk with further things.
+fn flat_walk_with(more: &[(&str, [f64; 2])]) -> (Evidence, WalkMemory) {
     let path = flat_path();
     let frames = path.frames.iter().map(|frame| {
         let eye = frame.pose.position;
-        let seen = THINGS.iter().enumerate().map(|(number, (name, at))| {
+        let seen = THINGS.iter().chain(more).enumerate().map(|(number, (name, at))| {
             let position = DVec3::new(at[0], at[1], 1.0);
             SeenThing {
                 name: (*name).to_owned(),
@@ -275,6 +280,21 @@ fn a_turn_far_behind_the_last_thing_named_fails_where_a_door_comes_before_it() {
         "Turn right and enter the bedroom. Walk past the bed, turn left at the dresser and stop by the armchair.";
     fails(bare, CheckKind::Turns, "Turn right");
     holds(&bare.replace("Turn right and", "Walk straight. Turn right and"));
+}
+
+#[test]
+fn a_door_is_the_one_of_its_number_on_its_side() {
+    let walk = flat_walk_with(&[("door", [1.5, 5.0])]);
+    let verdicts = |number: &str| {
+        let text = format!(
+            "Walk straight. Go through the {number} door on the right. Walk past the bed, turn left at the dresser and stop by the \
+             armchair."
+        );
+        mistakes_by(&walk, &text, check_text).into_iter().map(|(_, verdict, ..)| verdict).collect::<Vec<_>>()
+    };
+    assert_eq!(verdicts("second"), []);
+    assert!(verdicts("third").contains(&Verdict::Fail));
+    assert!(verdicts("last").contains(&Verdict::Unverified));
 }
 
 #[test]
