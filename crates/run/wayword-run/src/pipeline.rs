@@ -23,7 +23,7 @@ use wayword_ledger::CallContext;
 use wayword_synthesis::{
     detection::{detector_evidence, seek_along_path},
     observe::{PlannedView, caption_view, gazes_around, observe_path_with},
-    offline::{describe_target, list_around_frame},
+    offline::{approach_frames, describe_target, list_around_frame},
     repair::{InstructionOrder, TextFollower, WritingOutcome, write_and_repair},
     walk::ObservedWalk,
     writer::FramePicture,
@@ -284,9 +284,6 @@ pub fn item_path(
     Ok(path)
 }
 
-/// What a walker sees ahead so near to the end of the way belongs to the arrival, metres.
-const APPROACH_M: f64 = 4.0;
-
 /// Fills in the description that distinguishes the target of a path from everything that is known of its building, and of the
 /// surroundings of the path's end.
 fn describe_path_target(path: &mut Path, platform: &dyn Platform, scenes: &KnownScenes) -> Result<(), CommandError> {
@@ -298,9 +295,8 @@ fn describe_path_target(path: &mut Path, platform: &dyn Platform, scenes: &Known
         return Ok(());
     }
     let views = look_without_pictures(platform, scene, last, &ViewGaze::around_heading(last.pose.heading))?;
-    let is_near = |frame: &&Frame| frame.pose.position.distance(last.pose.position) <= APPROACH_M;
     let look = |frame: &Frame| platform.look_without_picture(scene, frame, ViewGaze::quarter_view(frame.pose.heading));
-    let ahead = frames.iter().rev().take_while(is_near).map(look).collect::<Result<Vec<View>, PlatformError>>()?;
+    let ahead = approach_frames(frames).map(look).collect::<Result<Vec<View>, PlatformError>>()?;
     let listing = list_around_frame(known.listing.clone(), last, &views, &ahead);
     if listing.knows_frame(last) {
         describe_target(target, frames, &listing);

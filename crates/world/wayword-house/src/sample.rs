@@ -22,7 +22,7 @@ const MAX_ROUTE_EXCESS_FACTOR: f64 = 1.03;
 const ON_FLOOR_M: f64 = 0.05;
 /// Largest distance of a target from the last frame, to the nearest side of its box along the floor, metres.
 const TARGET_REACH_M: f64 = 2.5;
-/// A target is seen ahead from one of so many last frames, where one can be.
+/// A target is seen ahead from one of so many last frames.
 const APPROACH_FRAMES: usize = 5;
 /// Half the width of what a picture ahead shows, degrees.
 const PICTURE_HALF_DEG: f64 = 35.0;
@@ -125,8 +125,8 @@ fn stop_at(place: DVec3) -> PathStop {
     }
 }
 
-/// Chooses a target among the pieces of furniture in reach. A piece that the walker comes to see ahead comes first; of those, one without
-/// a namesake in the room, and otherwise one that differs in colour from its namesakes.
+/// Chooses a target among the pieces of furniture in reach that the walker comes to see ahead: one without a namesake in the room, and
+/// otherwise one that differs in colour from its namesakes.
 fn choose_target(
     home: &PreparedHouse,
     dice: &mut HouseDice,
@@ -140,16 +140,14 @@ fn choose_target(
         house.room_at(feet.x, feet.y, feet.z)
     };
     let room = room_of(&last);
-    let furniture = || {
-        let here = |object: &&NumberedObject| house.rooms.get(object.room) == room;
-        home.scene.objects.values().filter(|object| object.role == ObjectRole::Furniture).filter(here)
-    };
+    let stands_here =
+        |object: &NumberedObject| object.role == ObjectRole::Furniture && house.rooms.get(object.room) == room;
+    let furniture = || home.scene.objects.values().filter(|object| stands_here(object));
     let object_of = |label: &ObjectLabel| home.scene.objects.get(&label.object.as_str().parse::<u32>().ok()?);
     let in_reach = |label: &&ObjectLabel| {
         let feet = last.position - DVec3::Z * EYE_M;
-        object_of(label).is_some_and(|object| {
-            furniture().any(|other| other == object) && floor_distance_m(feet, object.bounds_m) <= TARGET_REACH_M
-        })
+        object_of(label)
+            .is_some_and(|object| stands_here(object) && floor_distance_m(feet, object.bounds_m) <= TARGET_REACH_M)
     };
     let can_be_target = |label: &&ObjectLabel| label.name != "ceiling light" && label.name != "curtain";
     let near: Vec<&ObjectLabel> = labels.iter().filter(in_reach).filter(can_be_target).collect();

@@ -7,5 +7,5 @@ mod labels;
 mod structured_answer;
 
 pub use around_frame::list_around_frame;
-pub use describe::{BuildingListing, describe_target};
+pub use describe::{BuildingListing, approach_frames, describe_target};
 pub use labels::LabelAnswerer;

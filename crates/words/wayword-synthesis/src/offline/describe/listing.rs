@@ -19,8 +19,8 @@ pub struct BuildingListing {
     place_of: BTreeMap<ViewpointId, usize>,
     /// The number in `places` of the frame that was added, if it is no viewpoint of the building.
     added_place: Option<usize>,
-    /// The objects that a walker sees ahead before coming to that frame; `None` where that is not known.
-    pictured: Option<BTreeSet<ObjectId>>,
+    /// The numbers of the objects that a walker sees ahead before coming to that frame; `None` where that is not known.
+    pictured: Option<BTreeSet<usize>>,
 }
 
 /// An object of the building.
@@ -136,17 +136,15 @@ impl BuildingListing {
     /// nothing, what a walker sees ahead is not known.
     #[must_use]
     pub fn with_pictured<'a>(mut self, labels: impl Iterator<Item = &'a ObjectLabel>) -> Self {
-        let pictured: BTreeSet<ObjectId> = labels.map(|label| label.object.clone()).collect();
-        self.pictured = Some(pictured).filter(|pictured| !pictured.is_empty());
+        let mut labels = labels.peekable();
+        self.pictured =
+            labels.peek().is_some().then(|| labels.filter_map(|label| self.object_index(&label.object)).collect());
         self
     }
 
     /// Whether a walker on the way sees an object ahead, as far as that is known.
     pub(super) fn is_pictured(&self, object: usize) -> bool {
-        let shows = |pictured: &BTreeSet<ObjectId>| {
-            pictured.iter().any(|id| self.by_id.get(id).is_some_and(|at| *at == object))
-        };
-        self.pictured.as_ref().is_none_or(shows)
+        self.pictured.as_ref().is_none_or(|pictured| pictured.contains(&object))
     }
 
     pub(super) fn object_index(&self, id: &ObjectId) -> Option<usize> {

@@ -29,6 +29,18 @@ const SECOND_PROPERTY_COST: f64 = 1.0;
 /// Cost, in words, of a property that is not needed to single the target out.
 const IDLE_PROPERTY_COST: f64 = 1.0;
 
+/// What a walker sees ahead so near to the end of the way belongs to the arrival, metres.
+const APPROACH_M: f64 = 4.0;
+
+/// The frames from which a walker sees ahead on arrival, the last first; none where the path ends at a viewpoint, whose panorama shows
+/// what is all around.
+pub fn approach_frames(frames: &[Frame]) -> impl Iterator<Item = &Frame> {
+    let end = frames.last().filter(|last| last.viewpoint.is_none());
+    let is_near =
+        move |frame: &&Frame| end.is_some_and(|end| frame.pose.position.distance(end.pose.position) <= APPROACH_M);
+    frames.iter().rev().take_while(is_near)
+}
+
 /// Fills in how a target can be described: for a listener at the last frame, who sees other objects of the same name
 /// there, and for a listener who knows the whole building. `frames` are those of the path. Does nothing if the target is not listed.
 pub fn describe_target(target: &mut PathTarget, frames: &[Frame], listing: &BuildingListing) {

@@ -1,7 +1,10 @@
 //! Properties of the target (room, colour, side, relations), each with the rivals that share it. In doubt a rival
 //! counts as sharing a property, so a description never seems to fit fewer objects than it does.
 
-use super::listing::{BuildingListing, ListingObject, ListingRoom, ListingSighting, ListingViewpoint};
+use super::{
+    approach_frames,
+    listing::{BuildingListing, ListingObject, ListingRoom, ListingSighting, ListingViewpoint},
+};
 use std::collections::BTreeSet;
 use wayword_core::{DVec3, Frame, Heading, ObjectDistinction, Pose, Side};
 use wayword_language::lexicon::{ThingClass, room_name, same_room};
@@ -40,8 +43,6 @@ pub(super) struct TargetContext<'a> {
 const IN_SIGHT_M: f64 = 8.0;
 /// A thing on a wall counts as hanging if it is less than this far below the eye, metres.
 const MAX_BELOW_EYE_M: f64 = 0.4;
-/// What a walker sees ahead so near to the end of the way belongs to the arrival, metres.
-const APPROACH_M: f64 = 4.0;
 
 impl<'a> TargetContext<'a> {
     /// `frames` are those of the path to the place; there is at least one.
@@ -56,8 +57,7 @@ impl<'a> TargetContext<'a> {
         let rivals = (0..listing.objects.len()).filter(is_rival).collect();
         let heading = frames.last().map_or(Heading::NORTH, |last| last.pose.heading);
         let has_panorama = frames.last().is_some_and(|last| last.viewpoint.is_some());
-        let is_near = |frame: &&Frame| !has_panorama && frame.pose.position.distance(place.eye) <= APPROACH_M;
-        let approach = frames.iter().rev().take_while(is_near).map(|frame| frame.pose).collect();
+        let approach = approach_frames(frames).map(|frame| frame.pose).collect();
         let passed_rooms = frames.iter().filter_map(|frame| listing.room_near(frame)).collect();
         Self { listing, place, heading, has_panorama, passed_rooms, approach, target, rivals }
     }
@@ -188,7 +188,7 @@ impl<'a> TargetContext<'a> {
             all.push(self.new_property(told, 2.0, |rival| self.object_at(rival).rooms.iter().any(is_beside)));
         }
         let mut told: Vec<&str> = Vec::new();
-        let pictured = room.things.iter().filter(|at| self.has_panorama || listing.is_pictured(**at));
+        let pictured = room.things.iter().filter(|at| listing.is_pictured(**at));
         for thing in pictured.map(|at| self.object_at(*at)) {
             let has_this_name = |name: &&str| **name == *thing.name;
             if thing.salience < 2

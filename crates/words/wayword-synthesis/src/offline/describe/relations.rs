@@ -55,7 +55,7 @@ impl<'a> TargetContext<'a> {
                 && !carries(own, thing)
                 && !share_a_word(own, thing)
                 && self.may_share_room(*at)
-                && (self.has_panorama || self.listing.is_pictured(*at))
+                && self.listing.is_pictured(*at)
         };
         let mut near: Vec<(usize, f64)> =
             seen.filter(tells).filter_map(|at| Some((at, centre_distance_m(own, self.object_at(at))?))).collect();
@@ -118,7 +118,8 @@ impl<'a> TargetContext<'a> {
         let related = |relation| ObjectDistinction::Related { relation, to: to.name.clone() };
         let mut all: Vec<TargetProperty> = Vec::new();
         let stands_on_it = relation_holds(ObjectRelation::On, own, to, RelationStrictness::Yes);
-        let is_stacked = stands_on_it || carries(to, own) || may_stand_on_rug(to, own);
+        let is_carried = stands_on_it || carries(to, own);
+        let is_stacked = is_carried || may_stand_on_rug(to, own);
         // A chandelier is not "next to" the vase on the table below it, nor a lamp "near" the desk on which it stands.
         let is_beside = height_between_m(own, to).is_none_or(|rise_m| rise_m <= MAX_BESIDE_RISE_M) && !is_stacked;
         if is_beside {
@@ -128,10 +129,9 @@ impl<'a> TargetContext<'a> {
         if is_beside && self.has_rival_near() {
             all.extend(self.closest_property(at, apart_m, &alike));
         }
-        let carry = stands_on_it || carries(to, own) || carries(own, to);
         for relation in [ObjectRelation::Above, ObjectRelation::Under, ObjectRelation::On] {
             let is_on = relation == ObjectRelation::On;
-            if relation_holds(relation, own, to, RelationStrictness::Yes) && (is_on || !carry) {
+            if relation_holds(relation, own, to, RelationStrictness::Yes) && (is_on || !is_carried) {
                 let may_be = |rival: usize| {
                     alike
                         .iter()
