@@ -1,19 +1,24 @@
 //! Computes how long to wait before a request is repeated: exponential backoff with a repeatable jitter.
 
+use crate::faults::ServiceLoad;
 use std::time::Duration;
 use wayword_core::seed;
 
 /// Wait before the second attempt, seconds. It doubles with each further attempt.
 const FIRST_WAIT_S: f64 = 0.3;
 
+/// The same where a service reports too many requests and names no time. Its limits are mostly per minute.
+const FIRST_LOAD_WAIT_S: f64 = 3.0;
+
 /// Longest wait that the program chooses itself, seconds. A server may ask for a longer one.
 const MAX_WAIT_S: f64 = 30.0;
 
 /// A wait that doubles with each attempt, minus up to half of it. The reduction depends only on the call's key and the
 /// attempt, so that a run is repeatable and calls that failed together are not repeated together.
-pub(crate) fn backoff_wait(key: &str, attempt: u32) -> Duration {
+pub(crate) fn backoff_wait(key: &str, attempt: u32, load: ServiceLoad) -> Duration {
+    let first_s = if load == ServiceLoad::Over { FIRST_LOAD_WAIT_S } else { FIRST_WAIT_S };
     // 16 doublings are far beyond the longest wait, and keep the power from overflowing.
-    let whole = FIRST_WAIT_S * f64::from(2_u32.saturating_pow(attempt.saturating_sub(1).min(16)));
+    let whole = first_s * f64::from(2_u32.saturating_pow(attempt.saturating_sub(1).min(16)));
     Duration::from_secs_f64(whole.min(MAX_WAIT_S) * (1.0 - 0.5 * wait_fraction(key, attempt)))
 }
 
@@ -38,7 +43,7 @@ mod tests {
     #[test]
     fn waits_double_and_are_bounded() {
         for attempt in 1..40 {
-            let wait = backoff_wait("key", attempt).as_secs_f64();
+            let wait = backoff_wait("key", attempt, ServiceLoad::Unknown).as_secs_f64();
             let whole = (0.3 * 2_f64.powi(attempt as i32 - 1)).min(30.0);
             assert!(wait > whole / 2.0 - 1e-9 && wait <= whole, "{attempt}: {wait}");
         }
@@ -46,7 +51,9 @@ mod tests {
 
     #[test]
     fn waits_are_the_same_each_time_and_differ_between_calls() {
-        assert_eq!(backoff_wait("a", 2), backoff_wait("a", 2));
+        let wait = |load| backoff_wait("a", 2, load);
+        assert_eq!(wait(ServiceLoad::Slow), wait(ServiceLoad::Slow));
+        assert!(wait(ServiceLoad::Over) > 5 * wait(ServiceLoad::Slow));
         let fractions: Vec<f64> = (0..1000).map(|i| wait_fraction(&format!("call {i}"), 1)).collect();
         let mean = fractions.iter().sum::<f64>() / 1000.0;
         assert!((0.45..0.55).contains(&mean), "{mean}");

@@ -10,6 +10,7 @@ use crate::{
     endpoint::{ClosedEndpoint, ProviderEndpoint},
     faults::{self, RemoteFault, RetryFault, ServiceLoad},
     limiter::{AdvertisedLimits, RequestOutcome},
+    stream,
     transport::HttpResponse,
 };
 use std::{
@@ -106,6 +107,19 @@ impl RequestSize {
         (self.chars / 2 + self.other_bytes + 16).saturating_add(tokens_per_picture.saturating_mul(self.pictures))
     }
 
+    /// The context that the request and its reply need, tokens: three characters a token, and what models with many
+    /// tokens a picture take for pictures of this length, pixels.
+    pub(crate) fn context_tokens(self, picture_px: u32) -> u64 {
+        // Qwen's models: a token for 28 by 28 pixels of a picture of 4 by 3. LLaVA's: always 576.
+        let per_picture = (u64::from(picture_px).pow(2) * 3 / 4 / (28 * 28)).max(576);
+        self.chars / 3 + self.other_bytes + per_picture * self.pictures + self.max_tokens
+    }
+
+    /// The least tokens that a request of this size takes if nothing is cut off.
+    fn least_tokens_in(self) -> u64 {
+        self.chars / 4 + 256 * self.pictures
+    }
+
     /// An estimate of the request's tokens: four characters a token, and 800 tokens a picture.
     fn tokens_in(self) -> u64 {
         self.chars / 4 + 800 * self.pictures
@@ -132,7 +146,9 @@ impl PreparedCall<'_> {
             let fault = match self.send_once(body.as_bytes()) {
                 AttemptOutcome::Heard(reply, latency) => match check_reply(&reply, self.endpoint) {
                     Ok(()) => {
-                        let text = secret.map_or(reply.text.clone(), |secret| secret.scrub_key(reply.text.clone()));
+                        self.note_cut_prompt(&reply);
+                        let text = reply.answer();
+                        let text = secret.map_or(text.clone(), |secret| secret.scrub_key(text.clone()));
                         return Ok(self.ledger_answer(&reply, text, latency, attempt));
                     }
                     Err(fault) => {
@@ -165,7 +181,7 @@ impl PreparedCall<'_> {
             }
             // Even if the service asks for short waits, the waits become longer and longer.
             let requested = retry.after.map_or(Duration::ZERO, |requested| wait_after(requested, self.key, attempt));
-            self.wait_between_attempts(requested.max(backoff_wait(self.key, attempt)));
+            self.wait_between_attempts(requested.max(backoff_wait(self.key, attempt, retry.load)));
         }
     }
 
@@ -271,8 +287,10 @@ impl PreparedCall<'_> {
         if !(200..300).contains(&status) {
             return Err(fault(body));
         }
-        let value: serde_json::Value = serde_json::from_slice(body)
-            .map_err(|_| RemoteFault::retry_without_wait("the answer is not complete JSON", true))?;
+        let value: serde_json::Value = match serde_json::from_slice(body) {
+            Ok(value) => value,
+            Err(_) => stream::joined_stream(body).ok_or_else(|| faults::fault_of_odd_body(body, endpoint.fault_context()))?,
+        };
         if value.get("error").is_some_and(|error| !error.is_null()) {
             return Err(fault(body));
         }
@@ -280,6 +298,19 @@ impl PreparedCall<'_> {
             true => fault(body),
             false => RemoteFault::retry_without_wait(format!("the answer has no {}", missing.0), true),
         })
+    }
+
+    /// Notes for the user that a service read much less than was sent.
+    fn note_cut_prompt(&self, reply: &DialectReply) {
+        let sent = self.size.least_tokens_in();
+        let Some(read) = reply.tokens_in.filter(|read| *read > 0 && *read < sent / 2) else { return };
+        let provider = &self.endpoint.provider;
+        self.endpoint.note(format!(
+            "{} read {read} tokens of a prompt of about {sent}: it may cut prompts; {} under [providers.{}]",
+            provider.name,
+            provider.dialect.longer_context(),
+            provider.name
+        ));
     }
 
     /// Tokens in and out. Estimated where the service reports no number, or an impossible one.
@@ -315,10 +346,17 @@ fn check_reply(reply: &DialectReply, endpoint: &ProviderEndpoint) -> Result<(), 
             "the service's filter blocked the answer ({})",
             endpoint.fault_context().safe_text(why)
         ))),
-        ReplyEnd::Refused(why) => {
-            Err(final_fault(format!("the model refused: {}", endpoint.fault_context().safe_text(why))))
-        }
-        ReplyEnd::Stop | ReplyEnd::Length if !reply.text.is_empty() => Ok(()),
+        // A refusal is an answer: the one who asked asks again in other words, or does without.
+        ReplyEnd::Refused(_) => Ok(()),
+        ReplyEnd::Stop | ReplyEnd::Length | ReplyEnd::Thought if !reply.text.is_empty() => Ok(()),
+        ReplyEnd::Thought => Err(RemoteFault::retry_without_wait(
+            format!(
+                "the answer is empty, and all text stands in the field for thoughts: set {} under [providers.{}], or start the server without its reasoning parser",
+                endpoint.provider.dialect.without_thinking(),
+                endpoint.provider.name
+            ),
+            true,
+        )),
         ReplyEnd::Stop => Err(RemoteFault::retry_without_wait("empty answer", true)),
         ReplyEnd::Length => Err(final_fault(format!(
             "the model spent all its tokens on thinking and gave no answer: set {} under [providers.{}]",

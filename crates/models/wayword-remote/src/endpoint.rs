@@ -27,6 +27,8 @@ pub(crate) struct ProviderEndpoint {
     secret: OnceLock<Result<Option<ServiceSecret>, String>>,
     /// Set when the key is refused or the quota is used up, so that the other threads stop sending.
     closed: OnceLock<ClosedEndpoint>,
+    /// What the user should know of the service, once.
+    note: OnceLock<String>,
 }
 
 impl ProviderEndpoint {
@@ -45,6 +47,7 @@ impl ProviderEndpoint {
             limiter: EndpointLimiter::new(rules),
             secret: OnceLock::new(),
             closed: OnceLock::new(),
+            note: OnceLock::new(),
             provider,
         }
     }
@@ -92,6 +95,16 @@ impl ProviderEndpoint {
     /// Why no more requests are sent; `None` while requests are sent.
     pub(crate) fn closed_reason(&self) -> Option<&ClosedEndpoint> {
         self.closed.get()
+    }
+
+    /// Keeps what the user should know of the service; only the first of several.
+    pub(crate) fn note(&self, note: String) {
+        let _ = self.note.set(note);
+    }
+
+    /// What the user should know of the service.
+    pub(crate) fn noted(&self) -> Option<&str> {
+        self.note.get().map(String::as_str)
     }
 
     /// Sends a request.

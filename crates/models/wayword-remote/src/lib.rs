@@ -37,6 +37,7 @@ mod provider;
 mod ready;
 mod secret;
 mod services;
+mod stream;
 mod transport;
 
 pub use check::{CheckLevel, ServiceFinding};

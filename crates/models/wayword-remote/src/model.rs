@@ -57,6 +57,7 @@ impl RemoteModel {
                 sampling: &request.sampling,
                 schema: request.schema,
                 tools: request.tools,
+                context_tokens: request_size(request).context_tokens(self.pictures.longer_px()),
             };
             let wire = self.endpoint.provider.dialect.to_wire(dialect_request);
             let wire = wire.map_err(|reason| CallError::Failed(reason.to_owned()))?;

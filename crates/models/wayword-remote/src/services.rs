@@ -103,6 +103,13 @@ impl ModelServices {
         self.table.provider_names()
     }
 
+    /// What the user should know of the services that were asked: at most one note for each.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let endpoints = self.endpoints.lock().unwrap_or_else(PoisonError::into_inner);
+        endpoints.values().filter_map(|endpoint| endpoint.noted().map(str::to_owned)).collect()
+    }
+
     /// Whether the user has given a provider's address.
     pub(crate) fn has_own_address(&self, provider: &str) -> bool {
         let own_url = self.config.providers.get(provider).and_then(|settings| settings.base_url.as_ref());

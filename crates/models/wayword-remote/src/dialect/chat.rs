@@ -48,12 +48,20 @@ pub(super) fn tool_calls(body: &Value) -> Vec<String> {
 
 /// The tools that a message calls, each as a line, in the form that this dialect and Ollama's share.
 pub(super) fn message_tool_calls(message: &Value) -> Vec<String> {
-    let calls = message.get("tool_calls").and_then(Value::as_array);
-    let function = |call: &Value| {
-        let function = call.get("function")?;
-        tool_call_line(function.get("name"), function.get("arguments"))
+    // Some gateways give one call, calls by their number, or the field of older versions.
+    let calls: Vec<&Value> = match message.get("tool_calls") {
+        Some(Value::Array(calls)) => calls.iter().collect(),
+        Some(Value::Object(call)) if call.contains_key("function") => message.get("tool_calls").into_iter().collect(),
+        Some(Value::Object(calls)) => calls.values().collect(),
+        _ => Vec::new(),
     };
-    calls.into_iter().flatten().filter_map(function).collect()
+    let function = |call: &Value| {
+        let function = call.get("function").unwrap_or(call);
+        tool_call_line(function.get("name"), function.get("arguments").or_else(|| function.get("parameters")))
+    };
+    let calls: Vec<String> = calls.into_iter().filter_map(function).collect();
+    let older = || message.get("function_call").and_then(function).into_iter().collect();
+    if calls.is_empty() { older() } else { calls }
 }
 
 /// The sampling fields that this dialect and the completions share.
@@ -95,6 +103,10 @@ pub(super) fn from_wire(body: &Value) -> Result<DialectReply, MissingField> {
     let refusal = message.get("refusal").and_then(Value::as_str).filter(|why| !why.is_empty());
     let end = refusal.map_or_else(|| reply_end(choice), |why| Ok(ReplyEnd::Refused(why.to_owned())))?;
     let text = message.get("content").map(content_text).unwrap_or_default();
+    let has_thoughts = ["reasoning_content", "reasoning"]
+        .iter()
+        .any(|field| message.get(*field).and_then(Value::as_str).is_some_and(|text| !text.trim().is_empty()));
+    let end = if end == ReplyEnd::Stop && text.trim().is_empty() && has_thoughts { ReplyEnd::Thought } else { end };
     Ok(with_usage(body, text, end))
 }
 

@@ -11,6 +11,7 @@ use crate::{JsonMode, ServiceDialect, picture::EncodedPicture, provider::RemoteP
 use serde_json::{Map, Value};
 use std::sync::Arc;
 use wayword_core::{MessageRole, ModelTool, ReplySchema, SamplingOptions, tool_line};
+use wayword_replies::without_thinking;
 
 /// A message that is ready to be sent.
 #[derive(Debug, Clone)]
@@ -33,6 +34,8 @@ pub(crate) struct DialectRequest<'a> {
     pub(crate) schema: Option<ReplySchema>,
     /// The tools that the model may call.
     pub(crate) tools: &'static [ModelTool],
+    /// An estimate of the tokens that the request takes, with the reply. Only Ollama has to be told.
+    pub(crate) context_tokens: u64,
 }
 
 /// A request as it is sent, without the key.
@@ -59,12 +62,24 @@ pub(crate) struct DialectReply {
 pub(crate) enum ReplyEnd {
     /// The model was finished.
     Stop,
+    /// The model was finished, but all that it wrote stands where the service keeps its thoughts.
+    Thought,
     /// The reply reached the most tokens.
     Length,
     /// The service's filter cut the reply off or blocked it, with the reason.
     Filtered(String),
     /// The model refused, with its words.
     Refused(String),
+}
+
+impl DialectReply {
+    /// The text for the one who asked. A refusal in a field of its own is told in words that every role knows.
+    pub(crate) fn answer(&self) -> String {
+        match &self.end {
+            ReplyEnd::Refused(why) => format!("I'm sorry, I can't help with that: {}", why.trim()),
+            _ => self.text.clone(),
+        }
+    }
 }
 
 /// The name of a field that every reply must have and this one lacks.
@@ -124,8 +139,11 @@ impl ServiceDialect {
             Self::Ollama => ollama::tool_calls(body),
             Self::Completions => Vec::new(),
         };
-        let words = strip_thinking(&reply.text).trim();
-        let lines: Vec<&str> = [words].into_iter().chain(calls.iter().map(String::as_str)).collect();
+        let words = without_thinking(&reply.text);
+        if words.is_empty() && !calls.is_empty() && reply.end == ReplyEnd::Thought {
+            reply.end = ReplyEnd::Stop;
+        }
+        let lines: Vec<&str> = [words.as_str()].into_iter().chain(calls.iter().map(String::as_str)).collect();
         reply.text = lines.join("\n").trim().to_owned();
         Ok(reply)
     }
@@ -165,6 +183,14 @@ impl ServiceDialect {
         )
     }
 
+    /// The setting with which a service reads longer prompts.
+    pub(crate) fn longer_context(self) -> &'static str {
+        match self {
+            Self::Ollama => "set extra = { options = { num_ctx = 32768 } }",
+            _ => "start the server with a longer context, or set picture_px lower; there is no setting for it",
+        }
+    }
+
     /// The setting that keeps a model from spending its tokens on thinking.
     pub(crate) fn without_thinking(self) -> &'static str {
         match self {
@@ -178,22 +204,6 @@ impl ServiceDialect {
     }
 }
 
-/// A text without the thinking that a model writes before its answer, as in `<think>...</think>A door.`
-///
-/// Some servers put the opening tag into their prompt template, so that the text has only the closing tag.
-fn strip_thinking(text: &str) -> &str {
-    const OPENING_TAG: &str = "<think>";
-    const CLOSING_TAG: &str = "</think>";
-    let text = text.trim_start();
-    match (text.strip_prefix(OPENING_TAG), text.find(CLOSING_TAG)) {
-        (Some(_), Some(at)) => &text[at + CLOSING_TAG.len()..],
-        // The model was still thinking when it was cut off.
-        (Some(_), None) => "",
-        (None, Some(at)) if !text[..at].contains(OPENING_TAG) => &text[at + CLOSING_TAG.len()..],
-        _ => text,
-    }
-}
-
 /// A seed of 31 bits, which every service takes.
 fn seed_of_31_bits(sampling: &SamplingOptions) -> u64 {
     sampling.seed & 0x7fff_ffff
@@ -202,13 +212,18 @@ fn seed_of_31_bits(sampling: &SamplingOptions) -> u64 {
 /// A call of a tool as a line. Some services give the arguments as an object, others as a text with JSON.
 fn tool_call_line(name: Option<&Value>, arguments: Option<&Value>) -> Option<String> {
     let arguments = match arguments {
-        Some(Value::String(text)) => {
-            serde_json::from_str::<Value>(text).map_or_else(|_| text.clone(), |value| value.to_string())
-        }
+        Some(Value::String(text)) => match serde_json::from_str::<Value>(text) {
+            // Some services encode the text once more.
+            Ok(Value::String(inner)) => inner,
+            Ok(value) => value.to_string(),
+            Err(_) => text.split("<|").next().unwrap_or(text).to_owned(),
+        },
+        Some(Value::Null) | None => "{}".to_owned(),
         Some(value) => value.to_string(),
-        None => "{}".to_owned(),
     };
-    Some(tool_line(name?.as_str()?, &arguments))
+    // Some servers leave the marks of the model's template in the name.
+    let name = name?.as_str()?.split("<").next()?;
+    Some(tool_line(name, &arguments))
 }
 
 impl DialectRequest<'_> {

@@ -18,6 +18,8 @@ pub(super) fn to_wire(request: DialectRequest<'_>) -> WireRequest {
     if provider.sends_field("seed") {
         options.insert("seed".to_owned(), seed_of_31_bits(sampling).into());
     }
+    // Ollama cuts a prompt that is longer than this without a word; its own default is 4,096 or less.
+    options.insert("num_ctx".to_owned(), context_size(request.context_tokens).into());
     let messages: Vec<Value> = request.lines.iter().map(message_json).collect();
     let mut body = json!({ "model": request.model, "messages": messages, "stream": false, "options": options });
     if let Some((way, _, schema)) = request.json_form() {
@@ -28,6 +30,14 @@ pub(super) fn to_wire(request: DialectRequest<'_>) -> WireRequest {
         body["tools"] = tools.into();
     }
     WireRequest { path: "/api/chat".to_owned(), body }
+}
+
+/// The least context that is asked for, tokens. Ollama loads a model again for another size, so there are few sizes.
+const MIN_CONTEXT: u64 = 8_192;
+
+/// The context to ask for, tokens: the least size that holds the request. Ollama bounds it by what the model takes.
+pub(super) fn context_size(tokens: u64) -> u64 {
+    tokens.next_power_of_two().max(MIN_CONTEXT)
 }
 
 /// The tools that a reply calls, each as a line.

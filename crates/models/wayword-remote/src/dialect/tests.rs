@@ -37,6 +37,7 @@ fn wire(provider: &RemoteProvider, lines: &[RemoteMessage]) -> Result<WireReques
         sampling: &sampling,
         schema: None,
         tools: &[],
+        context_tokens: 0,
     })
 }
 
@@ -50,7 +51,7 @@ fn body_for_json(provider: &RemoteProvider) -> Value {
     let sampling = SamplingOptions { temperature: 0.0, max_tokens: 30, seed: 0 };
     let lines = [line(MessageRole::User, "Hi.")];
     let asked =
-        DialectRequest { provider, model: "m", lines: &lines, sampling: &sampling, schema: Some(SCHEMA), tools: &[] };
+        DialectRequest { provider, model: "m", lines: &lines, sampling: &sampling, schema: Some(SCHEMA), tools: &[], context_tokens: 0 };
     provider.dialect.to_wire(asked).unwrap().body
 }
 
@@ -90,7 +91,7 @@ const TOOLS: &[ModelTool] = &[ModelTool {
 fn body_with_tools(provider: &RemoteProvider) -> Value {
     let sampling = SamplingOptions { temperature: 0.0, max_tokens: 30, seed: 0 };
     let lines = [line(MessageRole::User, "Hi.")];
-    let asked = DialectRequest { provider, model: "m", lines: &lines, sampling: &sampling, schema: None, tools: TOOLS };
+    let asked = DialectRequest { provider, model: "m", lines: &lines, sampling: &sampling, schema: None, tools: TOOLS, context_tokens: 0 };
     provider.dialect.to_wire(asked).unwrap().body
 }
 
@@ -237,15 +238,46 @@ fn ollama_does_not_think_unless_the_settings_ask_for_it() {
             { "role": "user", "content": "What is this?", "images": ["QUJD"] },
         ],
         "stream": false,
-        "options": { "temperature": 0.5, "num_predict": 30, "seed": 0x7fff_ffff },
+        "options": { "temperature": 0.5, "num_predict": 30, "seed": 0x7fff_ffff, "num_ctx": 8192 },
         "think": false,
     });
     assert_eq!(wire.body, expected);
-    let own = "[providers.ollama]\nextra = { think = true, options = { num_ctx = 8192 } }";
+    let own = "[providers.ollama]\nextra = { think = true, options = { num_ctx = 3000 } }";
     let body = wire_of(own).body;
     assert_eq!(body["think"], true);
-    assert_eq!(body["options"]["num_ctx"], 8192);
+    assert_eq!(body["options"]["num_ctx"], 3000);
     assert_eq!(body["options"]["num_predict"], 30);
+}
+
+/// A long prompt gets a longer context, in few sizes, because Ollama loads the model again for each.
+#[test]
+fn ollama_is_asked_for_the_context_that_the_prompt_needs() {
+    let size = |context_tokens| ollama::context_size(context_tokens);
+    assert_eq!([size(0), size(8_192), size(8_193), size(20_000)], [8_192, 8_192, 16_384, 32_768]);
+}
+
+/// The shapes in which servers leave the call of a tool in the fields for it.
+#[test]
+fn a_tool_call_is_read_from_every_shape_of_its_fields() {
+    let arguments = r#"{"way": 2}"#;
+    for message in [
+        json!({ "tool_calls": [{ "function": { "name": "step", "arguments": arguments } }] }),
+        json!({ "tool_calls": [{ "function": { "name": "step", "arguments": { "way": 2 } } }] }),
+        json!({ "tool_calls": [{ "function": { "name": "step", "arguments": r#""{\"way\":2}""# } }] }),
+        json!({ "tool_calls": [{ "function": { "name": "step", "arguments": "{\"way\":2}<|tool_call_end|>" } }] }),
+        json!({ "tool_calls": [{ "function": { "name": "step<|channel|>commentary", "arguments": arguments } }] }),
+        json!({ "tool_calls": [{ "function": { "name": "step</think>", "arguments": arguments } }] }),
+        json!({ "tool_calls": [{ "name": "step", "parameters": { "way": 2 } }] }),
+        json!({ "tool_calls": { "function": { "name": "step", "arguments": arguments } } }),
+        json!({ "tool_calls": { "0": { "function": { "name": "step", "arguments": arguments } } } }),
+        json!({ "tool_calls": [], "function_call": { "name": "step", "arguments": arguments } }),
+        json!({ "reasoning_content": "left", "tool_calls": [{ "function": { "name": "step", "arguments": arguments } }] }),
+    ] {
+        let reply = ServiceDialect::OpenAi.read_reply(&json!({ "choices": [{ "message": message }] })).unwrap();
+        assert_eq!((reply.text.as_str(), reply.end), ("step {\"way\":2}", ReplyEnd::Stop), "{message}");
+    }
+    let thought = json!({ "choices": [{ "message": { "content": null, "reasoning_content": "left" } }] });
+    assert_eq!(ServiceDialect::OpenAi.read_reply(&thought).unwrap().end, ReplyEnd::Thought);
 }
 
 #[test]
@@ -387,15 +419,6 @@ fn thinking_that_only_the_total_counts_is_counted() {
     assert_eq!(tokens_out(json!({ "prompt_tokens": 12, "completion_tokens": 3 })), Some(3));
     assert_eq!(tokens_out(json!({ "prompt_tokens": 12, "total_tokens": 1 })), Some(0));
     assert_eq!(tokens_out(json!({ "total_tokens": 9 })), None);
-}
-
-#[test]
-fn thinking_is_removed_where_it_comes_first() {
-    assert_eq!(strip_thinking("\n<think>a sofa?</think>\n\nA sofa."), "\n\nA sofa.");
-    assert_eq!(strip_thinking("a sofa?\n</think>A sofa."), "A sofa.");
-    assert_eq!(strip_thinking("<think>is it a"), "");
-    assert_eq!(strip_thinking("A sign says <think>hard</think>."), "A sign says <think>hard</think>.");
-    assert_eq!(strip_thinking("A sofa."), "A sofa.");
 }
 
 #[test]

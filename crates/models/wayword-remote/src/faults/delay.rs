@@ -23,7 +23,17 @@ pub(super) fn requested_wait(headers: &HeaderMap, body: &ServiceErrorBody, now: 
     let header = |name: &str| headers.get(name).and_then(|value| value.to_str().ok());
     let ms = || header("retry-after-ms").and_then(times::bare_seconds).map(|ms| ms / 1000);
     let plain = || header("retry-after").and_then(|text| retry_after(text, now));
-    ms().or_else(plain).or(body.retry_delay).or_else(|| limit_reset_wait(header, now))
+    let in_words = || wait_in_words(&body.message);
+    ms().or_else(plain).or(body.retry_delay).or_else(|| limit_reset_wait(header, now)).or_else(in_words)
+}
+
+/// The wait that a message names: "Please try again in 4.77s."
+fn wait_in_words(message: &str) -> Option<Duration> {
+    let message = message.to_ascii_lowercase();
+    let behind = ["try again in ", "retry in ", "retry after "].iter().find_map(|words| message.split_once(words))?.1;
+    let length = behind.split([' ', ',', ')']).next()?.trim_end_matches('.');
+    let is_bare = behind[length.len()..].trim_start().starts_with("second");
+    times::parse_duration(length).or_else(|| times::bare_seconds(length).filter(|_| is_bare))
 }
 
 /// The wait in any of the forms that services use: a moment or a length of time.
@@ -90,6 +100,16 @@ mod tests {
         let info = r#"{"error":{"details":[{"@type":"type.googleapis.com/google.rpc.RetryInfo","retryDelay":"34s"}]}}"#;
         assert_eq!(wait_s(&[], info), Some(34.0));
         assert_eq!(wait_s(&[("retry-after", "soon")], ""), None);
+        for (message, wanted) in [
+            ("Rate limit reached on tokens per minute (TPM): Limit 6000. Please try again in 4.77s. Visit", Some(4.77)),
+            ("Please try again in 1m0.5s.", Some(60.5)),
+            ("Please retry in 58.5s.", Some(58.5)),
+            ("Please retry after 20 seconds.", Some(20.0)),
+            ("Please try again in a while.", None),
+        ] {
+            let body = format!("{{\"error\":{{\"message\":\"{message}\"}}}}");
+            assert_eq!(wait_s(&[], &body), wanted, "{message}");
+        }
     }
 
     #[test]

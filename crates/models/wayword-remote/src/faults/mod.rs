@@ -114,6 +114,9 @@ pub(crate) fn fault_from_response(
     if let Some(hint) = stop_hint(status, &service_error, context) {
         return RemoteFault::Stop { reason: format!("{} says {reason}", context.provider), hint };
     }
+    if let Some(setting) = wrong_setting(status, &message, context) {
+        return RemoteFault::Stop { reason: format!("{} says {reason}", context.provider), hint: setting };
+    }
     match status {
         429 | 529 => overload_fault(reason, delay::requested_wait(headers, &service_error, now), context),
         503 => match delay::requested_wait(headers, &service_error, now) {
@@ -124,7 +127,6 @@ pub(crate) fn fault_from_response(
         // An error with a success status, and no status in the body: the service may have worked on the request.
         200..=299 if service_error.is_overloaded() => overload_fault(reason, None, context),
         200..=299 => RemoteFault::retry_without_wait(reason, true),
-        400 | 422 => RemoteFault::Final { reason: reason + unsupported_field_hint(&message), maybe_paid: false },
         _ => RemoteFault::Final { reason, maybe_paid: false },
     }
 }
@@ -166,27 +168,71 @@ fn stop_hint(status: u16, service_error: &ServiceErrorBody, context: FaultContex
     }
 }
 
-/// The setting that helps if a service does not know a field of the request; empty for other messages.
-fn unsupported_field_hint(message: &str) -> &'static str {
+/// The setting to change, if a service refuses what every request of this run has; `None` for other faults.
+fn wrong_setting(status: u16, message: &str, context: FaultContext<'_>) -> Option<String> {
     let message = message.to_ascii_lowercase();
-    if !["unsupported", "not support", "unrecognized", "unknown", "extra inputs"]
-        .iter()
-        .any(|word| message.contains(word))
-    {
-        ""
-    } else if message.contains("max_completion_tokens") || message.contains("max_tokens") {
-        " (set max_tokens_field under the provider's settings)"
-    } else if message.contains("temperature") {
-        " (set omit = [\"temperature\"] under the provider's settings)"
-    } else if message.contains("seed") {
-        " (set omit = [\"seed\"] under the provider's settings)"
-    } else if ["response_format", "json_schema", "responseschema", "format"].iter().any(|word| message.contains(word)) {
-        " (set json = \"prompt\" under the provider's settings)"
-    } else if message.contains("tool") {
-        " (set tools = false under the provider's settings)"
-    } else {
-        ""
+    let says = |words: &[&str]| words.iter().any(|word| message.contains(word));
+    let at = format!("under [providers.{}]", context.provider);
+    if says(&["unexpected endpoint"]) {
+        return Some(format!("set base_url {at} to the address of its API, mostly one that ends in /v1"));
     }
+    let names_model = says(&["model"]) && says(&["not found", "does not exist", "no such model", "not exist"]);
+    if matches!(status, 400 | 404 | 422) && names_model {
+        return Some("check the name of the model: `wayword doctor` lists those that the service offers".to_owned());
+    }
+    let refuses = says(&[
+        "unsupported",
+        "not support",
+        "unrecognized",
+        "unknown",
+        "extra inputs",
+        "unavailable",
+        "not permitted",
+        "requires --",
+        "must be 'json_schema'",
+        "only 1 is allowed",
+    ]);
+    // llama.cpp reports a model that does not see with status 500.
+    let names_pictures = says(&["image_url", "image input", "mmproj", "vision", "multimodal"]);
+    if refuses && names_pictures && matches!(status, 400 | 404 | 415 | 422 | 500) {
+        return Some("the model does not see: name one that does in the roles that are shown pictures".to_owned());
+    }
+    if !refuses || !matches!(status, 400 | 404 | 422) {
+        return None;
+    }
+    let setting = if says(&["max_completion_tokens", "max_tokens"]) {
+        "max_tokens_field = \"max_completion_tokens\""
+    } else if says(&["temperature"]) {
+        "omit = [\"temperature\"]"
+    } else if says(&["seed"]) {
+        "omit = [\"seed\"]"
+    } else if says(&["response_format", "json_schema", "responseschema", "format"]) {
+        "json = \"prompt\""
+    } else if says(&["tool"]) {
+        "tools = false"
+    } else if says(&["think"]) {
+        "extra = { think = false }, or leave think out,"
+    } else {
+        return None;
+    };
+    Some(format!("set {setting} {at}"))
+}
+
+/// The fault of a body that is neither JSON nor a whole stream, under a status of success.
+pub(crate) fn fault_of_odd_body(body: &[u8], context: FaultContext<'_>) -> RemoteFault {
+    let begin = String::from_utf8_lossy(&body[..body.len().min(200)]).trim_start().to_ascii_lowercase();
+    if begin.starts_with("<!doctype") || begin.starts_with("<html") {
+        return RemoteFault::Stop {
+            reason: format!("{} answers with a page of HTML in place of JSON", context.provider),
+            hint: format!(
+                "set base_url under [providers.{}] to the address of its API, mostly one that ends in /v1; a page for signing in means that a proxy stands before it",
+                context.provider
+            ),
+        };
+    }
+    let is_stream = ["data:", "event:", ": "].iter().any(|mark| begin.starts_with(mark));
+    let reason = if is_stream { "the stream breaks off before its end" } else { "the answer is not complete JSON" };
+    RemoteFault::retry_without_wait(reason, true)
 }
 
 /// The fault of a request without a complete response. `answered` is the status, if one came.

@@ -38,7 +38,18 @@ fn every_status_and_body_has_its_meaning() {
         (402, r#"{"error":{"message":"Insufficient Balance"}}"#, "stop"),
         (403, "", "stop"),
         (403, r#"{"error":{"message":"Your input was flagged","code":403}}"#, "final"),
-        (404, r#"{"error":"model 'x' not found"}"#, "final"),
+        (404, r#"{"error":"model 'x' not found"}"#, "stop"),
+        (404, r#"{"object":"error","message":"The model `m` does not exist.","code":404}"#, "stop"),
+        (404, r#"{"detail":"Not Found"}"#, "final"),
+        (200, r#"{"error":"Unexpected endpoint or method. (POST /chat/completions)"}"#, "stop"),
+        (400, r#"{"error":"'response_format.type' must be 'json_schema' or 'text'"}"#, "stop"),
+        (400, r#"{"error":{"message":"This response_format type is unavailable now"}}"#, "stop"),
+        (400, r#"{"error":"registry.ollama.ai/library/m:latest does not support tools"}"#, "stop"),
+        (400, r#"{"error":"\"m\" does not support thinking"}"#, "stop"),
+        (400, r#"{"error":{"message":"invalid temperature: only 1 is allowed for this model"}}"#, "stop"),
+        (500, r#"{"error":{"code":500,"message":"image input is not supported - hint: you may need the mmproj"}}"#, "stop"),
+        (400, r#"{"error":{"message":"messages[0]: unknown variant `image_url`, expected `text`"}}"#, "stop"),
+        (400, r#"{"error":{"code":400,"message":"request (9412 tokens) exceeds the available context size"}}"#, "final"),
         (408, "", "again"),
         (409, "", "again"),
         (413, "", "final"),
@@ -101,11 +112,28 @@ fn fault_reasons_are_short_and_contain_no_key() {
 }
 
 #[test]
-fn fault_reasons_name_the_setting_for_an_unknown_field() {
-    let body = r#"{"error":{"message":"Unsupported value: 'temperature' does not support 0.6 with this model."}}"#;
-    assert!(fault(400, body).reason().contains("omit = [\"temperature\"]"));
-    let body = r#"{"error":{"message":"Unsupported parameter: use 'max_completion_tokens' instead."}}"#;
-    assert!(fault(400, body).reason().contains("max_tokens_field"));
+fn a_fault_of_a_setting_stops_with_the_setting_to_write() {
+    let hint = |message: &str| match fault(400, &format!(r#"{{"error":{{"message":"{message}"}}}}"#)) {
+        RemoteFault::Stop { hint, .. } => hint,
+        other => panic!("{other:?}"),
+    };
+    for (message, setting) in [
+        ("Unsupported value: 'temperature' does not support 0.6 with this model.", "omit = [\"temperature\"]"),
+        ("Unsupported parameter: use 'max_completion_tokens' instead.", "max_tokens_field"),
+        ("The model `m` does not exist or you do not have access to it.", "name of the model"),
+        ("unknown variant `image_url`, expected `text`", "does not see"),
+    ] {
+        assert!(hint(message).contains(setting), "{message}: {}", hint(message));
+    }
+}
+
+#[test]
+fn a_page_of_html_stops_and_other_odd_bodies_are_asked_for_again() {
+    let page = fault_of_odd_body(b"\n<!DOCTYPE html><html><title>Sign in</title>", who(None));
+    assert!(matches!(page, RemoteFault::Stop { hint, .. } if hint.contains("base_url")));
+    for body in ["", "{\"choices\":", "data: {\"choices\":[]}\n"] {
+        assert_eq!(kind(&fault_of_odd_body(body.as_bytes(), who(None))), "paid", "{body}");
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Faults of every kind.
 
 use crate::{
-    asked, model, run,
+    asked, model, run, services,
     server::{Server, answer, ended, reply},
 };
 use std::{
@@ -201,4 +201,39 @@ fn error_names_an_address_where_no_service_answers() {
     let error = asked(&services.model("mine/m").unwrap(), "Well?").unwrap_err().to_string();
     assert_eq!(error, "mine/m: nothing answers at http://127.0.0.1:1/v1 (1 attempt)");
     assert!(server.requests().is_empty());
+}
+
+/// A refusal is told to the one who asked, in words that every role knows, after one request.
+#[test]
+fn a_refusal_in_its_own_field_is_an_answer() {
+    let body = r#"{"choices":[{"message":{"content":null,"refusal":"I will not do that."},"finish_reason":"stop"}]}"#;
+    let server = Server::start(move |_, _, stream| reply(stream, 200, "", body));
+    let told = asked(&model(&server, "", &run()), "Well?").unwrap().text;
+    assert!(told.starts_with("I'm sorry, I can't help with that") && told.ends_with("I will not do that."), "{told}");
+    assert_eq!(server.requests().len(), 1);
+}
+
+#[test]
+fn a_stream_that_nobody_asked_for_is_joined_and_a_page_of_html_stops() {
+    let stream_body = "data: {\"choices\":[{\"delta\":{\"content\":\"fi\"}}]}\n\ndata: {\"choices\":[{\"delta\":{\"content\":\"ne\"},\"finish_reason\":\"stop\"}]}\n\ndata: [DONE]\n\n";
+    let server = Server::start(move |_, _, stream| reply(stream, 200, "", stream_body));
+    assert_eq!(asked(&model(&server, "", &run()), "Well?").unwrap().text, "fine");
+    let page = Server::start(|_, _, stream| reply(stream, 200, "", "<!DOCTYPE html><html><title>Sign in</title></html>"));
+    let told = asked(&model(&page, "", &run()), "Well?").unwrap_err();
+    assert!(matches!(&told, ModelError::Stopped { hint, .. } if hint.contains("base_url")), "{told:?}");
+    assert_eq!((server.requests().len(), page.requests().len()), (1, 1));
+}
+
+/// A service that counts far fewer tokens than were sent cuts the prompt.
+#[test]
+fn a_prompt_that_is_cut_is_noted_with_the_setting() {
+    let body = r#"{"choices":[{"message":{"content":"fine"},"finish_reason":"stop"}],"usage":{"prompt_tokens":400}}"#;
+    let server = Server::start(move |_, _, stream| reply(stream, 200, "", body));
+    let services = services(&server, "", &run());
+    let long = "past the sofa ".repeat(400);
+    let model = services.model("server/m").unwrap();
+    asked(&model, "Well?").unwrap();
+    assert_eq!(services.notes(), Vec::<String>::new());
+    asked(&model, &long).unwrap();
+    assert!(services.notes()[0].contains("read 400 tokens of a prompt of about 14"), "{:?}", services.notes());
 }

@@ -135,7 +135,7 @@ pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit
     };
     let failed = walk_all(&args.out, &items, &walk_maker, calls.as_ref(), output)?;
     if let Some(calls) = &calls {
-        calls.write_recording()?;
+        calls.finish(output)?;
         output.say(format_args!("models: {}", calls.spent_so_far()));
     }
     let gathered = ComparisonOutputs::from_folder(&args.out, &judge)?;

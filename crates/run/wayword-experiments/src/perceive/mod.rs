@@ -170,7 +170,7 @@ pub fn measure_perception(
         }
     }
     if let Some(calls) = &calls {
-        calls.write_recording()?;
+        calls.finish(output)?;
         output.say(format_args!("models: {}", calls.spent_so_far()));
     }
     Ok(measured)

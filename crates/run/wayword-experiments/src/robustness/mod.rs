@@ -134,7 +134,7 @@ pub fn run_robustness(args: &RobustnessArgs, output: &CommandOutput) -> Result<E
     }
     let failed = make_texts(args, &base, &changes, eye, (platform.as_ref(), calls.as_ref()), output)?;
     if let Some(calls) = &calls {
-        calls.write_recording()?;
+        calls.finish(output)?;
         output.say(format_args!("models: {}", calls.spent_so_far()));
     }
     let results = compute_results(args, &base, &changes, eye, refused, &read_text_records(out)?);

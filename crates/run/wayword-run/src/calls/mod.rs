@@ -220,11 +220,15 @@ impl ModelCalls {
         move || run.stop()
     }
 
-    /// Writes the recording, if one was asked for.
+    /// Ends the calls of a command: says what the user should know of the services, and writes the recording, if one was asked
+    /// for.
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn write_recording(&self) -> Result<(), CommandError> {
+    pub fn finish(&self, output: &CommandOutput) -> Result<(), CommandError> {
+        for note in self.services.notes() {
+            output.say(format_args!("warning: {note}"));
+        }
         if let Some(file) = &self.record {
             self.run.record_calls(file)?;
         }

@@ -126,7 +126,7 @@ pub fn generate_into(folder: &Path, job: &RunJob, output: &CommandOutput) -> Res
     let _graceful = interrupt::finish_items_first(calls.as_ref());
     let stopped = shop.fill_folder(&mut run, &data, items, output)?;
     if let Some(calls) = &calls {
-        calls.write_recording()?;
+        calls.finish(output)?;
     }
     let mut summary =
         summary::summarise_run(folder, &run, items.len(), calls.as_ref().map(ModelCalls::spent_so_far), stopped)?;

@@ -1,6 +1,6 @@
 //! A vision-language model as the answerer.
 
-use super::{PERCEPTION_SEED, plain_text::whole_sentences};
+use super::PERCEPTION_SEED;
 use crate::{
     dialogue::rephrase_question,
     prompts::{PromptManner, Prompts},
@@ -11,6 +11,7 @@ use wayword_core::{
     AnswerForm, AnswerText, ChatMessage, FinishReason, LanguageModel, ModelError, ModelReply, ModelRequest,
     SamplingOptions, ViewAnswerer, ViewQuestion,
 };
+use wayword_replies::read_sentences;
 
 /// Puts questions about a view's picture to a vision-language model. An answer in words that was cut off is asked for
 /// once more, shorter; from the second one the whole sentences are taken. The caller handles refusals and JSON that was
@@ -87,7 +88,7 @@ impl ViewAnswerer for ModelAnswerer {
         }
         let text = |(reply, ask): (Result<ModelReply, ModelError>, &ViewQuestion<'_>)| {
             reply.map(|reply| match ask.answer {
-                AnswerForm::Words => whole_sentences(&reply).to_owned(),
+                AnswerForm::Words => read_sentences(&reply),
                 AnswerForm::Json(_) => reply.text,
             })
         };

@@ -4,6 +4,7 @@ use super::{PERCEPTION_SEED, send_message};
 use crate::{dialogue::QuestionAsker, prompts::Prompts};
 use std::sync::Arc;
 use wayword_core::{ChatMessage, DialogueExchange, LanguageModel, ModelError, SamplingOptions};
+use wayword_replies::{without_template_marks, without_thinking};
 
 /// Lets a language model choose the questions. The dialogue extracts the question from its reply.
 #[derive(Clone)]
@@ -32,6 +33,6 @@ impl QuestionAsker for ModelAsker {
     fn next_question(&self, transcript: &[DialogueExchange]) -> Result<Option<String>, ModelError> {
         let prompt = self.prompts.question_prompt(transcript)?;
         let reply = send_message(self.model.as_ref(), ChatMessage::from_user(prompt), QUESTION_SAMPLING)?;
-        Ok(Some(reply.text))
+        Ok(Some(without_template_marks(&without_thinking(&reply.text))))
     }
 }

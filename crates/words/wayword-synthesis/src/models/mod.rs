@@ -5,8 +5,6 @@
 
 mod answerer;
 mod asker;
-mod chatter;
-mod plain_text;
 mod summariser;
 mod writer;
 

@@ -1,11 +1,6 @@
 //! A language model that summarises dialogues. Its captions are checked against the sightings of the dialogue.
 
-use super::{
-    PERCEPTION_SEED,
-    chatter::is_refusal,
-    plain_text::{plain_text, whole_sentences},
-    send_message,
-};
+use super::{PERCEPTION_SEED, send_message};
 use crate::{
     dialogue::{CaptionSummariser, CondensedCaption, RulesSummariser, caption_faults},
     prompts::Prompts,
@@ -16,6 +11,7 @@ use wayword_core::{
     SamplingOptions, WitnessAnswer,
 };
 use wayword_language::{lexicon::names_agree, text::word_count};
+use wayword_replies::{is_refusal, read_sentences, read_text};
 
 /// Lets a language model summarise. If a caption names a denied object or one that no answer named, or if it is a
 /// refusal or cut off, the model is asked once more, with the reason. If it fails again, rules summarise, and the
@@ -48,12 +44,16 @@ impl ModelSummariser {
         for attempt in 1..=MAX_CAPTION_ATTEMPTS {
             let reply =
                 send_message(self.model.as_ref(), ChatMessage::from_user(prompt(&complaints)?), SUMMARY_SAMPLING)?;
-            let text = plain_text(whole_sentences(&reply), &["caption", "summary"]);
+            let (text, fault) = match read_text(&read_sentences(&reply), &["caption", "summary"]) {
+                Ok(text) => (text, None),
+                Err(fault) => (reply.text.clone(), Some(fault)),
+            };
             let new_complaints = match text.len() {
                 0 => vec!["it was empty".to_owned()],
                 bytes if bytes > MAX_TEXT_BYTES => {
                     vec![format!("it has {bytes} bytes, more than {MAX_TEXT_BYTES}")]
                 }
+                _ if fault.is_some() => fault.into_iter().collect(),
                 _ if is_refusal(&text) => vec!["it refused to describe the picture".to_owned()],
                 // The whole sentences of the last attempt are better than a summary by rules.
                 _ if reply.finish == FinishReason::Length && attempt < MAX_CAPTION_ATTEMPTS => {

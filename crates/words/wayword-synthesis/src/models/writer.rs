@@ -1,12 +1,13 @@
 //! A language model that writes instructions.
 
-use super::{chatter::is_refusal, plain_text::plain_text, send_message};
+use super::send_message;
 use crate::{
     prompts::Prompts,
     writer::{InstructionWriter, WriteError, WritingBrief},
 };
 use std::sync::Arc;
 use wayword_core::{ChatMessage, FinishReason, LanguageModel, MAX_TEXT_BYTES, ModelError, SamplingOptions};
+use wayword_replies::{is_refusal, read_text};
 
 /// Lets a language model write. Its prompt includes the reasons why earlier texts failed.
 #[derive(Clone)]
@@ -41,18 +42,26 @@ impl InstructionWriter for ModelWriter {
         let seed = brief.seed.wrapping_add(u64::from(brief.candidate));
         let sampling = SamplingOptions { temperature: WRITING_TEMPERATURE, max_tokens: MAX_TOKENS, seed };
         let reply = send_message(self.model.as_ref(), ChatMessage::about_images(prompt, pictures), sampling)?;
-        let text = plain_text(&reply.text, &["instruction"]);
+        let unusable = |text: &str, reason: String| {
+            // The next prompt shows only the beginning of a long reply.
+            let end = text.floor_char_boundary(MAX_SHOWN_BYTES);
+            let text = if end < text.len() { format!("{} ...", &text[..end]) } else { text.to_owned() };
+            Err(WriteError::Unusable { text, reason })
+        };
+        let read = read_text(&reply.text, &["instruction", "answer", "final answer"]);
+        let text = read.as_deref().unwrap_or(reply.text.trim());
         if text.len() > MAX_TEXT_BYTES {
             let reason = format!("it has {} bytes, more than {MAX_TEXT_BYTES}: write a few sentences", text.len());
-            let text = format!("{} ...", &text[..text.floor_char_boundary(MAX_SHOWN_BYTES)]);
-            return Err(WriteError::Unusable { text, reason });
+            return unusable(text, reason);
         }
-        let unusable = |reason: &str| Err(WriteError::Unusable { text: text.clone(), reason: reason.to_owned() });
-        match reply.finish {
-            _ if is_refusal(&text) => unusable("it refused instead of giving directions: write the instruction itself"),
-            FinishReason::Stop if text.is_empty() => unusable("it was empty"),
-            FinishReason::Stop => Ok(text),
-            FinishReason::Length => unusable("it was cut off: write a shorter text"),
+        match (reply.finish, &read) {
+            _ if is_refusal(text) => {
+                unusable(text, "it refused instead of giving directions: write the instruction itself".to_owned())
+            }
+            (FinishReason::Length, _) => unusable(text, "it was cut off: write a shorter text".to_owned()),
+            (FinishReason::Stop, Err(fault)) => unusable(text, fault.clone()),
+            (FinishReason::Stop, Ok(text)) if text.is_empty() => unusable("", "it was empty".to_owned()),
+            (FinishReason::Stop, Ok(text)) => Ok(text.clone()),
         }
     }
 }

@@ -4,7 +4,6 @@
 //! be parsed, the request is repeated once with the reason, and the second answer is read as free text if necessary.
 
 mod caption;
-mod json;
 mod names;
 mod read_answer;
 #[cfg(test)]

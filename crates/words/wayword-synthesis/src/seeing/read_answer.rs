@@ -1,10 +1,7 @@
 //! Parses a structured answer (the JSON about a view) leniently: models use other field names, other types and another
 //! case than the schema.
 
-use super::{
-    json,
-    names::{NameReading, read_name, read_rooms},
-};
+use super::names::{NameReading, read_name, read_rooms};
 use crate::dialogue::colour_at;
 use serde_json::{Map, Value};
 use wayword_core::{ViewThird, WayOut};
@@ -12,6 +9,7 @@ use wayword_language::{
     answers::MATERIALS,
     lexicon::{ThingClass, find_thing, names_agree},
 };
+use wayword_replies::{ObjectReading, find_object};
 
 /// Most things that are taken from one answer; further ones are ignored.
 const MAX_THINGS: usize = 24;
@@ -19,6 +17,10 @@ const MAX_THINGS: usize = 24;
 const MAX_WAYS_OUT: usize = 8;
 /// Most words of a text that are searched for colours; later words are ignored.
 const MAX_COLOUR_WORDS: usize = 12;
+
+/// Names that models give to the field of the room, and to that of the things.
+const ROOM_FIELDS: [&str; 4] = ["room", "roomtype", "location", "scene"];
+const THINGS_FIELDS: [&str; 4] = ["things", "objects", "items", "thing"];
 
 /// The content of a structured answer about a view.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -45,16 +47,16 @@ pub(super) struct ViewThing {
 /// # Errors
 /// With the fault in words for the model.
 pub(super) fn read_view_answer(answer: &str, takes_part: bool) -> Result<ViewReading, String> {
-    let json::AnswerJson { value, is_cut } = json::find_json(answer)?;
+    let parts = |fields: &Map<String, Value>| {
+        (find_field(fields, &ROOM_FIELDS).is_some(), find_field(fields, &THINGS_FIELDS).is_some())
+    };
+    let ObjectReading { fields, is_cut } = find_object(answer, &|fields| parts(fields) != (false, false))
+        .map_err(|fault| format!("{fault}; it needs \"room\" and \"things\""))?;
     if is_cut && !takes_part {
         return Err("it was cut off: name fewer things".to_owned());
     }
-    let Value::Object(fields) = value else { return Err("it is no JSON object".to_owned()) };
-    let room = find_field(&fields, &["room", "roomtype", "location", "scene"]);
-    let listed = find_field(&fields, &["things", "objects", "items", "thing"]);
-    if room.is_none() && listed.is_none() {
-        return Err("it has neither \"room\" nor \"things\"".to_owned());
-    }
+    let room = find_field(&fields, &ROOM_FIELDS);
+    let listed = find_field(&fields, &THINGS_FIELDS);
     let cues: Vec<NameReading> = find_field(&fields, &["standsout", "standout", "landmarks", "salient"])
         .map(value_texts)
         .unwrap_or_default()
@@ -220,6 +222,9 @@ fn is_sure(value: &Value) -> bool {
         Value::Number(number) => number.as_f64().is_some_and(|share| share >= 0.75),
         other => {
             let said = value_text(other).to_lowercase();
+            if let Some(share) = share_in_words(&said) {
+                return share >= 0.75;
+            }
             let doubts = [
                 "perhaps",
                 "unsure",
@@ -238,6 +243,13 @@ fn is_sure(value: &Value) -> bool {
             !doubts.iter().any(|doubt| said.starts_with(doubt) || said.contains(&format!(" {doubt}")))
         }
     }
+}
+
+/// A share that is written as a text: "0.3", "30%", "30 %".
+fn share_in_words(said: &str) -> Option<f64> {
+    let percent = said.trim().strip_suffix('%');
+    let number: f64 = percent.unwrap_or(said).trim().parse().ok()?;
+    Some(if percent.is_some() || number > 1.0 { number / 100.0 } else { number })
 }
 
 /// The third of the view that a text names; `None` if it names none or several.

@@ -1,11 +1,9 @@
-//! Reads the tool calls in a model's reply: lines with the tool's name and JSON, as in `step {"way": 2, "why": "..."}`. Replies of
-//! services with native tool calls are in this form too.
-//!
-//! Models write calls in many ways, so other unambiguous forms are read as well: an object that names its tool, and a reply that
-//! consists only of a name and at most a number. Prose is never taken for a call.
+//! Reads the tool calls in a model's reply, such as `step {"way": 2, "why": "..."}`. Replies of services with native tool calls
+//! are in this form too. A reply that consists only of a name and at most a number is a call as well.
 
 use crate::one_line::shorten_line;
-use serde_json::Value;
+use serde_json::{Map, Value};
+use wayword_replies::find_tool_calls;
 
 /// A call of a tool.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -37,65 +35,24 @@ pub(super) enum ObjectChoice {
     Words(String),
 }
 
-/// Most bytes of a reply that are read.
-const MAX_READ_BYTES: usize = 8_000;
-/// Most calls of a reply; later ones are ignored.
-const MAX_CALLS: usize = 4;
 /// Longest reason, note and words for an object, characters; longer ones are cut.
 const MAX_ARGUMENT_CHARS: usize = 300;
 const TOOL_NAMES: [&str; 3] = ["observe", "step", "stop"];
 
 /// The calls of a reply, in their order; empty where there is none.
 pub(super) fn read_calls(reply: &str) -> Vec<AgentToolCall> {
-    let text = &reply[..reply.floor_char_boundary(MAX_READ_BYTES)];
-    let calls = read_json_calls(text);
-    if calls.is_empty() { read_bare_call(text.trim()).into_iter().collect() } else { calls }
-}
-
-/// The calls that have JSON.
-fn read_json_calls(text: &str) -> Vec<AgentToolCall> {
-    let mut calls = Vec::new();
-    let mut at = 0;
-    while at < text.len() && calls.len() < MAX_CALLS {
-        let end = text[at..].find('\n').map_or(text.len(), |end| at + end + 1);
-        let line = text[at..end].trim_start_matches(|c: char| c.is_whitespace() || "-*>`•[,".contains(c));
-        let (call, after) = match tool_name(line) {
-            Some((name, rest)) if rest.starts_with('{') => read_object_call(text, end - rest.len(), Some(name)),
-            None if line.starts_with('{') => read_object_call(text, end - line.len(), None),
-            _ => (None, end),
-        };
-        calls.extend(call);
-        at = after.max(end);
+    let calls = find_tool_calls(reply, &TOOL_NAMES);
+    if calls.is_empty() {
+        return read_bare_call(reply.trim()).into_iter().collect();
     }
-    calls
+    calls.into_iter().filter_map(|call| call_from_arguments(call.name, &call.arguments)).collect()
 }
 
-/// The tool that a line begins with, and the rest of the line.
-fn tool_name(line: &str) -> Option<(&'static str, &str)> {
-    let is_name = |name: &&str| line.get(..name.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(name));
+/// The tool that a reply begins with, and the rest of the reply.
+fn tool_name(reply: &str) -> Option<(&'static str, &str)> {
+    let is_name = |name: &&str| reply.get(..name.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(name));
     let name = TOOL_NAMES.into_iter().find(is_name)?;
-    Some((name, line[name.len()..].trim_start_matches([' ', ':', '(', '\t'])))
-}
-
-/// Reads the JSON of a call that begins at byte `from` of the text; returns the call and the byte after its JSON. If no tool's
-/// `name` precedes the JSON, the JSON object must name the tool itself.
-fn read_object_call(text: &str, from: usize, name: Option<&str>) -> (Option<AgentToolCall>, usize) {
-    let mut values = serde_json::Deserializer::from_str(&text[from..]).into_iter::<Value>();
-    let Some(Ok(value)) = values.next() else { return (None, from) };
-    let after = from + values.byte_offset();
-    let name_in_json = ["tool", "name", "action"].into_iter().find_map(|field| value.get(field)?.as_str());
-    let nested = ["arguments", "input", "parameters"].into_iter().find_map(|field| value.get(field));
-    let nested = nested.filter(|_| name.is_none()).and_then(read_arguments);
-    (name.or(name_in_json).and_then(|name| call_from_arguments(name, nested.as_ref().unwrap_or(&value))), after)
-}
-
-/// The arguments of a call: an object, or a string that contains one as JSON.
-fn read_arguments(value: &Value) -> Option<Value> {
-    let object = match value {
-        Value::String(text) => serde_json::from_str(text).ok()?,
-        value => value.clone(),
-    };
-    object.is_object().then_some(object)
+    Some((name, reply[name.len()..].trim_start_matches([' ', ':', '(', '\t'])))
 }
 
 /// Reads a reply that consists only of a tool's name and at most a number.
@@ -112,9 +69,9 @@ fn read_bare_call(reply: &str) -> Option<AgentToolCall> {
     Some(AgentToolCall { act, why: String::new(), note: None })
 }
 
-/// The call of the tool `name` with its arguments, a JSON object; `None` if there is no such tool.
-fn call_from_arguments(name: &str, arguments: &Value) -> Option<AgentToolCall> {
-    let act = match name.to_ascii_lowercase().as_str() {
+/// The call of the tool `name` with its arguments; `None` if there is no such tool.
+fn call_from_arguments(name: &str, arguments: &Map<String, Value>) -> Option<AgentToolCall> {
+    let act = match name {
         "observe" => AgentToolAction::Observe,
         "step" => AgentToolAction::Step(arguments.get("way").and_then(read_number)),
         "stop" => AgentToolAction::Stop(arguments.get("object").and_then(read_object_choice)),
@@ -203,7 +160,6 @@ mod tests {
         }
         assert_eq!(acts("step {\"way\": -1}"), [AgentToolAction::Step(None)]);
         assert_eq!(acts("step {\"way\": 1.5}"), [AgentToolAction::Step(None)]);
-        assert_eq!(acts(&"observe {}\n".repeat(1000)).len(), MAX_CALLS);
     }
 
     proptest! {

@@ -12,7 +12,7 @@ const MAX_ANNOUNCING_WORDS: usize = 24;
 const MAX_EXAMINED_BYTES: usize = 300;
 
 /// The text without code fences, announcing sentences before it, and remarks after it.
-pub(super) fn without_chatter(text: &str) -> &str {
+pub(crate) fn without_chatter(text: &str) -> &str {
     let text = without_fence(text);
     let sentences = split_sentences(text);
     let before = sentences.iter().take_while(|sentence| announces_text(sentence)).count();
@@ -25,7 +25,8 @@ pub(super) fn without_chatter(text: &str) -> &str {
 }
 
 /// Whether a reply is a refusal.
-pub(super) fn is_refusal(text: &str) -> bool {
+#[must_use]
+pub fn is_refusal(text: &str) -> bool {
     let words = sentence_words(text.trim_start_matches(['"', '“', '*']));
     begins_with_phrase(&words, &REFUSING)
 }
