@@ -7,8 +7,8 @@ use std::{path::PathBuf, process::ExitCode};
 use wayword_fit::{fit_alignment, fit_evidence, fit_follower};
 use wayword_quality::{
     arrivals, budget, checked_texts, claims, corrupt_people, corruption_findings, corruptions, coverage, critics,
-    detector, doubts, eye, house_faults, house_views, people, reader_figures, reuse, sample, skeleton, stage, steps,
-    study_coverage, sweep, tell_apart, texts, walker,
+    detector, doubts, eye, house_faults, house_views, people, reader_figures, remembered, reuse, sample, skeleton,
+    stage, steps, study_coverage, sweep, tell_apart, texts, walker,
 };
 use wayword_run::{error::CommandError, output::CommandOutput};
 
@@ -84,6 +84,16 @@ enum Measurement {
         /// Share of the objects named by that model that are not there.
         #[arg(long, default_value_t = 0.15)]
         hallucinated: f64,
+    },
+    /// Measure how right the memory of a walk is that is made from captions alone: which sightings are of one thing, and the side on
+    /// which one passes it. A scripted eye looks, and labels decide.
+    Memory {
+        /// Walks through generated houses.
+        #[arg(long, default_value_t = 100)]
+        paths: usize,
+        /// Seed of the houses, the walks and the eye.
+        #[arg(long, default_value_t = 0)]
+        seed: u64,
     },
     /// Check true and false claims about paths by labels and by the captions of a flawed eye, and count those that the checks
     /// refuse and catch.
@@ -203,6 +213,11 @@ fn run_measurement(what: Measurement, output: &CommandOutput) -> Result<(), Comm
         Measurement::Budget { world, paths, max_usd } => budget::measure_budget(&world, paths, max_usd, output),
         Measurement::Eye { world, views, paths, hallucinated } => {
             eye::measure_eye(&world, views, paths, hallucinated, output)
+        }
+        Measurement::Memory { paths, seed } => {
+            let figures = remembered::measure_memory(paths, seed, output)?;
+            output.print_result(&figures, figures);
+            Ok(())
         }
         Measurement::Claims(flags) => claims::measure_claims(&flags, output),
         Measurement::Detector(flags) => detector::measure_played_detector(&flags, output),

@@ -129,7 +129,7 @@ mod tests {
         let world = platforms::open_named("matterport", Some(&building.data_folder()), None, None).unwrap();
         let first = run_items(&settings, world.as_ref()).unwrap().remove(0);
         let path = first.find_path(&settings, world.as_ref()).unwrap();
-        let made = MadeItem { walk: ObservedWalk::new(path, Vec::new()), outcomes, pictures: Vec::new() };
+        let made = MadeItem { walk: ObservedWalk::new(path, Vec::new()), outcomes, pictures: Vec::new(), used: None };
         let mut named = NamedObjectCounts::default();
         named.count_item(&made, world.as_ref()).unwrap();
         named
@@ -157,7 +157,7 @@ mod tests {
         finished.provenance.finished_for = Some("server/words".into());
         let named = counted(vec![
             WritingOutcome::Accepted(finished),
-            WritingOutcome::Rejected { last: None, reason: "there is no text".into() },
+            WritingOutcome::Rejected { last: None, reason: "there is no text".into(), drafts: Vec::new() },
         ]);
         assert_eq!((named.texts, named.rejected, named.finished_by_rules), (1, 1, 1), "{named:?}");
     }

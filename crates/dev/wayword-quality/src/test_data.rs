@@ -41,6 +41,8 @@ pub(crate) fn test_instruction(style: &str, text: &str, mentions: &[(&str, Menti
             repairs: 0,
             finished_for: None,
             chosen: None,
+            drafts: Vec::new(),
+            refined: Vec::new(),
             target_undescribed: false,
         },
     }

@@ -78,6 +78,9 @@ pub struct ObjectSighting {
     /// Its material, as the witness named it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub material: Option<String>,
+    /// Its pattern, or what it shows, as the witness put it: "checkered", "of a ship".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detail: Option<String>,
     /// Whether the witness called it far away, or it was measured to be.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_far: bool,
@@ -130,6 +133,7 @@ impl ObjectSighting {
             colour: None,
             more_colours: Vec::new(),
             material: None,
+            detail: None,
             is_far: false,
             stands_out: false,
             several: false,

@@ -72,7 +72,7 @@ pub enum MentionKind {
 }
 
 /// How an instruction came about.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TextProvenance {
     /// Version of Wayword that made it.
     pub wayword: String,
@@ -104,9 +104,39 @@ pub struct TextProvenance {
     /// How it was chosen, where several texts were written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen: Option<TextSelection>,
+    /// The texts of a model that were not kept, in the order in which they were written.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub drafts: Vec<WrittenDraft>,
+    /// The rounds in which a text that passed was written again because a follower did not arrive by it surely.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub refined: Vec<RefinedRound>,
     /// Whether the path has a target that was not visible from the last frame: the writer knew its name alone.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub target_undescribed: bool,
+}
+
+/// A text that a model wrote and that was not kept.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct WrittenDraft {
+    /// The text, or the beginning of a reply that is none.
+    pub text: String,
+    /// The number of its candidate, from 0.
+    #[serde(default)]
+    pub candidate: u32,
+    /// Why it was not kept.
+    pub reasons: Vec<String>,
+}
+
+/// A round of writing a text again after a follower walked by it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct RefinedRound {
+    /// How likely the text before led to the end of its walk, from 0 to 1.
+    pub before: f64,
+    /// The same of the new text; `None` where it failed its checks or cannot be followed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub after: Option<f64>,
+    /// Whether the new text was kept.
+    pub kept: bool,
 }
 
 /// How a text was chosen among several.

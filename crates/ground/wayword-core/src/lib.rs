@@ -74,7 +74,8 @@ pub use hex::hex_text;
 pub use id::{ObjectId, SceneId, ViewpointId};
 pub use image::Image;
 pub use instruction::{
-    ChosenBy, Instruction, InstructionPart, MAX_TEXT_BYTES, MentionKind, TextMention, TextProvenance, TextSelection,
+    ChosenBy, Instruction, InstructionPart, MAX_TEXT_BYTES, MentionKind, RefinedRound, TextMention, TextProvenance,
+    TextSelection, WrittenDraft,
 };
 pub use label::ObjectLabel;
 pub use model::{

@@ -35,7 +35,7 @@ use wayword_synthesis::{
     dialogue::{DEFAULT_MAX_QUESTIONS, DialogueMode, RulesAsker, RulesSummariser},
     observe::{ObservationRoles, gazes_around, observe_path},
     offline::{BuildingListing, LabelAnswerer, describe_target, list_around_frame},
-    repair::{InstructionOrder, WriterPair, WritingOutcome as Item, write_and_repair},
+    repair::{InstructionOrder, OneByOne, WriterPair, WritingOutcome as Item, write_and_repair},
     style::{StyleProfile, built_in},
     walk::{FrameSelection, ObservedWalk},
     writer::RulesWriter,
@@ -148,11 +148,14 @@ fn write(known: &Known, (style, profile): &(InstructionStyle, StyleProfile)) -> 
         follower: None,
         earlier: &[],
         pictures: &[],
+        views: &[],
+        refinements: 0,
+        together: &OneByOne,
     };
     let writers = WriterPair { writer: &RulesWriter, finisher: None };
     match write_and_repair(writers, observers(&RulesAsker::default()), order).unwrap() {
         Item::Accepted(instruction) | Item::Rejected { last: Some(instruction), .. } => instruction,
-        Item::Rejected { last: None, reason } => {
+        Item::Rejected { last: None, reason, .. } => {
             unreachable!("{}: {reason}", known.walk.path.id)
         }
     }

@@ -44,7 +44,7 @@ mod store;
 
 pub use budget::{RequestRefusedError, RunLimits};
 pub use call::{CallAnswer, CallKey, LedgerEntry, ModelCall};
-pub use call_context::CallContext;
+pub use call_context::{AccountTotals, CallAccount, CallContext};
 pub use disk::network_at;
 pub use error::LedgerError;
 pub use ledger::Ledger;

@@ -2,7 +2,7 @@
 //! and programs.
 
 use crate::{
-    CallAnswer, CallKey, LedgerEntry, LedgerError, ModelCall, RequestRefusedError, RunLimits, RunStopper,
+    CallAnswer, CallContext, CallKey, LedgerEntry, LedgerError, ModelCall, RequestRefusedError, RunLimits, RunStopper,
     budget::{RunBudget, SpentBudget, valid_amount},
     claim::{ABANDONED_CLAIM_TIMEOUT, CallClaim, ClaimOutcome},
     ledger::{Ledger, now_unix_s},
@@ -136,7 +136,8 @@ impl LedgerRun {
         let span = CallSpan::begin_call(call);
         let outcome = self.answer_within_span(&span, call, send);
         match &outcome {
-            Ok(_) | Err(OnceError::Call(_)) => {}
+            Ok(answer) => CallContext::count_answer(answer),
+            Err(OnceError::Call(_)) => {}
             Err(OnceError::Refused(_)) => span.record_error("refused"),
             Err(OnceError::NotRecorded { .. }) => span.record_error("not_recorded"),
             Err(OnceError::Ledger(_)) => span.record_error("ledger"),

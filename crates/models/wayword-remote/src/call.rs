@@ -146,6 +146,7 @@ impl PreparedCall<'_> {
             let fault = match self.send_once(body.as_bytes()) {
                 AttemptOutcome::Heard(reply, latency) => match check_reply(&reply, self.endpoint) {
                     Ok(()) => {
+                        self.endpoint.note_answer();
                         self.note_cut_prompt(&reply);
                         let text = reply.answer();
                         let text = secret.map_or(text.clone(), |secret| secret.scrub_key(text.clone()));
@@ -289,7 +290,10 @@ impl PreparedCall<'_> {
         }
         let value: serde_json::Value = match serde_json::from_slice(body) {
             Ok(value) => value,
-            Err(_) => stream::joined_stream(body).ok_or_else(|| faults::fault_of_odd_body(body, endpoint.fault_context()))?,
+            Err(_) => stream::joined_stream(body).ok_or_else(|| {
+                let is_wrong_address = faults::is_html(body) && endpoint.note_page();
+                faults::fault_of_odd_body(body, is_wrong_address, endpoint.fault_context())
+            })?,
         };
         if value.get("error").is_some_and(|error| !error.is_null()) {
             return Err(fault(body));

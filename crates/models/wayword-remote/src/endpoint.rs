@@ -8,8 +8,19 @@ use crate::{
     provider::RemoteProvider,
     transport::{HttpResponse, HttpTransport},
 };
-use std::{sync::OnceLock, time::Duration};
+use std::{
+    sync::{
+        OnceLock,
+        atomic::{AtomicU32, Ordering},
+    },
+    time::Duration,
+};
 use wayword_ledger::ProviderRates;
+
+/// After so many pages of HTML without any answer the address is taken to be wrong.
+const MAX_PAGES: u32 = 2;
+/// The count of pages once an answer came.
+const ANSWERED: u32 = u32::MAX;
 
 /// Why no more requests are sent, and how the user can change this.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,6 +40,8 @@ pub(crate) struct ProviderEndpoint {
     closed: OnceLock<ClosedEndpoint>,
     /// What the user should know of the service, once.
     note: OnceLock<String>,
+    /// How many pages of HTML came in place of answers; none is counted after an answer.
+    pages: AtomicU32,
 }
 
 impl ProviderEndpoint {
@@ -48,6 +61,7 @@ impl ProviderEndpoint {
             secret: OnceLock::new(),
             closed: OnceLock::new(),
             note: OnceLock::new(),
+            pages: AtomicU32::new(0),
             provider,
         }
     }
@@ -95,6 +109,19 @@ impl ProviderEndpoint {
     /// Why no more requests are sent; `None` while requests are sent.
     pub(crate) fn closed_reason(&self) -> Option<&ClosedEndpoint> {
         self.closed.get()
+    }
+
+    /// Notes that the service answered as it should.
+    pub(crate) fn note_answer(&self) {
+        self.pages.store(ANSWERED, Ordering::Relaxed);
+    }
+
+    /// Notes a page of HTML in place of an answer. Whether so many came before any answer that the address is wrong, and no passing
+    /// trouble of a proxy.
+    pub(crate) fn note_page(&self) -> bool {
+        let next = |pages: u32| (pages != ANSWERED).then(|| pages + 1);
+        let before = self.pages.fetch_update(Ordering::Relaxed, Ordering::Relaxed, next);
+        before.is_ok_and(|pages| pages + 1 >= MAX_PAGES)
     }
 
     /// Keeps what the user should know of the service; only the first of several.

@@ -121,7 +121,13 @@ mod tests {
 
     #[test]
     fn what_is_no_whole_stream_is_not_joined() {
-        for body in ["", "data: [DONE]", "<html>", "{\"choices\":[]}", "data: {\"choices\":[{\"delta\":{\"content\":\"A\"}}]}\n"] {
+        for body in [
+            "",
+            "data: [DONE]",
+            "<html>",
+            "{\"choices\":[]}",
+            "data: {\"choices\":[{\"delta\":{\"content\":\"A\"}}]}\n",
+        ] {
             assert_eq!(joined_stream(body.as_bytes()), None, "{body}");
         }
         let error = "data: {\"choices\":[]}\ndata: {\"error\":{\"message\":\"overloaded\"}}\n";

@@ -67,7 +67,11 @@ fn top_objects(text: &str) -> Vec<JsonReading> {
 }
 
 /// The wanted object in a value: the value itself, or one within it, or one that is written there as a text.
-fn wanted_within(value: &Value, fits: &dyn Fn(&Map<String, Value>) -> bool, depth: usize) -> Option<Map<String, Value>> {
+fn wanted_within(
+    value: &Value,
+    fits: &dyn Fn(&Map<String, Value>) -> bool,
+    depth: usize,
+) -> Option<Map<String, Value>> {
     match value {
         // An object with a schema in place of values has the right fields, but no answer.
         Value::Object(fields) if fits(fields) && !fields.values().all(is_schema) => Some(fields.clone()),

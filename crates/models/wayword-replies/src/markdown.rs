@@ -25,7 +25,8 @@ fn without_line_breaks_of_pages(text: &str) -> String {
 /// A line without the sign or number of a list before it, and whether there was one.
 fn list_item(line: &str) -> (&str, bool) {
     let line = line.trim_start();
-    if let Some(rest) = line.strip_prefix(['-', '•', '*', '–', '·', '+']).filter(|rest| rest.starts_with([' ', '\t'])) {
+    if let Some(rest) = line.strip_prefix(['-', '•', '*', '–', '·', '+']).filter(|rest| rest.starts_with([' ', '\t']))
+    {
         return (rest, true);
     }
     let numbered = line.get(..5).filter(|begin| begin.eq_ignore_ascii_case("step ")).map_or(line, |_| &line[5..]);
@@ -73,7 +74,9 @@ fn without_links(text: &str) -> String {
     while let Some(open) = rest.find('[') {
         let link = rest[open..].find("](").map(|middle| open + middle);
         let end = link.and_then(|middle| Some((middle, middle + rest[middle..].find(')')?)));
-        let Some((middle, end)) = end.filter(|(middle, _)| !rest[open + 1..*middle].contains(['[', ']'])) else { break };
+        let Some((middle, end)) = end.filter(|(middle, _)| !rest[open + 1..*middle].contains(['[', ']'])) else {
+            break;
+        };
         kept.push_str(&rest[..open]);
         kept.push_str(&rest[open + 1..middle]);
         rest = &rest[end + 1..];

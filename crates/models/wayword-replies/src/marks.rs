@@ -51,10 +51,12 @@ fn mark_at(text: &str, open: usize) -> Option<ReplyMark> {
     let slashed = bare.starts_with('/');
     let bare = bare.trim_matches(['/', '|', '｜']).to_lowercase().replace(['▁', '-', ':'], "_");
     let (name, attributes) = bare.split_once([' ', '=']).unwrap_or((&bare, ""));
-    let is_name = name.starts_with(char::is_alphanumeric) && name.contains(char::is_alphabetic)
+    let is_name = name.starts_with(char::is_alphanumeric)
+        && name.contains(char::is_alphabetic)
         && name.chars().all(|c| c.is_alphanumeric() || "_.｜".contains(c));
     // In square brackets stand the marks of few templates, all in capitals; anything else is text or a list.
-    let is_square = bracket == '[' && !inside.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || "/_".contains(c));
+    let is_square =
+        bracket == '[' && !inside.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || "/_".contains(c));
     if !is_name || inside.contains('\n') || is_square {
         return None;
     }
@@ -198,7 +200,8 @@ mod tests {
         ] {
             assert_eq!(without_template_marks(reply).trim(), "Go to the sink.", "{reply}");
         }
-        for text in ["Model trains stand on the shelf.", "Go past the [sic] sofa <here>.", "User manuals lie there: go on."]
+        for text in
+            ["Model trains stand on the shelf.", "Go past the [sic] sofa <here>.", "User manuals lie there: go on."]
         {
             assert_eq!(without_template_marks(text), text);
         }

@@ -111,7 +111,8 @@ fn in_answer_tag(text: &str) -> Option<String> {
         }
     }
     // A tag that is never closed: all behind it.
-    let rest = || open.filter(|mark| ANSWER_TAGS.contains(&mark.name.as_str())).map(|mark| text[mark.span.end..].to_owned());
+    let rest =
+        || open.filter(|mark| ANSWER_TAGS.contains(&mark.name.as_str())).map(|mark| text[mark.span.end..].to_owned());
     found.or_else(rest)
 }
 
@@ -177,14 +178,18 @@ const MIN_TEXT_WORDS: usize = 4;
 fn option_heading<'a>(line: &'a str, labels: &[&str]) -> Option<&'a str> {
     let bare = line.trim_start_matches(|c: char| c.is_whitespace() || "*#-(_".contains(c));
     let names = OPTION_WORDS.iter().chain(labels);
-    let name = names.into_iter().find(|name| bare.get(..name.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(name)))?;
+    let name =
+        names.into_iter().find(|name| bare.get(..name.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(name)))?;
     let rest = bare[name.len()..].trim_start();
     let number = rest.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(rest.len());
-    let is_number = (1..=2).contains(&number) && rest[..number].chars().any(|c| c.is_ascii_digit() || c.is_ascii_uppercase());
+    let is_number =
+        (1..=2).contains(&number) && rest[..number].chars().any(|c| c.is_ascii_digit() || c.is_ascii_uppercase());
     let behind = rest[number..].trim_start_matches(|c: char| "*)_ ".contains(c));
     let text = behind.strip_prefix([':', '.', '-', '–']).or_else(|| behind.is_empty().then_some(behind));
     // A heading may have words of its own before its colon: "Option 1 (short):".
-    let described = || Some(behind.split_once(':')?).filter(|(head, _)| head.len() <= MAX_OPTION_HEADING_BYTES).map(|(_, text)| text);
+    let described = || {
+        Some(behind.split_once(':')?).filter(|(head, _)| head.len() <= MAX_OPTION_HEADING_BYTES).map(|(_, text)| text)
+    };
     is_number.then(|| text.or_else(described)).flatten().map(|text| text.trim_start_matches(['*', ' ', '_']))
 }
 
@@ -298,7 +303,11 @@ mod tests {
             ("经过沙发，停在走廊里。", "not in English"),
             ("Go to [LANDMARK] and stop.", "sign '['"),
         ] {
-            assert!(read_text(reply, &LABELS).is_err_and(|why| why.contains(reason)), "{reply}: {:?}", read_text(reply, &LABELS));
+            assert!(
+                read_text(reply, &LABELS).is_err_and(|why| why.contains(reason)),
+                "{reply}: {:?}",
+                read_text(reply, &LABELS)
+            );
         }
     }
 

@@ -48,7 +48,8 @@ fn without_blocks(text: &str) -> String {
     let mut is_closed = true;
     while let Some(mark) = next_mark(text, at) {
         at = mark.span.end;
-        if !is_thinking(&mark) && !(depth > 0 && ends_details(&mark)) {
+        let is_meant = is_thinking(&mark) || (depth > 0 && ends_details(&mark));
+        if !is_meant {
             continue;
         }
         is_closed = closes_thinking(&mark);
@@ -134,7 +135,8 @@ fn before_channel<'a>(reply: &'a str, part: &str) -> &'a str {
 /// The text behind thinking that is announced in plain words.
 fn behind_spoken_thinking(text: &str) -> &str {
     let plain = text.to_ascii_lowercase();
-    let begin = plain.trim_start_matches(|c: char| c.is_whitespace() || "*#".contains(c)).replace("here's my", "here is my");
+    let begin =
+        plain.trim_start_matches(|c: char| c.is_whitespace() || "*#".contains(c)).replace("here's my", "here is my");
     for (announced, answered) in SPOKEN {
         if !begin.starts_with(announced) {
             continue;

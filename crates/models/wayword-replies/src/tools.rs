@@ -58,11 +58,15 @@ fn calls_in_tags(text: &str, tools: &[&'static str]) -> Vec<ToolCallReading> {
         let named = named.trim_start_matches("name=").trim_matches(['"', '\'']);
         // DeepSeek and others write a name of their own before that of the tag.
         let tag = mark.name.rsplit(['｜', ':']).next().unwrap_or_default();
-        let tag = tag.rsplit_once('_').map_or(tag, |(_, last)| if matches!(last, "invoke" | "parameter") { last } else { tag });
+        let tag = tag
+            .rsplit_once('_')
+            .map_or(tag, |(_, last)| if matches!(last, "invoke" | "parameter") { last } else { tag });
         match tag {
             "function" | "invoke" | "tool_call" | "tool" | "seed_tool_call" => {
-                let name = if named.is_empty() { content.split(['\n', '<', '{']).next().unwrap_or_default() } else { named };
-                let begins = known_tool(name, tools).filter(|_| !content.trim_start().starts_with(['{', '[']) || !named.is_empty());
+                let name =
+                    if named.is_empty() { content.split(['\n', '<', '{']).next().unwrap_or_default() } else { named };
+                let begins = known_tool(name, tools)
+                    .filter(|_| !content.trim_start().starts_with(['{', '[']) || !named.is_empty());
                 let arguments = content.find('{').and_then(|open| mended_value(&content[open..]));
                 let arguments = arguments.as_ref().and_then(Value::as_object).cloned().unwrap_or_default();
                 calls.extend(begins.map(|name| ToolCallReading { name, arguments }));
@@ -93,7 +97,8 @@ fn plain_lines(text: &str) -> String {
             at = mark.span.end;
             continue;
         }
-        let joins = matches!(mark.name.as_str(), "constrain" | "message" | "args" | "tool_sep" | "tool_call_argument_begin");
+        let joins =
+            matches!(mark.name.as_str(), "constrain" | "message" | "args" | "tool_sep" | "tool_call_argument_begin");
         lines.push(if joins { ' ' } else { '\n' });
         at = mark.span.end;
     }
@@ -136,7 +141,8 @@ fn calls_in_lines(text: &str, tools: &[&'static str]) -> Vec<ToolCallReading> {
 fn without_lead(line: &str) -> &str {
     const LEADS: [&str; 8] =
         ["functools", "action input:", "action:", "tool:", "function", "assistant", "commentary", "call:"];
-    let bare = |line: &str| line.len() - line.trim_start_matches(|c: char| c.is_whitespace() || "-*>`•[,".contains(c)).len();
+    let bare =
+        |line: &str| line.len() - line.trim_start_matches(|c: char| c.is_whitespace() || "-*>`•[,".contains(c)).len();
     LEADS.iter().fold(&line[bare(line)..], |line, lead| {
         let rest = line.get(..lead.len()).filter(|begin| begin.eq_ignore_ascii_case(lead)).map(|_| &line[lead.len()..]);
         // "functions.step" is a name.
@@ -153,7 +159,10 @@ fn begin_of_call<'a>(line: &'a str, tools: &[&'static str]) -> Option<(&'static 
     let rest = line[end..].trim_start_matches([' ', ':', '\t']);
     let rest = rest.strip_prefix("json").map_or(rest, str::trim_start);
     // "step({...})" has its JSON in brackets.
-    Some((tool, rest.strip_prefix('(').filter(|inner| inner.trim_start().starts_with('{')).map_or(rest, str::trim_start)))
+    Some((
+        tool,
+        rest.strip_prefix('(').filter(|inner| inner.trim_start().starts_with('{')).map_or(rest, str::trim_start),
+    ))
 }
 
 /// A call as in Python: `step(way=2, why="the text says so")`.
@@ -179,7 +188,6 @@ fn python_call(name: &'static str, rest: &str) -> Option<ToolCallReading> {
     let is_read = rest.is_empty() && arguments.keys().all(|key| key.chars().all(|c| c.is_alphanumeric() || c == '_'));
     (is_read && !arguments.is_empty() || inside.trim().is_empty()).then_some(ToolCallReading { name, arguments })
 }
-
 
 /// The calls in a value. Where no name precedes it, the value itself must name the tool.
 fn calls_in_value(value: &Value, name: Option<&'static str>, tools: &[&'static str]) -> Vec<ToolCallReading> {

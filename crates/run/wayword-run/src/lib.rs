@@ -18,6 +18,7 @@
 //! - [`error`]: errors and exit codes. [`interrupt`]: Ctrl-C and signals. [`output`]: the only place that prints.
 //! - [`own_format`]: format and version at the head of our files. [`watch`]: spans, with `lines.rs` and `telemetry/`.
 
+mod advice;
 pub mod align;
 pub mod calibrate;
 pub mod calibration;

@@ -1,6 +1,7 @@
 //! Makes one item: looks along its path, describes the views, writes a text in each style, checks it, and repairs or rejects it.
 
 use crate::{
+    advice::writing_advice,
     error::CommandError,
     follow::{FollowedPath, FollowerFindings, KnownScenes, ambiguity_rejection},
     item::RunItem,
@@ -8,7 +9,7 @@ use crate::{
     parallel::make_in_parallel,
     pictures::{self, FrameJpeg},
     platforms::RememberingPlatform,
-    run_folder::WorldData,
+    run_folder::{ItemCalls, WorldData},
     settings::{EvidenceSources, RunSettings, TargetMode},
     styles::MeasuredStyle,
     team::RoleTeam,
@@ -19,12 +20,15 @@ use wayword_core::{
     Caption, Frame, Instruction, InstructionPart, ModelError, Path, Platform, PlatformError, SceneId, TextAmbiguity,
     View, ViewGaze,
 };
-use wayword_ledger::CallContext;
+use wayword_ledger::{CallAccount, CallContext};
 use wayword_synthesis::{
     detection::{detector_evidence, seek_along_path},
     observe::{PlannedView, caption_view, gazes_around, observe_path_with},
     offline::{approach_frames, describe_target, list_around_frame},
-    repair::{InstructionOrder, TextFollower, WritingOutcome, write_and_repair},
+    repair::{
+        CandidateResult, CandidateWriting, InstructionOrder, TextFollower, WriteTogether, WritingOutcome,
+        write_and_repair,
+    },
     walk::ObservedWalk,
     writer::FramePicture,
 };
@@ -39,6 +43,8 @@ pub struct MadeItem {
     pub outcomes: Vec<WritingOutcome>,
     /// The picture ahead of each frame, if the platform has pictures.
     pub pictures: Vec<FrameJpeg>,
+    /// The answers of models that it used.
+    pub used: Option<ItemCalls>,
 }
 
 /// The platform of a run, with the recorded hashes of its files.
@@ -86,8 +92,11 @@ pub fn make_item(
     threads: usize,
 ) -> Result<MadeItem, CommandError> {
     let order = ItemTextOrder { styles, only: &BTreeMap::new() };
-    let WrittenItem { walk, outcomes, ahead } = write_item(item, settings, world, team, order, threads)?;
-    Ok(MadeItem { walk, outcomes, pictures: pictures::encode_pictures(&ahead)? })
+    let account = CallAccount::default();
+    let written = CallContext::with_account(&account, || write_item(item, settings, world, team, order, threads));
+    let WrittenItem { walk, outcomes, ahead } = written?;
+    let used = ItemCalls::of_account(&account);
+    Ok(MadeItem { walk, outcomes, pictures: pictures::encode_pictures(&ahead)?, used })
 }
 
 /// Writes an item's instructions. Up to `threads` views are described at the same time, and up to as many styles written; the
@@ -130,10 +139,14 @@ pub fn write_item(
     let walk = ObservedWalk::new(path, observations);
     let detector = team.lookout().map(DetectorLookout::name);
     let mut evidence = collect_evidence(&walk, &world, settings.evidence, detector)?;
-    // With labels, the writer's memory has everything that they list around each frame; with a model, what its captions name.
+    // With labels, the writer's memory has everything that they list around each frame; with a model, what it saw, where the evidence
+    // places it.
     let lists_labels = team.sees_labels() && evidence.source == EvidenceSource::Labels;
     let evidence_memory = WalkMemory::from_path(&evidence, &walk.path);
-    let captions_memory = (!lists_labels).then(|| walk.memory());
+    let captions_memory = (!lists_labels).then(|| match evidence.has_witnesses {
+        true => WalkMemory::from_path(&evidence.witnessed_part(), &walk.path),
+        false => walk.memory(),
+    });
     let memory = captions_memory.as_ref().unwrap_or(&evidence_memory);
     let scene = match evidence.source {
         EvidenceSource::Labels => Some(scenes.get_or_survey(platform, &walk.path.scene)?),
@@ -170,6 +183,9 @@ pub fn write_item(
             follower: (!settings.no_route).then_some(&follower),
             earlier: &[],
             pictures: &shown,
+            views: if team.sees_labels() { &[] } else { &ahead },
+            refinements: settings.refine,
+            together: &InParallel(threads),
         };
         write_texts(team, order, settings.per_path)
     };
@@ -182,6 +198,16 @@ pub fn write_item(
         }
     }
     Ok(WrittenItem { walk, outcomes, ahead })
+}
+
+/// Writes candidates at the same time, on so many threads.
+struct InParallel(usize);
+
+impl WriteTogether for InParallel {
+    fn write_each(&self, numbers: &[u32], write: &CandidateWriting<'_>) -> Vec<CandidateResult> {
+        let ends = |outcome: &CandidateResult| outcome.as_ref().is_err_and(ModelError::ends_run);
+        make_in_parallel(numbers, self.0, |number| write(*number), ends)
+    }
 }
 
 /// The texts of one walk in one style. Each has to differ from those before it.
@@ -252,6 +278,11 @@ impl TextFollower for PathFollower<'_> {
 
     fn leads_there(&self, text: &str) -> Option<f64> {
         self.followed.as_ref().ok().filter(|_| self.knows_scene)?.leads_there(text)
+    }
+
+    fn advice(&self, instruction: &Instruction) -> Vec<String> {
+        let known = self.followed.as_ref().ok().filter(|_| self.knows_scene);
+        known.map(|followed| writing_advice(followed, instruction, (self.evidence, self.memory))).unwrap_or_default()
     }
 }
 
@@ -329,8 +360,8 @@ fn views_ahead(platform: &dyn Platform, path: &Path) -> Result<Vec<View>, Platfo
     path.frames.iter().map(look).collect()
 }
 
-/// Collects the evidence that texts are checked against: labels if the settings want them and the platform has them, else
-/// captions and the finds of the detector of that name, else only the path.
+/// Collects the evidence that texts are checked against: labels if the settings want them and the platform has them, with what models
+/// saw beside them; else captions and the finds of the detector of that name, else only the path.
 fn collect_evidence(
     walk: &ObservedWalk,
     platform: &dyn Platform,
@@ -338,10 +369,14 @@ fn collect_evidence(
     detector: Option<&str>,
 ) -> Result<Evidence, PlatformError> {
     // Collecting labels takes longer than everything else, so they are collected only if they are used.
-    let labels = match sources.labels {
+    let mut labels = match sources.labels {
         true => Evidence::from_labels(&walk.path, &path_panoramas(platform, &walk.path)?),
         false => None,
     };
+    // What a model saw counts beside the labels, which lack much.
+    if let (Some(labels), Some(seen)) = (&mut labels, walk.witnessed().filter(|_| sources.captions)) {
+        labels.add_witnesses(&seen);
+    }
     let without_labels = || match detector.filter(|_| sources.detector && !sources.captions) {
         Some(detector) => Evidence::from_detector(&walk.path, &detector_evidence(&walk.observations, detector)),
         None => walk.evidence(),

@@ -202,6 +202,7 @@ mod tests {
             moves,
             motion: PathMotion::Known,
             source: EvidenceSource::Nothing,
+            has_witnesses: false,
             beyond: crate::EndSurroundings::default(),
         }
     }

@@ -2,7 +2,7 @@
 //! the path's.
 
 use super::new_finding;
-use crate::evidence::{Evidence, EvidenceSource, FrameEvidence};
+use crate::evidence::{Evidence, EvidenceSource, FrameEvidence, is_wide};
 use wayword_core::{CheckFinding, CheckKind, Verdict};
 use wayword_language::{
     lexicon::{ThingClass, find_thing, is_fabric, names_agree, room_name, same_room},
@@ -78,12 +78,6 @@ fn wrong_room(name: &str, near: &[FrameEvidence]) -> Option<(Verdict, String)> {
         true => (Verdict::Fail, format!("the path does not end in {name:?}")),
         false => (Verdict::Unverified, format!("the program cannot check whether the path ends in {name:?}")),
     })
-}
-
-/// Whether the centre of such a thing may be far from a walker that is near it.
-pub(crate) fn is_wide(name: &str) -> bool {
-    let class = find_thing(name).map_or(ThingClass::Unknown, |thing| thing.class);
-    matches!(class, ThingClass::Stairs | ThingClass::Fabric | ThingClass::Floor | ThingClass::Unknown)
 }
 
 /// The thing at which a text stops, where the nearest of its name is known to be far from the end.

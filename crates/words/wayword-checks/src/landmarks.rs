@@ -3,7 +3,7 @@
 
 use super::{findings_or_pass, new_finding, sides};
 use crate::{
-    evidence::{Evidence, EvidenceSource},
+    evidence::{Evidence, EvidenceSource, SeenThing},
     memory::{frames_at_doors, is_door},
 };
 use std::collections::BTreeMap;
@@ -12,6 +12,9 @@ use wayword_language::{
     lexicon::{ThingClass, find_thing, names_agree, same_colour, same_room},
     reading::{EventContent, PlaceLink, PlaceMention, TextReading},
 };
+
+/// How a finding begins that could not decide whether a thing is there. A model that sees may be asked.
+pub const UNDECIDED_PRESENCE: &str = "the program cannot check whether there is";
 
 /// The findings about the places of a text, and the frames that show them.
 pub(super) struct LandmarkFindings {
@@ -80,7 +83,7 @@ fn wrong_presence(
         let verdict = verdict_on_absence(place, evidence, made_up);
         return Some(match verdict {
             Verdict::Fail => (verdict, format!("no frame of the path shows {:?}", place.name)),
-            _ => (verdict, format!("the program cannot check whether there is {:?}", place.name)),
+            _ => (verdict, format!("{UNDECIDED_PRESENCE} {:?}", place.name)),
         });
     }
     if sides::is_side_unknown(place, evidence) {
@@ -90,7 +93,11 @@ fn wrong_presence(
     let side = sides::wrong_side(place, &shown.frames, evidence)?;
     let reason = format!("{:?} is not on the {} where the path passes it", place.name, sides::side_word(side));
     // Captions miss things, so one may be on the other side too. A writer that used only captions cannot know of it.
-    let may_be_missed = evidence.source.leaves_out() && !made_up;
+    let is_unlisted = |at: &usize| {
+        evidence.frames[*at].things.iter().any(|thing| thing.is_unlisted && names_agree(&thing.name, &place.name))
+    };
+    let leaves_out = evidence.source.leaves_out() || shown.frames.iter().any(is_unlisted);
+    let may_be_missed = leaves_out && !made_up;
     Some((if may_be_missed { Verdict::Unverified } else { wrong_unless_elsewhere(shown) }, reason))
 }
 
@@ -122,11 +129,17 @@ fn wrong_colour(place: &PlaceMention, shown: &ShownFrames, evidence: &Evidence) 
         .iter()
         .flat_map(|at| &evidence.frames[*at].things)
         .filter(|thing| names_agree(&thing.name, &place.name));
-    let known: Vec<&String> = things.flat_map(|thing| thing.colour.iter().chain(&thing.more_colours)).collect();
+    let things: Vec<&SeenThing> = things.collect();
+    let is_disputed = || things.iter().any(|thing| thing.disputed_colour.is_some());
+    let known: Vec<&String> = things.iter().flat_map(|thing| thing.colour.iter().chain(&thing.more_colours)).collect();
     // "The brown chair" for a dark brown one is no mistake, nor is "cream" for beige.
     let fits = known.iter().any(|colour| same_colour(colour, claimed));
+    let unverified = |reason: String| Some((Verdict::Unverified, reason));
     match (known.is_empty(), fits) {
         (_, true) => None,
+        (false, false) if is_disputed() => {
+            unverified(format!("labels and the witness give {:?} different colours", place.name))
+        }
         (true, false) if shown.frames.is_empty() => None,
         (true, false) => {
             Some((Verdict::Unverified, format!("the program cannot check whether {:?} is {claimed}", place.name)))
@@ -143,6 +156,9 @@ struct SightingIndex<'a> {
     evidence: &'a Evidence,
     /// By the name of a thing, the frames that show one.
     frames_of_things: BTreeMap<&'a str, Vec<usize>>,
+    /// What pictures show, what belongs to things, and what they are made of ("of a ship", "with a brass knob", "tile"), with the
+    /// frames.
+    details: Vec<(&'a str, usize)>,
     /// The frames on both sides of a door or doorway through which the walk leads.
     doors: Vec<usize>,
 }
@@ -155,7 +171,11 @@ impl<'a> SightingIndex<'a> {
                 frames_of_things.entry(&thing.name).or_default().push(at);
             }
         }
-        Self { evidence, frames_of_things, doors: frames_at_doors(evidence) }
+        let details = evidence.frames.iter().enumerate().flat_map(|(at, frame)| {
+            let looks = |thing: &'a SeenThing| [thing.detail.as_deref(), thing.material.as_deref()];
+            frame.things.iter().flat_map(looks).flatten().map(move |look| (look, at))
+        });
+        Self { evidence, frames_of_things, details: details.collect(), doors: frames_at_doors(evidence) }
     }
 
     /// The frames that show a place, and those that may show it.
@@ -168,6 +188,9 @@ impl<'a> SightingIndex<'a> {
         if place.is_thing {
             let agreeing = self.frames_of_things.iter().filter(|(name, _)| names_agree(name, &place.name));
             frames.extend(agreeing.flat_map(|(_, frames)| frames));
+            frames.extend(
+                self.details.iter().filter(|(detail, _)| tells_of(detail, &place.name)).map(|(_, frame)| frame),
+            );
             unknown.extend(self.evidence.frames_without_things());
             unknown.extend(self.evidence.frames_perhaps_with(&place.name));
         }
@@ -184,6 +207,16 @@ impl<'a> SightingIndex<'a> {
         unknown.retain(|frame| frames.binary_search(frame).is_err());
         ShownFrames { frames, unknown }
     }
+}
+
+/// Whether a look of a thing has a name in it. Of a name that the lexicon lacks ("pink tiles"), its last word counts.
+fn tells_of(look: &str, name: &str) -> bool {
+    let words: Vec<&str> = look.split(' ').collect();
+    let has = |name: &str| {
+        let length = name.split(' ').count();
+        words.windows(length.min(words.len()).max(1)).any(|words| names_agree(&words.join(" "), name))
+    };
+    has(name) || (find_thing(name).is_none() && name.rsplit_once(' ').is_some_and(|(_, last)| has(last)))
 }
 
 /// The last frame, if it shows the place.

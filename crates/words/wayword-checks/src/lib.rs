@@ -59,6 +59,7 @@ pub use evidence::{
     BuildingInventory, EndSurroundings, Evidence, EvidenceSource, FrameEvidence, ListedDistance, NEAR_M,
     PathSurroundings, SeenThing, UnsureSightings,
 };
+pub use landmarks::UNDECIDED_PRESENCE;
 pub use leak::{FORMULA_REFERENCES, LONG_RUN, ReferenceRuns, SHARED_RUN, TextTopic};
 pub use memory::WalkMemory;
 pub use mentioned_parts::parts_from_mentions;
@@ -357,7 +358,8 @@ fn add_worse(findings: &mut Vec<CheckFinding>, wrong: CheckFinding) {
 }
 
 /// The finding of a check without mistakes.
-fn pass_finding(check: CheckKind) -> CheckFinding {
+#[must_use]
+pub fn pass_finding(check: CheckKind) -> CheckFinding {
     CheckFinding { check, verdict: Verdict::Pass, reason: String::new(), span: None }
 }
 

@@ -34,6 +34,7 @@ pub(crate) fn walk(frames: Vec<FrameEvidence>, moves: &[(f64, f64)]) -> Evidence
         moves: moves.iter().map(step).collect(),
         motion: PathMotion::Known,
         source,
+        has_witnesses: false,
         beyond: crate::EndSurroundings::default(),
     }
 }

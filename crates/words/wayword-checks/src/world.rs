@@ -86,6 +86,8 @@ mod tests {
             repairs: 0,
             finished_for: None,
             chosen: None,
+            drafts: Vec::new(),
+            refined: Vec::new(),
             target_undescribed: false,
         }
     }

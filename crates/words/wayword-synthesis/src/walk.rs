@@ -93,6 +93,18 @@ impl ObservedWalk {
         Evidence::from_captions(&self.path, &self.observations)
     }
 
+    /// The evidence that models who saw give; `None` where the captions are made of labels, or name nothing.
+    #[must_use]
+    pub fn witnessed(&self) -> Option<Evidence> {
+        let sightings = self.observations.iter().flat_map(|seen| &seen.looks).flat_map(|look| &look.caption.sightings);
+        // What a detector found has a spot, and it denies without one.
+        let is_by_model = |sighting: &ObjectSighting| {
+            sighting.by != LABELS_ANSWERER_NAME && sighting.spot.is_none() && sighting.witness == WitnessAnswer::Seen
+        };
+        let is_seen = sightings.clone().any(is_by_model);
+        is_seen.then(|| self.evidence()).flatten()
+    }
+
     /// The length of the way from one frame to a later one, metres along the hops.
     pub(crate) fn walked_m(&self, from: usize, to: usize) -> f64 {
         self.moves.get(from..to).unwrap_or_default().iter().map(|step| step.distance_m).sum()

@@ -117,6 +117,18 @@ pub(super) fn name_end(tokens: TokenSlice<'_>, at: usize, known: &BTreeSet<Strin
     named_place_at(tokens, at, known).map(|found| found.to)
 }
 
+/// Whether a word counts paces and names no stairs: "a few steps beyond it".
+fn is_pace(tokens: TokenSlice<'_>, at: usize) -> bool {
+    const ONWARD: [&str; 12] = [
+        "beyond", "past", "further", "farther", "forward", "forwards", "ahead", "away", "more", "back", "after",
+        "before",
+    ];
+    let is_counted = at > 0 && v::FEW.contains(&tokens.word_at(at - 1));
+    let climbs = || (1..=4).any(|back| at >= back && matches!(tokens.word_at(at - back), "up" | "down"));
+    let is_step = matches!(tokens.word_at(at), "step" | "steps" | "pace" | "paces");
+    is_step && is_counted && ONWARD.contains(&tokens.word_at(at + 1)) && !climbs()
+}
+
 /// Whether words that can be a name are not one here: "step" and "turn back" of walking, "light blue", "water the
 /// plant".
 fn is_no_place(tokens: TokenSlice<'_>, at: usize, length: usize) -> bool {
@@ -124,7 +136,7 @@ fn is_no_place(tokens: TokenSlice<'_>, at: usize, length: usize) -> bool {
     if length > 1 {
         return false;
     }
-    if task::is_task_verb(tokens, at) || is_unit(tokens, at) {
+    if task::is_task_verb(tokens, at) || is_unit(tokens, at) || is_pace(tokens, at) {
         return true;
     }
     let after_determiner = at > 0 && (v::DETERMINERS.contains(&word(at - 1)) || v::ADJECTIVES.contains(&word(at - 1)));
@@ -200,8 +212,12 @@ fn unnamed_place_at(tokens: TokenSlice<'_>, at: usize, known: &BTreeSet<String>)
         // "At the bottom hang a right".
         let is_turn = v::TURNING.contains(&first)
             && matches!((word(end + 1), word(end + 2)), ("left" | "right", _) | ("a", "left" | "right"));
+        // "At the top keep straight on".
+        let is_end = |at: usize| v::ABSTRACT.contains(&normal_word(word(at)).as_str());
+        let goes_on = end > at + 1 && v::WALKING.contains(&first) && is_end(end - 1);
         tokens.get(end).is_none_or(|token| !token.is_word())
             || is_verb
+            || goes_on
             || is_turn
             || v::BREAKERS.contains(&word(end))
             || named_place_at(tokens, end, known).is_some()
@@ -217,6 +233,7 @@ fn unnamed_place_at(tokens: TokenSlice<'_>, at: usize, known: &BTreeSet<String>)
         || v::ADJECTIVES.contains(&last)
         || last.ends_with("ly")
         || is_unit(tokens, to - 1)
+        || is_pace(tokens, to - 1)
         || v::floor_number(last).is_some();
     if to == at + 1 || ends_in_name || tells_nothing {
         return None;
@@ -225,9 +242,13 @@ fn unnamed_place_at(tokens: TokenSlice<'_>, at: usize, known: &BTreeSet<String>)
     Some(PlaceCandidate { noun: at + 1, from: at + 1, to, name, is_thing: true, is_room: false })
 }
 
-/// Whether a noun phrase names something in a picture: the horses of "a picture of two horses" are not at the place.
+/// Whether a noun phrase names something in a picture, or far outside: the horses of "a picture of two horses", and the sea of
+/// "a view of the sea", are not at the place.
 fn is_depicted(tokens: TokenSlice<'_>, at: usize) -> bool {
     let word = |back: usize| at.checked_sub(back).map_or("", |at| tokens.word_at(at));
+    if word(1) == "of" && word(2) == "view" {
+        return true;
+    }
     word(1) == "of" && find_thing(&normal_word(word(2))).is_some_and(|thing| thing.class == ThingClass::WallArt)
 }
 

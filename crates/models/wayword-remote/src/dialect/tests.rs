@@ -50,8 +50,15 @@ const SCHEMA: ReplySchema = ReplySchema {
 fn body_for_json(provider: &RemoteProvider) -> Value {
     let sampling = SamplingOptions { temperature: 0.0, max_tokens: 30, seed: 0 };
     let lines = [line(MessageRole::User, "Hi.")];
-    let asked =
-        DialectRequest { provider, model: "m", lines: &lines, sampling: &sampling, schema: Some(SCHEMA), tools: &[], context_tokens: 0 };
+    let asked = DialectRequest {
+        provider,
+        model: "m",
+        lines: &lines,
+        sampling: &sampling,
+        schema: Some(SCHEMA),
+        tools: &[],
+        context_tokens: 0,
+    };
     provider.dialect.to_wire(asked).unwrap().body
 }
 
@@ -91,7 +98,15 @@ const TOOLS: &[ModelTool] = &[ModelTool {
 fn body_with_tools(provider: &RemoteProvider) -> Value {
     let sampling = SamplingOptions { temperature: 0.0, max_tokens: 30, seed: 0 };
     let lines = [line(MessageRole::User, "Hi.")];
-    let asked = DialectRequest { provider, model: "m", lines: &lines, sampling: &sampling, schema: None, tools: TOOLS, context_tokens: 0 };
+    let asked = DialectRequest {
+        provider,
+        model: "m",
+        lines: &lines,
+        sampling: &sampling,
+        schema: None,
+        tools: TOOLS,
+        context_tokens: 0,
+    };
     provider.dialect.to_wire(asked).unwrap().body
 }
 

@@ -218,10 +218,22 @@ fn wrong_setting(status: u16, message: &str, context: FaultContext<'_>) -> Optio
     Some(format!("set {setting} {at}"))
 }
 
-/// The fault of a body that is neither JSON nor a whole stream, under a status of success.
-pub(crate) fn fault_of_odd_body(body: &[u8], context: FaultContext<'_>) -> RemoteFault {
-    let begin = String::from_utf8_lossy(&body[..body.len().min(200)]).trim_start().to_ascii_lowercase();
-    if begin.starts_with("<!doctype") || begin.starts_with("<html") {
+/// The beginning of a body, lower case.
+fn begin_of_body(body: &[u8]) -> String {
+    String::from_utf8_lossy(&body[..body.len().min(200)]).trim_start().to_ascii_lowercase()
+}
+
+/// Whether a body is a page of HTML.
+pub(crate) fn is_html(body: &[u8]) -> bool {
+    let begin = begin_of_body(body);
+    begin.starts_with("<!doctype") || begin.starts_with("<html")
+}
+
+/// The fault of a body that is neither JSON nor a whole stream, under a status of success. `is_wrong_address`: pages of HTML came before
+/// any answer.
+pub(crate) fn fault_of_odd_body(body: &[u8], is_wrong_address: bool, context: FaultContext<'_>) -> RemoteFault {
+    let begin = begin_of_body(body);
+    if is_wrong_address {
         return RemoteFault::Stop {
             reason: format!("{} answers with a page of HTML in place of JSON", context.provider),
             hint: format!(

@@ -47,9 +47,17 @@ fn every_status_and_body_has_its_meaning() {
         (400, r#"{"error":"registry.ollama.ai/library/m:latest does not support tools"}"#, "stop"),
         (400, r#"{"error":"\"m\" does not support thinking"}"#, "stop"),
         (400, r#"{"error":{"message":"invalid temperature: only 1 is allowed for this model"}}"#, "stop"),
-        (500, r#"{"error":{"code":500,"message":"image input is not supported - hint: you may need the mmproj"}}"#, "stop"),
+        (
+            500,
+            r#"{"error":{"code":500,"message":"image input is not supported - hint: you may need the mmproj"}}"#,
+            "stop",
+        ),
         (400, r#"{"error":{"message":"messages[0]: unknown variant `image_url`, expected `text`"}}"#, "stop"),
-        (400, r#"{"error":{"code":400,"message":"request (9412 tokens) exceeds the available context size"}}"#, "final"),
+        (
+            400,
+            r#"{"error":{"code":400,"message":"request (9412 tokens) exceeds the available context size"}}"#,
+            "final",
+        ),
         (408, "", "again"),
         (409, "", "again"),
         (413, "", "final"),
@@ -129,10 +137,11 @@ fn a_fault_of_a_setting_stops_with_the_setting_to_write() {
 
 #[test]
 fn a_page_of_html_stops_and_other_odd_bodies_are_asked_for_again() {
-    let page = fault_of_odd_body(b"\n<!DOCTYPE html><html><title>Sign in</title>", who(None));
+    let page = fault_of_odd_body(b"\n<!DOCTYPE html><html><title>Sign in</title>", true, who(None));
+    assert!(is_html(b"\n<!DOCTYPE html>") && !is_html(b"{}"));
     assert!(matches!(page, RemoteFault::Stop { hint, .. } if hint.contains("base_url")));
-    for body in ["", "{\"choices\":", "data: {\"choices\":[]}\n"] {
-        assert_eq!(kind(&fault_of_odd_body(body.as_bytes(), who(None))), "paid", "{body}");
+    for body in ["", "<html>", "{\"choices\":", "data: {\"choices\":[]}\n"] {
+        assert_eq!(kind(&fault_of_odd_body(body.as_bytes(), false, who(None))), "paid", "{body}");
     }
 }
 

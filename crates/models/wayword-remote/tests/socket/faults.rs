@@ -1,8 +1,9 @@
 //! Faults of every kind.
 
 use crate::{
-    asked, model, run, services,
+    asked, model, run,
     server::{Server, answer, ended, reply},
+    services,
 };
 use std::{
     io::Write,
@@ -218,10 +219,18 @@ fn a_stream_that_nobody_asked_for_is_joined_and_a_page_of_html_stops() {
     let stream_body = "data: {\"choices\":[{\"delta\":{\"content\":\"fi\"}}]}\n\ndata: {\"choices\":[{\"delta\":{\"content\":\"ne\"},\"finish_reason\":\"stop\"}]}\n\ndata: [DONE]\n\n";
     let server = Server::start(move |_, _, stream| reply(stream, 200, "", stream_body));
     assert_eq!(asked(&model(&server, "", &run()), "Well?").unwrap().text, "fine");
-    let page = Server::start(|_, _, stream| reply(stream, 200, "", "<!DOCTYPE html><html><title>Sign in</title></html>"));
+    let page =
+        Server::start(|_, _, stream| reply(stream, 200, "", "<!DOCTYPE html><html><title>Sign in</title></html>"));
     let told = asked(&model(&page, "", &run()), "Well?").unwrap_err();
     assert!(matches!(&told, ModelError::Stopped { hint, .. } if hint.contains("base_url")), "{told:?}");
-    assert_eq!((server.requests().len(), page.requests().len()), (1, 1));
+    assert_eq!((server.requests().len(), page.requests().len()), (1, 2));
+    // In mid-run a page is a passing trouble of a proxy.
+    let trouble = Server::start(|count, _, stream| match count {
+        1 | 2 => reply(stream, 200, "", "<html>502</html>"),
+        _ => reply(stream, 200, "", &answer("fine")),
+    });
+    let model = model(&trouble, "", &run());
+    assert_eq!(["Well?", "And now?"].map(|text| asked(&model, text).unwrap().text), ["fine", "fine"]);
 }
 
 /// A service that counts far fewer tokens than were sent cuts the prompt.

@@ -10,6 +10,7 @@ use super::{
 };
 use serde::Serialize;
 use wayword_core::{ObjectDistinction, PathTarget};
+use wayword_run::run_folder::ItemCalls;
 
 /// Most frames of an item that are shown.
 const MAX_ITEM_FRAMES: usize = 200;
@@ -27,6 +28,8 @@ pub(super) struct ItemView {
     length_m: Option<String>,
     target: Option<String>,
     levels: Option<String>,
+    /// The answers of models that it used.
+    used: Option<String>,
     map: Option<MapView>,
     map_radius: f64,
     map_stop: &'static str,
@@ -57,6 +60,7 @@ impl ItemView {
             scene: path.scene.to_string(),
             target: path.target.as_ref().map(target_words),
             levels: level_words(path.frames.iter().filter(|_| path.motion.is_known()).filter_map(|frame| frame.level)),
+            used: record.walk.used.as_ref().map(used_words),
             map_words: length_m.as_ref().map_or_else(String::new, |length_m| {
                 format!("Map of the path from frame 0 to frame {}, {length_m} m, north up", shown.saturating_sub(1))
             }),
@@ -71,6 +75,12 @@ impl ItemView {
             anchor,
         }
     }
+}
+
+fn used_words(used: &ItemCalls) -> String {
+    let ItemCalls { answers, tokens_in, tokens_out, usd } = used;
+    let usd = if *usd > 0.0 { format!(", ${usd:.4}") } else { String::new() };
+    format!("{answers} answers of models: {tokens_in} tokens in, {tokens_out} out{usd}")
 }
 
 fn level_words(levels: impl Iterator<Item = u32> + Clone) -> Option<String> {

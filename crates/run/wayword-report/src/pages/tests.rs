@@ -70,6 +70,7 @@ fn walk(id: &str) -> WalkRecord {
             edges: vec![[0, 1], [1, 2], [0, 3]],
         },
         has_pictures: false,
+        used: None,
     }
 }
 
@@ -100,6 +101,8 @@ fn instruction(text: &str, words: &[(&str, MentionKind, usize)], findings: Vec<C
             repairs: 1,
             finished_for: None,
             chosen: None,
+            drafts: Vec::new(),
+            refined: Vec::new(),
             target_undescribed: false,
         },
     }
@@ -133,6 +136,7 @@ fn run_of(first: &WalkRecord, instruction: &Instruction) -> tempfile::TempDir {
             reason: "turns: the path turns right there".into(),
             last: Some(last),
             number: 0,
+            drafts: Vec::new(),
         },
         RejectedText {
             item: "c".into(),
@@ -140,6 +144,7 @@ fn run_of(first: &WalkRecord, instruction: &Instruction) -> tempfile::TempDir {
             reason: "no such viewpoint".into(),
             last: None,
             number: 0,
+            drafts: Vec::new(),
         },
     ];
     let config = toml::to_string(&AskedSettings::default().resolve().unwrap()).unwrap();
@@ -354,6 +359,7 @@ fn long_run(items: usize, rejected: &[usize], unverified: &[usize]) -> tempfile:
                 reason,
                 last: Some(text),
                 number: 0,
+                drafts: Vec::new(),
             }));
             continue;
         }

@@ -8,12 +8,15 @@ use super::{
 };
 use serde::Serialize;
 use wayword_core::{
-    CheckFinding, ChosenBy, Instruction, InstructionPart, MentionKind, TextMention, TextProvenance, TextSelection,
-    Verdict,
+    CheckFinding, ChosenBy, Instruction, InstructionPart, MentionKind, RefinedRound, TextMention, TextProvenance,
+    TextSelection, Verdict, WrittenDraft,
 };
 
 /// Most findings of an instruction that are shown.
 const MAX_SHOWN_FINDINGS: usize = 100;
+
+/// Most drafts of an instruction that are shown.
+const MAX_SHOWN_DRAFTS: usize = 32;
 
 /// Most parts of an instruction that are shown.
 const MAX_SHOWN_PARTS: usize = 100;
@@ -37,6 +40,17 @@ pub(super) struct TextView {
     /// The possible meanings of the text, if there are several.
     ambiguity: Option<String>,
     provenance: Option<String>,
+    /// The texts of a model that were not kept.
+    drafts: Vec<DraftView>,
+    /// What writing again after a follower's walk gained.
+    refined: Vec<String>,
+}
+
+/// A text that was not kept.
+#[derive(Debug, Serialize)]
+struct DraftView {
+    text: String,
+    reasons: Vec<String>,
 }
 
 /// A part of an instruction with its frames.
@@ -101,6 +115,8 @@ pub(super) fn text_views(record: &ItemRecord, places: LinkTargets<'_>) -> Vec<Te
         unverified: count_unverified(instruction),
         ambiguity: describe_ambiguity(instruction),
         provenance: Some(describe_provenance(&instruction.provenance)),
+        drafts: draft_views(&instruction.provenance.drafts),
+        refined: instruction.provenance.refined.iter().map(describe_round).collect(),
     });
     let rejected = record.rejected.iter().map(|rejected| TextView {
         style: rejected.style.clone(),
@@ -112,6 +128,8 @@ pub(super) fn text_views(record: &ItemRecord, places: LinkTargets<'_>) -> Vec<Te
         unverified: rejected.last.as_ref().map_or(0, count_unverified),
         ambiguity: rejected.last.as_ref().and_then(describe_ambiguity),
         provenance: rejected.last.as_ref().map(|last| describe_provenance(&last.provenance)),
+        drafts: draft_views(&rejected.drafts),
+        refined: Vec::new(),
     });
     let mut texts: Vec<TextView> = accepted.chain(rejected).collect();
     texts.sort_by(|a, b| a.style.cmp(&b.style));
@@ -226,6 +244,27 @@ fn describe_ambiguity(instruction: &Instruction) -> Option<String> {
         Some(by) => format!("{meanings}; only at its own end there is: {by}"),
         None => meanings,
     })
+}
+
+/// The drafts that the page shows.
+fn draft_views(drafts: &[WrittenDraft]) -> Vec<DraftView> {
+    let view = |draft: &WrittenDraft| DraftView { text: draft.text.clone(), reasons: draft.reasons.clone() };
+    drafts.iter().take(MAX_SHOWN_DRAFTS).map(view).collect()
+}
+
+/// What a round of writing again gained.
+fn describe_round(round: &RefinedRound) -> String {
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let before = percent(round.before);
+    match (round.after, round.kept) {
+        (Some(after), true) => {
+            format!("a follower arrived with {before}, by the text written again with {}", percent(after))
+        }
+        (Some(after), false) => {
+            format!("a follower arrives with {before}; the text written again had {} and was not kept", percent(after))
+        }
+        (None, _) => format!("a follower arrives with {before}; the text written again failed its checks"),
+    }
 }
 
 fn describe_provenance(provenance: &TextProvenance) -> String {

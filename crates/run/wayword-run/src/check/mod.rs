@@ -25,6 +25,7 @@ use crate::{
 use path_texts::{FileText, PathTexts, read_path_texts};
 use rayon::prelude::*;
 use report::CheckReportText;
+use run_texts::RunCaptions;
 use std::{collections::BTreeMap, path::Path as FilePath};
 use styles::CheckStyles;
 use wayword_checks::{
@@ -89,7 +90,7 @@ pub struct CheckOptions<'a> {
     pub calibration: Option<&'a FilePath>,
     /// Whether to report the words that a reader should doubt.
     pub doubts: bool,
-    /// A run with captions that are the evidence where the platform has no labels.
+    /// A run with captions that are evidence: beside the labels of the platform, or alone where it has none.
     pub captions: Option<&'a FilePath>,
 }
 
@@ -160,7 +161,7 @@ struct TextChecker<'a> {
     sources: EvidenceSources,
     calibration: Option<&'a Calibration>,
     /// The captions of a run as evidence, by the ids of its paths.
-    captions: BTreeMap<String, Evidence>,
+    captions: BTreeMap<String, RunCaptions>,
     /// The scenes that were surveyed so far.
     scenes: KnownScenes,
     /// Whether the paths are those of the run that wrote the texts. Then the texts are in a closed world, and their tasks are about the
@@ -222,12 +223,16 @@ impl<'a> TextChecker<'a> {
         let Self { platform, how, lookout, sources, .. } = *self;
         let world = RememberingPlatform::new(platform);
         let views = path_panoramas(&world, &walk.path)?;
-        let labels = if sources.labels { Evidence::from_labels(&walk.path, &views) } else { None };
+        let mut labels = if sources.labels { Evidence::from_labels(&walk.path, &views) } else { None };
+        let captions = self.captions.get(&walk.path.id);
+        if let (Some(labels), Some(seen)) = (&mut labels, captions.filter(|captions| captions.is_by_model)) {
+            labels.add_witnesses(&seen.evidence);
+        }
         let detected = match lookout.filter(|_| labels.is_none() && sources.detector) {
             Some(lookout) => detecting::detector_evidence(lookout, &world, walk)?,
             None => None,
         };
-        let captions = || self.captions.get(&walk.path.id).cloned();
+        let captions = || captions.map(|captions| captions.evidence.clone());
         let known = labels.or(detected).or_else(captions);
         let mut evidence = known.unwrap_or_else(|| Evidence::for_path_alone(&walk.path));
         let source = evidence.source;
@@ -303,6 +308,6 @@ impl<'a> TextChecker<'a> {
             }
             (text.at, shown, checked.findings)
         });
-        Ok((evidence.source.name(), checked.collect()))
+        Ok((evidence.source_name(), checked.collect()))
     }
 }

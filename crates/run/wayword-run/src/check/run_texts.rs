@@ -52,12 +52,20 @@ pub(super) fn check_file(
     let walks = match_walks(texts, run)?;
     // A simulator may be in another state by now, and a command of the user's is not run for a check.
     let is_program = platforms::is_live(&settings.platform) || settings.platform == "process";
-    if source.as_deref() == Some("labels") && !is_program {
+    if source.as_deref().is_some_and(|source| source.starts_with("labels")) && !is_program {
         match platforms::open_platform(&settings) {
             Ok(platform) => {
+                let seen = |(walk, _): &(ObservedWalk, Vec<FileText>)| {
+                    Some((walk.path.id.clone(), RunCaptions::of_walk(walk)?))
+                };
+                let captions = match source.as_deref() {
+                    Some("labels") => BTreeMap::new(),
+                    _ => walks.iter().filter_map(seen).collect(),
+                };
                 let walks: Vec<PathTexts> =
                     walks.into_iter().map(|(walk, texts)| PathTexts { path: walk.path, texts }).collect();
-                let checking = TextChecker { is_own_run: true, ..TextChecker::new(platform.as_ref(), &styles, how) };
+                let checking =
+                    TextChecker { is_own_run: true, captions, ..TextChecker::new(platform.as_ref(), &styles, how) };
                 return checking.check_walks(&walks, output);
             }
             Err(error) => output
@@ -102,7 +110,7 @@ fn check_by_captions(
     let mut report = CheckReport::default();
     for (walk, texts) in walks {
         let evidence = walk.evidence().unwrap_or_else(|| Evidence::for_path_alone(&walk.path));
-        let source = evidence.source.name();
+        let source = evidence.source_name();
         if !report.checked_against.iter().any(|other| other == source) {
             report.checked_against.push(source.to_owned());
         }
@@ -132,16 +140,32 @@ fn check_by_captions(
     report
 }
 
+/// The captions of a walk as evidence.
+pub(super) struct RunCaptions {
+    pub(super) evidence: Evidence,
+    /// Whether a model saw, and they are not made of labels.
+    pub(super) is_by_model: bool,
+}
+
+impl RunCaptions {
+    /// `None` where the captions name nothing.
+    fn of_walk(walk: &ObservedWalk) -> Option<Self> {
+        let witnessed = walk.witnessed();
+        let is_by_model = witnessed.is_some();
+        Some(Self { evidence: witnessed.or_else(|| walk.evidence())?, is_by_model })
+    }
+}
+
 /// The captions of a run as evidence, by the ids of its paths.
 ///
 /// # Errors
 /// When the run cannot be read.
-pub(super) fn read_captions(run: &FilePath) -> Result<BTreeMap<String, Evidence>, CommandError> {
+pub(super) fn read_captions(run: &FilePath) -> Result<BTreeMap<String, RunCaptions>, CommandError> {
     let mut captions = BTreeMap::new();
     lines::each_line(&run.join(file::WALKS), |line| {
         let record: WalkRecord = line.parse()?;
         let walk = ObservedWalk::new(record.path, record.observations);
-        captions.extend(walk.evidence().map(|evidence| (walk.path.id.clone(), evidence)));
+        captions.extend(RunCaptions::of_walk(&walk).map(|seen| (walk.path.id.clone(), seen)));
         Ok(())
     })?;
     Ok(captions)

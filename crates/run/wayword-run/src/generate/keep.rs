@@ -65,6 +65,7 @@ fn write_made_item(
         observations: made.walk.observations,
         originals: item.original_texts().to_vec(),
         has_pictures,
+        used: made.used,
     })?;
     let per_style = made.outcomes.len().div_ceil(styles.len().max(1));
     let names = styles.iter().flat_map(|MeasuredStyle { style, .. }| (0..per_style).map(move |number| (style, number)));
@@ -75,13 +76,14 @@ fn write_made_item(
                 record.extra = extra_fields(&item.path_id(), number);
                 run.instructions.append(&record)?;
             }
-            WritingOutcome::Rejected { last, reason } => {
+            WritingOutcome::Rejected { last, reason, drafts } => {
                 run.rejected.append(&RejectedText {
                     item: item.id(),
                     style: style.name.clone(),
                     reason,
                     last,
                     number,
+                    drafts,
                 })?;
             }
         }

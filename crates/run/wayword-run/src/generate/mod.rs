@@ -91,6 +91,14 @@ fn warn_of_no_effect(settings: &RunSettings, output: &CommandOutput) {
             settings.platform
         ));
     }
+    let cannot_follow = settings.no_route || !settings.evidence.labels || settings.platform == "recording";
+    if settings.candidates > 1 && cannot_follow && settings.roles.write.model_name().is_some() {
+        output.say(format_args!(
+            "warning: {} texts are paid for for each text that is kept, but only the checks can choose between them, because the texts are not \
+             followed (that needs labels of the scene, and no --no-route); --candidates 1 costs less",
+            settings.candidates
+        ));
+    }
 }
 
 /// Makes or continues a run.

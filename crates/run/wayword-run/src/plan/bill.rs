@@ -106,6 +106,12 @@ impl CallLoad {
         }
     }
 
+    /// So many hundredths of this load, rounded.
+    pub(crate) fn share(self, hundredths: u64) -> Self {
+        let of = |count: u64| (count * hundredths + 50) / 100;
+        Self { calls: of(self.calls), tokens_in: of(self.tokens_in), tokens_out: of(self.tokens_out) }
+    }
+
     /// This load, multiplied by a number.
     pub fn times(self, times: u64) -> Self {
         Self { calls: self.calls * times, tokens_in: self.tokens_in * times, tokens_out: self.tokens_out * times }

@@ -19,15 +19,18 @@ use crate::{
 };
 use serde::Serialize;
 use std::fmt;
-use wayword_core::{DialogueExchange, FrameObservation, Path};
+use wayword_core::{
+    Caption, CaptionedView, DialogueExchange, FrameObservation, ObjectSighting, Path, ViewGaze, ViewThird,
+    WitnessAnswer,
+};
 use wayword_synthesis::{
     prompts::{PromptError, PromptManner, Prompts},
     walk::ObservedWalk,
     writer::WritingBrief,
 };
 
-/// The estimated calls of a run. It assumes that dialogues have their usual length, that no question or text is repeated, and
-/// that the ledger is empty.
+/// The estimated calls of a run. It assumes that dialogues have their usual length, that as many texts are written again as usual,
+/// and that the ledger is empty.
 #[derive(Debug, Default, Serialize)]
 pub struct RunEstimate {
     /// Items of the run that have a path.
@@ -43,6 +46,8 @@ pub struct RunEstimate {
     detector: Option<DetectorEstimate>,
     /// One per model.
     models: ModelBill,
+    /// Of a hundred texts of a model, those that are written again for a follower.
+    refined: u64,
     /// The surplus of shards over a queue.
     #[serde(skip_serializing_if = "Option::is_none")]
     shards: Option<ShardSurcharge>,
@@ -108,7 +113,8 @@ impl RunEstimate {
     ) -> Result<Self, CommandError> {
         let settings = &plan.job.settings;
         let prompts = settings_prompts(settings)?;
-        let mut estimate = Self { questions: max_questions(settings), ..Self::default() };
+        let refined = refined_per_hundred(settings);
+        let mut estimate = Self { questions: max_questions(settings), refined, ..Self::default() };
         let (mut run_views, mut chunk_views, mut chunk_sum) =
             (DistinctViews::default(), DistinctViews::default(), DistinctCounts::default());
         let mut writing = CallLoad::default();
@@ -127,6 +133,8 @@ impl RunEstimate {
             }
             writing.add(write_load(&prompts, settings, &plan.styles, &path)?);
         }
+        let repaired = if settings.repairs > 0 { REPAIRS_PER_HUNDRED } else { 0 };
+        writing.add(writing.share(repaired + refined));
         chunk_sum += chunk_views.count_distinct();
         let distinct = run_views.count_distinct();
         estimate.views = distinct.views as usize;
@@ -248,15 +256,73 @@ impl DialogueLoad {
     }
 }
 
-/// The load of writing each text of a path once. Repairs come on top; their number is not known in advance.
+/// Typical things of a frame, which change along the walk.
+const TYPICAL_THINGS: [&str; 20] = [
+    "sofa",
+    "table",
+    "lamp",
+    "armchair",
+    "plant",
+    "mirror",
+    "picture",
+    "bookshelf",
+    "clock",
+    "rug",
+    "bench",
+    "vase",
+    "cabinet",
+    "desk",
+    "curtain",
+    "door",
+    "shelf",
+    "stool",
+    "window",
+    "bed",
+];
+/// Of a hundred texts of a model so many are written again because a check failed, and so many because a follower does not arrive by
+/// them surely. A strong model needs fewer, a small one more.
+const REPAIRS_PER_HUNDRED: u64 = 15;
+const REFINED_PER_HUNDRED: u64 = 30;
+
+/// Of a hundred texts, those that are written again for a follower. Where no labels show the scene, none is followed.
+fn refined_per_hundred(settings: &RunSettings) -> u64 {
+    let follows = settings.refine > 0 && !settings.no_route && settings.evidence.labels;
+    if follows && settings.platform != "recording" { REFINED_PER_HUNDRED } else { 0 }
+}
+
+/// What a model typically says of the frames of a path.
+fn typical_walk(path: &Path) -> ObservedWalk {
+    let seen = |at: usize| {
+        let sighting = |number: usize| ObjectSighting {
+            place: Some([ViewThird::Left, ViewThird::Middle, ViewThird::Right][number % 3]),
+            colour: number.is_multiple_of(2).then(|| ["white", "brown", "grey"][number % 3].to_owned()),
+            is_far: number % 3 == 1,
+            ..ObjectSighting::new(
+                TYPICAL_THINGS[(at / 2 * 3 + number) % TYPICAL_THINGS.len()],
+                WitnessAnswer::Seen,
+                "model",
+            )
+        };
+        let room = ["hallway", "living room", "kitchen"][at / 5 % 3].to_owned();
+        let sightings = (0..TYPICAL_SIGHTINGS).map(sighting).collect();
+        let caption = Caption { room: Some(room), sightings, is_structured: true, ..Caption::default() };
+        let gaze = ViewGaze::quarter_view(path.frames[at].pose.heading);
+        FrameObservation { looks: vec![CaptionedView { gaze, caption }], ..FrameObservation::default() }
+    };
+    ObservedWalk::new(path.clone(), (0..path.frames.len()).map(seen).collect())
+}
+
+/// How many things a typical answer names that the writer can use.
+const TYPICAL_SIGHTINGS: usize = 8;
+
+/// The load of writing each text of a path once.
 fn write_load(
     prompts: &Prompts,
     settings: &RunSettings,
     styles: &[MeasuredStyle],
     path: &Path,
 ) -> Result<CallLoad, PromptError> {
-    let seen = FrameObservation { summary: TYPICAL_CAPTION.to_owned(), ..FrameObservation::default() };
-    let walk = ObservedWalk::new(path.clone(), vec![seen; path.frames.len()]);
+    let walk = typical_walk(path);
     let memory = walk.memory();
     let mut load = CallLoad::default();
     let pictures =
@@ -292,7 +358,9 @@ impl fmt::Display for RunEstimate {
         }
         writeln!(
             f,
-            "estimate, if dialogues end where they usually do, nothing is asked or written twice, and the ledger is empty:"
+            "estimate, if dialogues end where they usually do and the ledger is empty; of 100 texts of a model {REPAIRS_PER_HUNDRED} \
+             usually fail a check and {} are written again for a follower (--refine), which is counted:",
+            self.refined
         )?;
         self.models.fmt(f)?;
         let Some(ShardSurcharge { chunk, views, calls, usd }) = &self.shards else { return Ok(()) };

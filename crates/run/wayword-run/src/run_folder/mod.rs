@@ -34,7 +34,7 @@ pub use config::{
 pub use config::{continued_settings, is_begun, read_run_settings};
 pub use folder_lock::{FolderLock, lock_folder};
 pub use journal::{Journal, read_lines};
-pub use record::{FailedItem, PathMap, RejectedText, WalkRecord, extra_fields, text_file_name, text_name};
+pub use record::{FailedItem, ItemCalls, PathMap, RejectedText, WalkRecord, extra_fields, text_file_name, text_name};
 pub use world_data::WorldData;
 pub(crate) use world_data::scene_hashes;
 

@@ -133,6 +133,10 @@ writing:
         /// Rewrite a text that failed a check, at most this many times. [default: 8; if a model writes, 3]
         #[arg(long, value_name = "N")]
         pub repairs: Option<u32>,
+        /// Write a text that passed again, at most this many times (0 to 5), if a follower does not arrive by it surely: the model is
+        /// told what the text lacks, and the better text is kept. [default: 0; if a model writes, 1]
+        #[arg(long, value_name = "N")]
+        pub refine: Option<u32>,
         /// Write this many texts (1 to 32), and keep the one by which a follower finds the end of the path most surely for its
         /// length. [default: 4; if a model writes, 1]
         #[arg(long, value_name = "N")]

@@ -69,6 +69,9 @@ pub struct RunSettings {
     pub target: TargetMode,
     /// How often a text that failed a check is written again.
     pub repairs: u32,
+    /// How often a text that passed is written again, if a follower does not arrive by it surely.
+    #[serde(default, skip_serializing_if = "is_no_round")]
+    pub refine: u32,
     /// How many texts are written, of which one is kept.
     #[serde(default = "one")]
     pub candidates: u32,
@@ -118,6 +121,11 @@ fn one() -> u32 {
 
 fn one_text() -> usize {
     1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+fn is_no_round(count: &u32) -> bool {
+    *count == 0
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
@@ -185,6 +193,8 @@ const DEFAULT_CANDIDATES: u32 = 4;
 const MAX_CANDIDATES: u32 = 32;
 /// Largest `--repairs`.
 const MAX_REPAIRS: u32 = 100;
+/// Largest `--refine`.
+const MAX_REFINEMENTS: u32 = 5;
 /// Largest `--questions`: each question carries the whole dialogue before it.
 const MAX_QUESTIONS: usize = 100;
 /// Largest `--per-path`: later texts of a path differ ever less from the earlier ones.
@@ -268,6 +278,12 @@ impl AskedSettings {
                 "give fewer: a text that fails that often will not pass later",
             ));
         }
+        if writing.refine.is_some_and(|rounds| rounds > MAX_REFINEMENTS) {
+            return Err(CommandError::usage(
+                format!("--refine is more than {MAX_REFINEMENTS}"),
+                "give fewer: each round is a call, and later ones gain little",
+            ));
+        }
         if writing.candidates.is_some_and(|candidates| !(1..=MAX_CANDIDATES).contains(&candidates)) {
             return Err(CommandError::usage(
                 format!("--candidates is not from 1 to {MAX_CANDIDATES}"),
@@ -296,9 +312,9 @@ impl AskedSettings {
                 "leave --no-pictures out, or let labels see",
             ));
         }
-        let (repairs, candidates) = match roles.write {
-            RolePlayer::Model(_) => (DEFAULT_MODEL_REPAIRS, 1),
-            RolePlayer::Rules | RolePlayer::Labels => (DEFAULT_REPAIRS, DEFAULT_CANDIDATES),
+        let (repairs, candidates, refine) = match roles.write {
+            RolePlayer::Model(_) => (DEFAULT_MODEL_REPAIRS, 1, 1),
+            RolePlayer::Rules | RolePlayer::Labels => (DEFAULT_REPAIRS, DEFAULT_CANDIDATES, 0),
         };
         let perception = writing.perception.unwrap_or_else(|| Perception::default_for(&roles.see));
         let evidence = resolve_evidence(&writing, &roles)?;
@@ -320,6 +336,7 @@ impl AskedSettings {
             questions: writing.questions.unwrap_or(DEFAULT_MAX_QUESTIONS),
             target: writing.target.unwrap_or_default(),
             repairs: writing.repairs.unwrap_or(repairs),
+            refine: writing.refine.unwrap_or(refine),
             candidates: writing.candidates.unwrap_or(candidates),
             per_path: writing.per_path.unwrap_or(1),
             seed: draw.seed.unwrap_or(0),

@@ -7,9 +7,9 @@ use std::{fmt, str::FromStr};
 /// The sources of evidence that texts are checked against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EvidenceSources {
-    /// The platform's labels, where it has them. The other sources are not used then.
+    /// The platform's labels, where it has them.
     pub labels: bool,
-    /// The captions, where labels are not used.
+    /// The captions: beside the labels where a model saw, else alone.
     pub captions: bool,
     /// The finds and misses of a detector, where labels are not used.
     pub detector: bool,

@@ -1,7 +1,9 @@
 //! Makes evidence from captions: which rooms and objects witnesses saw, guessed or denied from each frame.
 
-use super::{Evidence, EvidenceSource, FrameEvidence, SeenThing};
-use std::collections::BTreeSet;
+use super::{
+    Evidence, EvidenceSource, FrameEvidence, SeenThing,
+    identity::{WalkEyes, group_sightings},
+};
 use wayword_core::{
     Caption, CaptionedView, FormOutcome, FrameObservation, ObjectSighting, Path, ViewThird, WitnessAnswer,
 };
@@ -21,7 +23,7 @@ impl Evidence {
                 frame_from_looks(&seen.looks, &off_rad)
             })
             .collect();
-        move_doubtful_things(&mut frames);
+        move_doubtful_things(path, &mut frames);
         let is_known = |frame: &FrameEvidence| {
             let FrameEvidence { rooms, things, perhaps, denied, .. } = frame;
             !(rooms.is_empty() && things.is_empty() && perhaps.things.is_empty() && denied.is_empty())
@@ -38,27 +40,41 @@ impl Evidence {
     }
 }
 
-/// A doubt about a thing counts for this many frames before and after: farther off, another thing of its kind may be meant.
-const DOUBT_FRAMES: usize = 2;
-
-/// Moves doubtful things to the guesses: where witnesses of the frames around were unsure of a name at least as often as they were sure,
-/// it is only perhaps there.
-fn move_doubtful_things(frames: &mut [FrameEvidence]) {
-    let names = |things: &[SeenThing]| things.iter().map(|thing| normalise_name(&thing.name)).collect();
-    let sure: Vec<BTreeSet<String>> = frames.iter().map(|frame| names(&frame.things)).collect();
-    let unsure: Vec<BTreeSet<String>> = frames.iter().map(|frame| names(&frame.perhaps.things)).collect();
-    for (at, frame) in frames.iter_mut().enumerate() {
-        let around = at.saturating_sub(DOUBT_FRAMES)..(at + DOUBT_FRAMES + 1).min(sure.len());
-        let count = |list: &[BTreeSet<String>], name: &str| {
-            list[around.clone()].iter().filter(|names| names.contains(name)).count()
-        };
-        let is_doubtful = |thing: &SeenThing| {
-            let name = normalise_name(&thing.name);
-            count(&unsure, &name) >= count(&sure, &name)
-        };
-        let (mut doubted, kept): (Vec<_>, Vec<_>) = frame.things.drain(..).partition(is_doubtful);
-        frame.things = kept;
-        frame.perhaps.things.append(&mut doubted);
+/// Moves doubtful things to the guesses: of one thing, witnesses were unsure at least as often as they were sure. A doubt about another
+/// thing of its name does not count.
+fn move_doubtful_things(path: &Path, frames: &mut [FrameEvidence]) {
+    let listed = |frame: usize, is_sure: bool, things: &[SeenThing]| {
+        let list: Vec<(usize, bool, SeenThing)> = things.iter().map(|thing| (frame, is_sure, thing.clone())).collect();
+        list
+    };
+    let all: Vec<(usize, bool, SeenThing)> = frames
+        .iter()
+        .enumerate()
+        .flat_map(|(at, frame)| {
+            let mut seen = listed(at, true, &frame.things);
+            seen.extend(listed(at, false, &frame.perhaps.things));
+            seen
+        })
+        .collect();
+    if all.iter().all(|(_, is_sure, _)| *is_sure) {
+        return;
+    }
+    let sightings: Vec<(usize, &SeenThing)> = all.iter().map(|(frame, _, thing)| (*frame, thing)).collect();
+    let mut doubtful = vec![false; all.len()];
+    for group in group_sightings(&sightings, frames, &WalkEyes::along(path)) {
+        let sure = group.members.iter().filter(|member| all[**member].1).count();
+        let is_doubtful = group.members.len() - sure >= sure;
+        group.members.iter().for_each(|member| doubtful[*member] = is_doubtful);
+    }
+    let mut doubtful = doubtful.into_iter();
+    for frame in frames {
+        let guesses = frame.perhaps.things.len();
+        let is_doubtful: Vec<bool> = doubtful.by_ref().take(frame.things.len()).collect();
+        doubtful.by_ref().take(guesses).for_each(drop);
+        let mut kept = is_doubtful.iter();
+        let (moved, sure): (Vec<_>, Vec<_>) = frame.things.drain(..).partition(|_| kept.next() == Some(&true));
+        frame.things = sure;
+        frame.perhaps.things.extend(moved);
     }
 }
 
@@ -106,6 +122,10 @@ fn seen_thing(sighting: &ObjectSighting, look: &CaptionedView, off_rad: f64) -> 
         name: sighting.name.clone(),
         colour: sighting.colour.clone(),
         more_colours: sighting.more_colours.clone(),
+        material: sighting.material.clone(),
+        detail: sighting.detail.clone(),
+        stands_out: sighting.stands_out,
+        turn_slack_rad: if sighting.spot.is_some() { 0.0 } else { look.gaze.horizontal_fov_rad / 6.0 },
         is_far: sighting.is_far,
         several: sighting.several,
         distance_m: sighting.spot.and_then(|spot| spot.distance_m),
@@ -226,5 +246,51 @@ mod tests {
         ] {
             assert_eq!(places(text, false), wanted, "{text}");
         }
+    }
+
+    /// What pictures show and what belongs to a thing may be named, and a verb behind "the top" names nothing.
+    #[test]
+    fn details_of_things_are_there_too() {
+        let with = |name: &str, detail: &str| ObjectSighting {
+            detail: Some(detail.into()),
+            ..ObjectSighting::new(name, WitnessAnswer::Seen, "test")
+        };
+        let mut hall = listed("hallway", &[("bench", WitnessAnswer::Seen)]);
+        hall.sightings.extend([with("door", "with a brass knob"), with("window", "view of the sea")]);
+        let tiled = ObjectSighting { material: Some("tile".into()), ..with("floor", "large") };
+        hall.sightings.push(tiled);
+        let evidence = evidence(vec![hall.clone(), hall]);
+        let style = InstructionStyle { name: "s".into(), ..InstructionStyle::default() };
+        let verdict = |text: &str| check_own_text(text, CheckSubject::closed_world(&evidence, &style, None)).verdict();
+        for text in [
+            "Walk past the door with the brass knob.",
+            "Stop at the window with the view of the sea.",
+            "At the top keep straight on past the bench.",
+            "Walk over the pink tiles to the bench, and stop a few steps beyond it.",
+        ] {
+            assert_ne!(verdict(text), Verdict::Fail, "{text}");
+        }
+        assert_eq!(verdict("Walk past the door with the horn."), Verdict::Fail);
+    }
+
+    /// A doubt about a counter on the right leaves the one on the left as sure as it was seen.
+    #[test]
+    fn a_doubt_about_one_thing_is_none_about_another_of_its_name() {
+        let counter = |place, colour: &str, witness| ObjectSighting {
+            place: Some(place),
+            colour: Some(colour.into()),
+            ..ObjectSighting::new("counter", witness, "test")
+        };
+        let caption = |sightings| Caption { sightings, is_structured: true, ..listed("kitchen", &[]) };
+        let evidence = evidence(vec![
+            caption(vec![
+                counter(ViewThird::Left, "white", WitnessAnswer::Seen),
+                counter(ViewThird::Right, "red", WitnessAnswer::Unsure),
+            ]),
+            caption(vec![counter(ViewThird::Right, "red", WitnessAnswer::Unsure)]),
+        ]);
+        let colours = |things: &[SeenThing]| things.iter().filter_map(|thing| thing.colour.clone()).collect::<Vec<_>>();
+        assert_eq!(colours(&evidence.frames[0].things), ["white"]);
+        assert_eq!(colours(&evidence.frames[0].perhaps.things), ["red"]);
     }
 }

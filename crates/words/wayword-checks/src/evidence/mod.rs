@@ -2,13 +2,16 @@
 //! between frames.
 
 mod building;
+mod from_all_sources;
 mod from_captions;
 mod from_labels;
+mod identity;
 mod surroundings;
 #[cfg(test)]
 mod tests;
 
 use from_captions::denies_name;
+pub(crate) use identity::{SightingGroup, WalkEyes, group_sightings};
 
 pub use building::BuildingInventory;
 pub use surroundings::{ListedDistance, NEAR_M, PathSurroundings};
@@ -27,6 +30,8 @@ pub struct Evidence {
     pub motion: PathMotion,
     /// The source of `frames`.
     pub source: EvidenceSource,
+    /// Whether witnesses added what they saw to the labels ([`Evidence::add_witnesses`]).
+    pub has_witnesses: bool,
     /// Rooms and things around the end that no frame has to show.
     pub beyond: EndSurroundings,
 }
@@ -80,8 +85,22 @@ pub struct SeenThing {
     pub colour: Option<String>,
     /// Its further colours.
     pub more_colours: Vec<String>,
+    /// A colour that another witness gives it.
+    pub disputed_colour: Option<String>,
+    /// Its material, where a witness named it.
+    pub material: Option<String>,
+    /// Its pattern, or what it shows, where a witness named it.
+    pub detail: Option<String>,
+    /// Whether only a witness named it: the platform's labels lack it.
+    pub is_unlisted: bool,
+    /// Whether a witness named it, and a label lists it too.
+    pub is_witnessed: bool,
+    /// Whether a witness thought that it catches the eye.
+    pub stands_out: bool,
     /// Its direction from the frame's heading, radians in (-π, π], positive right.
     pub turn_rad: Option<f64>,
+    /// By how much the direction may be off to either side, radians: a witness names only a third of a view.
+    pub turn_slack_rad: f64,
     /// Its distance from the eye, metres, where it is known: of a label to its centre, of a detector's find over the floor.
     pub distance_m: Option<f64>,
     /// Whether a witness who knows no distance called it far.
@@ -104,6 +123,12 @@ impl FrameEvidence {
 /// Whether a thing of that name is too conspicuous to be overlooked.
 fn stands_out(name: &str) -> bool {
     find_thing(name).is_some_and(|thing| thing.salience >= 3)
+}
+
+/// Whether the centre of such a thing may be far from a walker that is near it.
+pub(crate) fn is_wide(name: &str) -> bool {
+    let class = find_thing(name).map_or(ThingClass::Unknown, |thing| thing.class);
+    matches!(class, ThingClass::Stairs | ThingClass::Fabric | ThingClass::Floor | ThingClass::Unknown)
 }
 
 /// The source of evidence.
@@ -146,7 +171,20 @@ impl Evidence {
         for (evidence, frame) in frames.iter_mut().zip(&path.frames) {
             evidence.level = frame.level.filter(|_| path.motion.is_known());
         }
-        Self { frames, moves: path.moves(), motion: path.motion, source, beyond: EndSurroundings::default() }
+        Self {
+            frames,
+            moves: path.moves(),
+            motion: path.motion,
+            source,
+            has_witnesses: false,
+            beyond: EndSurroundings::default(),
+        }
+    }
+
+    /// The name of its sources in provenance and on the screen.
+    #[must_use]
+    pub fn source_name(&self) -> &'static str {
+        if self.has_witnesses { "labels, captions" } else { self.source.name() }
     }
 
     /// Evidence of a path without labels and captions: only turns and storeys can be checked.

@@ -13,7 +13,7 @@ pub use openings::{RoomOpening, leads_through_a_door};
 pub use stays_and_bends::{RoomStay, StairFlight, WalkBend};
 pub use things::{AHEAD_FRAMES, RememberedThing, ThingGlimpse, ThingPassing};
 
-use crate::{Evidence, EvidenceSource};
+use crate::{Evidence, EvidenceSource, evidence::WalkEyes};
 use std::ops::RangeInclusive;
 use wayword_core::{DVec3, Heading, Path, Side, motion};
 use wayword_language::lexicon::{names_agree, same_room};
@@ -67,7 +67,7 @@ impl WalkMemory {
             false => Vec::new(),
         };
         let headings: Vec<Heading> = path.frames.iter().map(|frame| frame.pose.heading).collect();
-        let things = things::remember_things(evidence, &eyes, &headings);
+        let things = things::remember_things(evidence, &WalkEyes::along(path));
         let bends = stays_and_bends::find_bends(&evidence.moves);
         let mut stays = stays_and_bends::find_stays(evidence);
         let doors = openings::hops_to_doors(&things, &eyes);
@@ -138,7 +138,11 @@ impl WalkMemory {
     pub fn distance_m(&self, thing: &RememberedThing, frame: usize) -> Option<f64> {
         let glimpsed = || thing.glimpse_from(frame).and_then(|glimpse| glimpse.distance_m);
         match (thing.position, self.eyes.get(frame)) {
-            (Some(position), Some(eye)) => Some((position - *eye).truncate().length()),
+            (Some(position), Some(eye)) => {
+                let off = position - *eye;
+                // What lies on another storey is not near.
+                Some(if things::shares_storey(position, *eye) { off.truncate().length() } else { off.length() })
+            }
             _ => glimpsed(),
         }
     }

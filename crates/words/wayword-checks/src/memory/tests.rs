@@ -24,6 +24,7 @@ fn walked(stops: &[(f64, f64, f64)], frames: Vec<FrameEvidence>) -> (Evidence, P
         moves: path.moves(),
         motion: path.motion,
         source: EvidenceSource::Labels,
+        has_witnesses: false,
         beyond: EndSurroundings::default(),
     };
     (evidence, path)
@@ -200,6 +201,7 @@ fn memory_of_an_unknown_motion_has_only_the_order() {
         moves: Vec::new(),
         motion: PathMotion::Unknown,
         source: EvidenceSource::Captions,
+        has_witnesses: false,
         beyond: EndSurroundings::default(),
     };
     let memory = WalkMemory::from_path(&evidence, &path);
@@ -253,10 +255,14 @@ fn distance_and_side_are_taken_from_the_place_of_a_thing() {
     assert_eq!(memory.side_at(sofa, 9), None);
     assert_eq!(memory.seen_from(0).count(), 1);
     assert_eq!(memory.seen_from(1).count(), 0);
-    // Height does not count.
-    let high = SeenThing { position: Some(DVec3::new(3.0, 4.0, 9.0)), ..thing("lamp", Some("2"), 0.0) };
-    let memory = memory_of(&NORTH, vec![vec![high], vec![], vec![], vec![]]);
-    assert_eq!(memory.distance_m(&memory.things[0], 0), Some(5.0));
+    // Height does not count, but another storey is not near, and nothing of it is passed.
+    let at_height = |z: f64| {
+        let lamp = SeenThing { position: Some(DVec3::new(3.0, 4.0, z)), ..thing("lamp", Some("2"), 0.0) };
+        memory_of(&NORTH, vec![vec![lamp], vec![], vec![], vec![]])
+    };
+    assert_eq!(at_height(1.0).distance_m(&at_height(1.0).things[0], 0), Some(5.0));
+    assert!(at_height(9.0).distance_m(&at_height(9.0).things[0], 0).unwrap() > 10.0);
+    assert!(at_height(1.0).things[0].passed.is_some() && at_height(9.0).things[0].passed.is_none());
 }
 
 #[test]
@@ -574,6 +580,7 @@ fn the_nearest_hops_are_those_that_come_nearest_within_the_walk() {
             room: None,
             glimpses: Vec::new(),
             passed: None,
+            ..RememberedThing::default()
         };
         memory.nearest_hops(&seen).map(|(hops, near_m)| (hops, (near_m * 100.0).round()))
     };

@@ -1,13 +1,15 @@
-//! Collects the things of a walk, each once: sightings from several frames are joined if they can be of one thing, and
-//! the thing's position and the side on which one passes it follow from them.
+//! Collects the things of a walk, each once, with the side on which one passes it.
 
-use crate::{Evidence, SeenThing};
+use crate::{
+    Evidence, SeenThing,
+    evidence::{SightingGroup, WalkEyes, group_sightings},
+};
 use std::{
     f64::consts::{FRAC_PI_3, FRAC_PI_4},
     ops::RangeInclusive,
 };
-use wayword_core::{DVec3, Heading, Side};
-use wayword_language::lexicon::{names_agree, normalise_name};
+use wayword_core::{DVec3, Side};
+use wayword_language::lexicon::normalise_name;
 
 /// A picture ahead shows what lies within this angle of the heading, degrees.
 const AHEAD_DEG: f64 = 50.0;
@@ -15,7 +17,7 @@ const AHEAD_DEG: f64 = 50.0;
 pub const AHEAD_FRAMES: usize = 4;
 
 /// A thing that was seen along a walk.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct RememberedThing {
     /// Its name.
     pub name: String,
@@ -23,6 +25,18 @@ pub struct RememberedThing {
     pub object: Option<wayword_core::ObjectId>,
     /// Its colour, where one is known and no glimpse has another.
     pub colour: Option<String>,
+    /// Its further colours.
+    pub more_colours: Vec<String>,
+    /// Its material, where one is known and no glimpse has another.
+    pub material: Option<String>,
+    /// Its pattern, or what it shows.
+    pub detail: Option<String>,
+    /// Whether most glimpses show several of its kind there.
+    pub several: bool,
+    /// Whether a witness thought that it catches the eye.
+    pub stands_out: bool,
+    /// Whether only witnesses named it, and no label lists it.
+    pub is_unlisted: bool,
     /// Where it is, metres, world frame.
     pub position: Option<DVec3>,
     /// The room that it stands in, where labels say it.
@@ -42,6 +56,8 @@ pub struct ThingGlimpse {
     pub turn_rad: Option<f64>,
     /// Its distance, metres.
     pub distance_m: Option<f64>,
+    /// Whether a witness who knows no distance called it far.
+    pub is_far: bool,
 }
 
 /// How one passes a thing.
@@ -104,130 +120,59 @@ pub(super) fn nearest_hops(eyes: &[DVec3], position: DVec3) -> Option<(Vec<usize
     is_within.then(|| (hops.map(|(hop, _)| hop).collect(), nearest_m))
 }
 
-/// Sightings without ids that lie up to this far apart are of one thing, metres.
-const SAME_THING_M: f64 = 0.8;
-/// The same limit where the positions come from measured distances. Those lead to the visible face
-/// of a thing, which is its front from one side and its back from the other.
-const SAME_FRONT_M: f64 = 1.5;
-/// Two directions cross where they differ by more than this, radians.
-const CROSSING_RAD: f64 = 0.17;
-/// Things without a known position are taken to be up to this far from the eye, metres.
-const MAX_RAY_M: f64 = 8.0;
-
-/// A sighting with the eye that had it.
-struct EyeSighting<'a> {
-    /// The frame from which the thing is seen.
-    frame: usize,
-    /// The thing as the frame shows it.
-    thing: &'a SeenThing,
-    /// Its direction, where poses are known.
-    towards: Option<Heading>,
-    /// The position of the eye, where poses are known.
-    eye: Option<DVec3>,
-}
-
-impl EyeSighting<'_> {
-    /// How far away the thing is measured to be, metres, and where it lies by that.
-    fn measured_place(&self) -> Option<(f64, DVec3)> {
-        let (far_m, eye, towards) = (self.thing.distance_m?, self.eye?, self.towards?);
-        Some((far_m, eye + towards.unit_vector() * far_m))
-    }
-}
-
-/// The things of a walk. `eyes` is empty where the motion is unknown.
-pub(super) fn remember_things(evidence: &Evidence, eyes: &[DVec3], headings: &[Heading]) -> Vec<RememberedThing> {
-    let mut groups: Vec<Vec<EyeSighting<'_>>> = Vec::new();
-    for (frame, seen) in evidence.frames.iter().enumerate() {
-        let before = groups.len();
-        for thing in &seen.things {
-            let eye = eyes.get(frame).copied();
-            let turned = |turn_rad: f64| headings.get(frame).map(|heading| heading.turned_by(turn_rad));
-            let sighted = EyeSighting { frame, thing, eye, towards: eye.and(thing.turn_rad).and_then(turned) };
-            // Of one frame, two sightings without ids are two things.
-            let joins = |(at, group): &(usize, &Vec<EyeSighting<'_>>)| match &thing.object {
-                Some(id) => group[0].thing.object.as_ref() == Some(id),
-                None => *at < before && group.iter().all(|other| other.frame != frame) && is_same(group, &sighted),
-            };
-            match groups.iter().enumerate().find(joins).map(|(at, _)| at) {
-                Some(at) => groups[at].push(sighted),
-                None => groups.push(vec![sighted]),
-            }
-        }
-    }
-    groups
-        .into_iter()
-        .filter(|group| !normalise_name(&group[0].thing.name).is_empty())
-        .map(|group| join_sightings(&group, eyes))
-        .collect()
-}
-
-/// Whether a sighting without an id is of the thing that earlier sightings are of: the names agree, no colour differs,
-/// and the directions can meet.
-fn is_same(group: &[EyeSighting<'_>], new: &EyeSighting<'_>) -> bool {
-    let Some(last) = group.last() else { return false };
-    let same_colour = match (&last.thing.colour, &new.thing.colour) {
-        (Some(a), Some(b)) => a == b,
-        _ => true,
+/// The things of a walk. `eyes` has no eyes where the motion is unknown.
+pub(super) fn remember_things(evidence: &Evidence, eyes: &WalkEyes) -> Vec<RememberedThing> {
+    let sightings: Vec<(usize, &SeenThing)> = evidence
+        .frames
+        .iter()
+        .enumerate()
+        .flat_map(|(at, seen)| seen.things.iter().map(move |thing| (at, thing)))
+        .collect();
+    let groups = group_sightings(&sightings, &evidence.frames, eyes);
+    let remember = |group: SightingGroup| {
+        let members: Vec<(usize, &SeenThing)> = group.members.iter().map(|member| sightings[*member]).collect();
+        join_sightings(&members, &group, eyes)
     };
-    if group[0].thing.object.is_some() || !same_colour || !names_agree(&last.thing.name, &new.thing.name) {
-        return false;
-    }
-    if let (Some(a), Some(b)) = (last.thing.position, new.thing.position) {
-        return a.distance(b) <= SAME_THING_M;
-    }
-    if let (Some(a), Some(b)) = (last.measured_place(), new.measured_place()) {
-        return a.1.distance(b.1) <= SAME_FRONT_M;
-    }
-    match (last.eye.zip(last.towards), new.eye.zip(new.towards)) {
-        (Some(a), Some(b)) => can_meet(a, b),
-        // Without directions, a name in consecutive frames means one thing.
-        _ => new.frame - last.frame <= 1,
-    }
-}
-
-/// Whether two rays over the floor can show one thing: they cross ahead of both eyes, or run along one line.
-fn can_meet(a: (DVec3, Heading), b: (DVec3, Heading)) -> bool {
-    match ray_crossing(a, b) {
-        Some((_, far_a, far_b)) => far_a.min(far_b) > 0.0 && far_a.max(far_b) <= MAX_RAY_M,
-        None => a.1.turn_to(b.1).abs() < FRAC_PI_4,
-    }
-}
-
-/// Where two rays cross over the floor, and how far from either eye.
-fn ray_crossing(a: (DVec3, Heading), b: (DVec3, Heading)) -> Option<(DVec3, f64, f64)> {
-    let (along_a, along_b) = (a.1.unit_vector().truncate(), b.1.unit_vector().truncate());
-    let across = along_a.perp_dot(along_b);
-    if across.abs() < libm::sin(CROSSING_RAD) {
-        return None;
-    }
-    let gap = (b.0 - a.0).truncate();
-    let (far_a, far_b) = (gap.perp_dot(along_b) / across, gap.perp_dot(along_a) / across);
-    let at = a.0.truncate() + along_a * far_a;
-    Some((at.extend(a.0.z), far_a, far_b))
+    groups.into_iter().map(remember).filter(|thing| !normalise_name(&thing.name).is_empty()).collect()
 }
 
 /// One remembered thing from all sightings of it.
-fn join_sightings(group: &[EyeSighting<'_>], eyes: &[DVec3]) -> RememberedThing {
-    let first = group[0].thing;
-    let position = thing_position(group);
+fn join_sightings(members: &[(usize, &SeenThing)], group: &SightingGroup, eyes: &WalkEyes) -> RememberedThing {
+    let (_, first) = members[0];
+    let position = group.position;
     let mut glimpses: Vec<ThingGlimpse> = Vec::new();
-    for sighted in group {
-        if glimpses.last().is_none_or(|last| last.frame != sighted.frame) {
-            let by_place = || Some((position? - sighted.eye?).length());
-            let distance_m = sighted.thing.distance_m.or_else(by_place);
-            glimpses.push(ThingGlimpse { frame: sighted.frame, turn_rad: sighted.thing.turn_rad, distance_m });
+    for (frame, thing) in members {
+        if glimpses.last().is_none_or(|last| last.frame != *frame) {
+            let by_place = || Some((position? - eyes.at(*frame)?).length());
+            let distance_m = thing.distance_m.or_else(by_place);
+            let is_far = thing.is_far;
+            glimpses.push(ThingGlimpse { frame: *frame, turn_rad: thing.turn_rad, distance_m, is_far });
         }
     }
-    let mut colours = group.iter().filter_map(|sighted| sighted.thing.colour.as_ref());
-    let colour = colours.next().filter(|first| colours.all(|other| other == *first)).cloned();
-    let passed = match position {
-        Some(position) => passed_at(position, eyes),
-        None => passed_by_glimpses(&glimpses),
+    let of_all = |look: fn(&SeenThing) -> Option<&String>| {
+        let mut looks = members.iter().filter_map(|(_, thing)| look(thing));
+        looks.next().filter(|first| looks.all(|other| other == *first)).cloned()
+    };
+    // Where labels and witnesses give different colours, none is sure.
+    let is_disputed = members.iter().any(|(_, thing)| thing.disputed_colour.is_some());
+    let mut more_colours: Vec<String> = members.iter().flat_map(|(_, thing)| &thing.more_colours).cloned().collect();
+    more_colours.sort();
+    more_colours.dedup();
+    let passed = match (&group.places, position) {
+        (Some(places), _) => agreed_passing(places, &eyes.eyes),
+        (None, Some(position)) => passed_at(position, &eyes.eyes),
+        (None, None) => passed_by_glimpses(&glimpses),
     };
     RememberedThing {
         name: first.name.clone(),
         object: first.object.clone(),
-        colour,
+        colour: of_all(|thing| thing.colour.as_ref()).filter(|_| !is_disputed),
+        more_colours,
+        material: of_all(|thing| thing.material.as_ref()),
+        detail: members.iter().find_map(|(_, thing)| thing.detail.clone()),
+        several: members.iter().filter(|(_, thing)| thing.several).count() * 2 > members.len(),
+        stands_out: members.iter().any(|(_, thing)| thing.stands_out),
+        is_unlisted: members.iter().all(|(_, thing)| thing.is_unlisted),
         position,
         room: first.room.clone(),
         glimpses,
@@ -235,30 +180,19 @@ fn join_sightings(group: &[EyeSighting<'_>], eyes: &[DVec3]) -> RememberedThing 
     }
 }
 
-/// The position of a thing: that of its labels, or else by the distance from the nearest frame, or else where two of
-/// its directions cross.
-fn thing_position(group: &[EyeSighting<'_>]) -> Option<DVec3> {
-    let listed = group.iter().find_map(|sighted| sighted.thing.position);
-    let rays: Vec<(DVec3, Heading)> = group.iter().filter_map(|sighted| sighted.eye.zip(sighted.towards)).collect();
-    let crossed = || {
-        let (first, last) = (rays.first()?, rays.last()?);
-        ray_crossing(*first, *last).filter(|(_, a, b)| a.min(*b) > 0.0 && a.max(*b) <= MAX_RAY_M).map(|(at, ..)| at)
-    };
-    listed.or_else(|| nearest_sighting(group)).or_else(crossed)
-}
-
-/// The place of the sighting from the least distance.
-fn nearest_sighting(group: &[EyeSighting<'_>]) -> Option<DVec3> {
-    let measured = group.iter().filter_map(EyeSighting::measured_place);
-    measured.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place)| place)
-}
-
 /// A thing is passed where it lies at the side of a hop, at most this far before its beginning or after its end, metres.
 const PASSING_SLACK_M: f64 = 0.3;
 /// A thing farther off the way than this is not passed, metres.
 const BESIDE_M: f64 = 4.0;
+/// Things of a storey lie from so much below the eye to so much above it, metres.
+const STOREY_M: [f64; 2] = [-1.9, 1.4];
 /// A thing nearer to the line of the walk than this lies on neither side, metres.
 const IN_THE_WAY_M: f64 = 0.15;
+
+/// Whether a thing at a position is on the storey of an eye.
+pub(super) fn shares_storey(position: DVec3, eye: DVec3) -> bool {
+    (STOREY_M[0]..=STOREY_M[1]).contains(&(position.z - eye.z))
+}
 
 /// Where and on which side one passes a position: at the hop that comes nearest to it.
 fn passed_at(position: DVec3, eyes: &[DVec3]) -> Option<ThingPassing> {
@@ -274,7 +208,8 @@ fn passed_at(position: DVec3, eyes: &[DVec3]) -> Option<ThingPassing> {
             let is_near = (IN_THE_WAY_M..=BESIDE_M).contains(&off_m.abs());
             // Lengths along the walk count the slope of stairs.
             let slope = (hop[1] - hop[0]).length() / length_m;
-            if beside && is_near && best.as_ref().is_none_or(|(nearest, _)| off_m.abs() < *nearest) {
+            let is_here = hop.iter().any(|eye| shares_storey(position, *eye));
+            if beside && is_near && is_here && best.as_ref().is_none_or(|(nearest, _)| off_m.abs() < *nearest) {
                 let side = if off_m > 0.0 { Side::Left } else { Side::Right };
                 let frame = if along_m * 2.0 > length_m { at + 1 } else { at };
                 best = Some((off_m.abs(), ThingPassing { frame, side, along_m: walked_m + along_m * slope }));
@@ -293,4 +228,16 @@ fn passed_by_glimpses(glimpses: &[ThingGlimpse]) -> Option<ThingPassing> {
         let passes = before.abs() < FRAC_PI_3 && now.abs() >= FRAC_PI_3 && now.abs() < 3.0 * FRAC_PI_4;
         passes.then_some(ThingPassing { frame: pair[1].frame, side, along_m: pair[1].frame as f64 })
     })
+}
+
+/// The side on which one passes a thing is known where this share of its places agree.
+const SAME_SIDE_SHARE: f64 = 0.9;
+
+/// How one passes a thing that is at one of these places, where nearly all agree on the side.
+fn agreed_passing(places: &[DVec3], eyes: &[DVec3]) -> Option<ThingPassing> {
+    let mut passings: Vec<ThingPassing> = places.iter().filter_map(|place| passed_at(*place, eyes)).collect();
+    passings.sort_by(|a, b| a.along_m.total_cmp(&b.along_m));
+    let middle = *passings.get(passings.len() / 2)?;
+    let agreeing = passings.iter().filter(|passing| passing.side == middle.side).count();
+    (agreeing as f64 >= SAME_SIDE_SHARE * places.len() as f64).then_some(middle)
 }

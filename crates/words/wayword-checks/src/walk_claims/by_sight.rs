@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     FrameEvidence, SeenThing,
-    goal::is_wide,
+    evidence::is_wide,
     memory::is_any_door,
     sides::{side_word, wrap_angle},
 };

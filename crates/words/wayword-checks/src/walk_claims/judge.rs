@@ -22,17 +22,27 @@ const LENGTH_SLACK_M: f64 = 2.0;
 /// Decides a claim on a stretch, given by its first and its last frame. Witnesses that leave things out can make few claims about places
 /// false; poses alone decide the others.
 pub(super) fn judge_claim(facts: &WalkFacts<'_>, claim: &StepClaim<'_>, stretch: [usize; 2]) -> ClaimOutcome {
-    if !facts.evidence.source.leaves_out() || claim.what.is_motion() {
+    if !is_by_witnesses(facts, claim) || claim.what.is_motion() {
         return decide_claim(facts, claim, stretch);
     }
     if matches!(claim.what, ClaimedFact::EndOf(_)) && facts.knows_rooms() {
         return decide_claim(facts, claim, stretch);
     }
-    judge_by_sight(facts, claim, stretch).unwrap_or_else(|| match decide_claim(facts, claim, stretch) {
+    let decided = decide_claim(facts, claim, stretch);
+    // What labels list decides before what witnesses saw.
+    if !facts.evidence.source.leaves_out() && matches!(decided, Holds(_)) {
+        return decided;
+    }
+    judge_by_sight(facts, claim, stretch).unwrap_or(match decided {
         Fails(_) => IsDoubtful,
         Unknown(_) => Unjudged,
         outcome => outcome,
     })
+}
+
+/// Whether only witnesses, who leave things out, can tell of a claim's things.
+fn is_by_witnesses(facts: &WalkFacts<'_>, claim: &StepClaim<'_>) -> bool {
+    facts.evidence.source.leaves_out() || claim.things.iter().flatten().any(|thing| thing.is_unlisted)
 }
 
 fn decide_claim(facts: &WalkFacts<'_>, claim: &StepClaim<'_>, stretch: [usize; 2]) -> ClaimOutcome {

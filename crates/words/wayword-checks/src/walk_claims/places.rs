@@ -6,7 +6,8 @@ use super::{
     outcome::ClaimOutcome::{self, Fails, Holds, Unjudged, Unknown},
 };
 use crate::{
-    goal::{MAX_STOP_DISTANCE_M as STOP_M, is_wide},
+    evidence::is_wide,
+    goal::MAX_STOP_DISTANCE_M as STOP_M,
     memory::{AHEAD_FRAMES, BEHIND_STOP_M, RememberedThing, RoomStay, ThingPassing, WalkBend, is_way_through},
     sides::{lies_on, side_word, wrap_angle},
 };

@@ -5,7 +5,7 @@ use super::{
     facts::{NEAR_M, WalkFacts},
     outcome::ClaimOutcome::{self, Fails, Holds, Unjudged, Unknown},
 };
-use crate::{goal::is_wide, memory::RememberedThing, sides::wrap_angle};
+use crate::{evidence::is_wide, memory::RememberedThing, sides::wrap_angle};
 use wayword_language::{lexicon::is_fabric, reading::PlaceMention};
 
 /// Two things beside each other have centres at most this far apart, metres.

@@ -96,6 +96,7 @@ fn flat_walk_with(more: &[(&str, [f64; 2])]) -> (Evidence, WalkMemory) {
         moves: path.moves(),
         motion: path.motion,
         source: EvidenceSource::Labels,
+        has_witnesses: false,
         beyond: EndSurroundings::default(),
     };
     let memory = WalkMemory::from_path(&evidence, &path);
@@ -365,4 +366,44 @@ fn by_descriptions_motion_is_bound_to_the_walk_and_places_only_where_witnesses_c
     }
     let by_others = mistakes_by(&walk, &end("stop by the four armchairs"), check_text);
     assert!(by_others.iter().all(|found| found.1 == Verdict::Unverified) && !by_others.is_empty(), "{by_others:?}");
+}
+
+/// A staircase with a landing: four hops up, right and right again on the landing, and on up.
+fn landing_walk() -> (Evidence, WalkMemory) {
+    const CLIMB: [[f64; 3]; 11] = [
+        [0.0, 0.0, 1.5],
+        [0.0, 1.0, 1.5],
+        [0.0, 2.0, 2.0],
+        [0.0, 3.0, 2.5],
+        [0.0, 3.6, 2.8],
+        [0.6, 3.6, 2.8],
+        [0.6, 3.0, 3.1],
+        [0.6, 2.0, 3.6],
+        [0.6, 1.0, 4.1],
+        [0.6, 0.0, 4.1],
+        [0.6, -1.0, 4.1],
+    ];
+    let stop = |at: &[f64; 3]| PathStop { position: DVec3::from(*at), viewpoint: None, level: None };
+    let path = Path { frames: Path::frames_along(CLIMB.iter().map(stop).collect(), None), ..flat_path() };
+    let known = FrameEvidence { rooms: vec!["staircase".to_owned()], knows_things: true, ..FrameEvidence::default() };
+    let (evidence, _) = flat_walk();
+    let evidence = Evidence { frames: vec![known; CLIMB.len()], moves: path.moves(), ..evidence };
+    let memory = WalkMemory::from_path(&evidence, &path);
+    (evidence, memory)
+}
+
+/// A turn on a landing lies within a flight, which other steps tell; where none does, it is left out.
+#[test]
+fn a_turn_on_a_landing_leaves_no_flight_out_that_another_step_tells() {
+    let floors = |text: &str| {
+        let found = mistakes_by(&landing_walk(), text, check_text);
+        found.into_iter().filter(|(check, ..)| *check == CheckKind::Floors).count()
+    };
+    for told in [
+        "Climb the stairs. Turn right on the landing, then turn right again and climb on. Stop at the top.",
+        "Go up the stairs. Turn right and right again. Go straight and stop.",
+    ] {
+        assert_eq!(floors(told), 0, "{told}");
+    }
+    assert!(floors("Go straight. Turn right, then turn right again. Go straight and stop.") > 0);
 }

@@ -33,17 +33,30 @@ pub(super) fn untold_bends<'a>(
     bends
 }
 
-/// The flights of a stretch that its step says nothing of.
+/// The flights of a stretch that its step says nothing of. A turn on a landing lies within a flight that other steps may tell.
 pub(super) fn untold_flights<'a>(
     facts: &WalkFacts<'a>,
     claims: &[StepClaim<'_>],
     stretch: [usize; 2],
 ) -> Vec<&'a StairFlight> {
-    if names_stairs(claims) { Vec::new() } else { facts.flights_on(stretch).collect() }
+    if names_stairs(claims) || turns_on_stairs(facts, claims, stretch) {
+        return Vec::new();
+    }
+    facts.flights_on(stretch).collect()
+}
+
+/// Whether a claim is a turn within a flight.
+fn turns_on_stairs(facts: &WalkFacts<'_>, claims: &[StepClaim<'_>], stretch: [usize; 2]) -> bool {
+    claims.iter().any(|claim| match claim.what {
+        ClaimedFact::Turn { side, .. } => {
+            facts.told_bend(side, stretch).is_some_and(|bend| facts.memory.is_on_stairs(bend))
+        }
+        _ => false,
+    })
 }
 
 /// Whether one of the claims is about stairs.
-fn names_stairs(claims: &[StepClaim<'_>]) -> bool {
+pub(super) fn names_stairs(claims: &[StepClaim<'_>]) -> bool {
     claims.iter().any(|claim| match claim.what {
         ClaimedFact::Climb(_) => true,
         ClaimedFact::Place { place, .. } => is_stairs(&place.name),

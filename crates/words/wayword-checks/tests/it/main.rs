@@ -32,6 +32,7 @@ fn walk(frames: Vec<FrameEvidence>, turns_deg: &[f64]) -> Evidence {
         moves: turns_deg.iter().map(step).collect(),
         motion: PathMotion::Known,
         source: EvidenceSource::Labels,
+        has_witnesses: false,
         beyond: EndSurroundings::default(),
     }
 }

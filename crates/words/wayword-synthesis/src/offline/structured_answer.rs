@@ -35,6 +35,7 @@ pub(super) fn labels_as_json(view: &View, truth: &GroundTruth) -> String {
             "name": if count > 1 { to_plural(&label.name) } else { label.name.clone() },
             "colours": label.colour.iter().collect::<Vec<_>>(),
             "material": "",
+            "detail": "",
             "side": place,
             "distance": far,
             "sure": "sure",

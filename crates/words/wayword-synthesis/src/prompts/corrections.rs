@@ -1,15 +1,19 @@
 //! Explains to the model why its text failed, and what would be right, as far as the walk shows it.
 
-use super::move_words::{frame_name, turn_words};
+use super::{
+    move_words::{frame_name, turn_words},
+    walk_parts::frame_range,
+};
 use crate::writer::{TextComplaint, WritingBrief};
+use wayword_checks::{WalkMemory, memory::RememberedThing};
 use wayword_core::{CheckFinding, CheckKind, ClimbDirection, PathMove, Side, TurnKind, Verdict};
 use wayword_language::{
     lexicon::names_agree,
     reading::{EventContent, read_instruction},
 };
 
-/// Most frames that one correction names as showing a thing.
-const MAX_NAMED_FRAMES: usize = 3;
+/// Most things that one correction names.
+const MAX_NAMED_THINGS: usize = 3;
 
 /// The reasons why a text failed, each with the words concerned and with a correction.
 pub(super) fn refusal_reasons(brief: &WritingBrief<'_>, complaint: &TextComplaint) -> Vec<String> {
@@ -39,7 +43,7 @@ fn describe_right(brief: &WritingBrief<'_>, text: &str, finding: &CheckFinding, 
     }
     match finding.check {
         CheckKind::Turns => Some(describe_turns(brief, text, finding.span)),
-        CheckKind::Floors => Some(describe_climbs(&brief.walk.moves)),
+        CheckKind::Floors => Some(describe_climbs(brief.memory)),
         CheckKind::Landmarks | CheckKind::Order => where_seen(brief, words?),
         CheckKind::Leak => Some("say it in other words".to_owned()),
         CheckKind::Coverage => Some("use plain words for ways, rooms and things".to_owned()),
@@ -67,35 +71,29 @@ fn describe_turns(brief: &WritingBrief<'_>, text: &str, span: Option<[usize; 2]>
 }
 
 /// Where the walk climbs.
-fn describe_climbs(moves: &[PathMove]) -> String {
-    let climbs = moves.iter().enumerate().filter_map(|(frame, step)| {
-        let way = match step.climb() {
-            ClimbDirection::Level => return None,
-            ClimbDirection::Up => "up",
-            ClimbDirection::Down => "down",
-        };
-        Some(format!("it goes {way} stairs from {}", frame_name(frame)))
+fn describe_climbs(memory: &WalkMemory) -> String {
+    let climbs = memory.flights.iter().map(|flight| {
+        let way = if flight.climb == ClimbDirection::Down { "down" } else { "up" };
+        format!("it goes {way} stairs from {} to {}", frame_name(flight.from), frame_name(flight.to))
     });
     let climbs: Vec<String> = climbs.collect();
     if climbs.is_empty() { "the walk stays on one floor".to_owned() } else { climbs.join(", ") }
 }
 
-/// The frames that show the named thing, and how it looks there; advice if none does.
+/// Where the named thing is along the walk, and how it looks; advice if it is nowhere.
 fn where_seen(brief: &WritingBrief<'_>, words: &str) -> Option<String> {
     let name = words.trim_start_matches("the ").trim();
-    let frames = 0..brief.walk.observations.len();
-    let seen = frames.flat_map(|frame| brief.walk.seen_from(frame).map(move |seen| (frame, seen)));
-    let seen = seen.filter(|(_, seen)| names_agree(&seen.sighting.name, name)).take(MAX_NAMED_FRAMES);
-    let seen: Vec<String> = seen
-        .map(|(frame, seen)| {
-            let colour = seen.sighting.colour.as_ref().map_or(String::new(), |colour| format!("{colour} "));
-            let side = match seen.side {
-                Some(Side::Left) => ", on the left",
-                Some(Side::Right) => ", on the right",
-                _ => "",
-            };
-            format!("Frame {frame} shows a {colour}{}{side}", seen.sighting.name)
-        })
-        .collect();
-    Some(if seen.is_empty() { "name something that the frames show".to_owned() } else { seen.join("; ") })
+    let knows_motion = brief.walk.path.motion.is_known();
+    let place = |thing: &RememberedThing| {
+        let colour = thing.colour.as_ref().map_or(String::new(), |colour| format!("{colour} "));
+        let passed = thing.passed.filter(|_| knows_motion).map(|by| {
+            let side = if by.side == Side::Left { "left" } else { "right" };
+            format!("is passed on the {side} at {}", frame_name(by.frame))
+        });
+        let seen = || format!("is seen from {}", frame_range(thing.first_seen(), thing.last_seen()));
+        format!("the {colour}{} {}", thing.name, passed.unwrap_or_else(seen))
+    };
+    let alike = brief.memory.things.iter().filter(|thing| names_agree(&thing.name, name));
+    let places: Vec<String> = alike.take(MAX_NAMED_THINGS).map(place).collect();
+    Some(if places.is_empty() { "name something that the parts show".to_owned() } else { places.join("; ") })
 }

@@ -6,9 +6,9 @@
 
 mod bounds;
 mod corrections;
-mod memory_lines;
 mod move_words;
 pub(crate) mod trial_fill;
+mod walk_parts;
 mod writing;
 
 use minijinja::{Environment, ErrorKind, UndefinedBehavior, context};

@@ -1,47 +1,31 @@
-//! Computes the values that fill the writing prompt: frames, moves, references, constraints.
+//! Computes the values that fill the writing prompt: the parts of the walk, the target, references, constraints.
 
-use super::{
-    corrections::refusal_reasons,
-    memory_lines::remembered_lines,
-    move_words::{move_words, way_overview},
-};
-use crate::{walk::ObservedWalk, writer::WritingBrief};
+use super::{corrections::refusal_reasons, walk_parts::walk_parts};
+use crate::writer::WritingBrief;
 use minijinja::{Value, context};
 use rand::seq::index;
-use wayword_core::{PathTarget, Side, seeded_rng};
+use wayword_core::{ObjectDistinction, PathTarget, Side, seeded_rng};
 use wayword_language::{lexicon::names_agree, text::word_count};
 
 /// Most reference texts of a prompt. A style may have thousands, and more examples do not make a text more alike.
-const MAX_SHOWN_REFERENCES: usize = 24;
-/// Most landmarks that the prompt lists for a frame; further ones are left out.
-const MAX_FRAME_LANDMARKS: usize = 8;
+const MAX_SHOWN_REFERENCES: usize = 10;
 
 /// The variables of the template `write.j2`.
 pub(super) fn writing_context(brief: &WritingBrief<'_>) -> Value {
     let walk = brief.walk;
-    let frames: Vec<Value> = walk
-        .observations
-        .iter()
-        .enumerate()
-        .map(|(at, observation)| {
-            let caption = observation.summary.trim_end_matches('.');
-            context! { caption, landmarks => frame_landmarks(walk, at), move => walk.moves.get(at).map(move_words) }
-        })
-        .collect();
     let pictured: Vec<String> = brief.pictures.iter().map(|picture| format!("Frame {}", picture.frame)).collect();
     let complaints = brief.complaints.iter();
     let complaints: Vec<Value> = complaints
         .map(|complaint| context! { text => complaint.text, reasons => refusal_reasons(brief, complaint) })
         .collect();
     context! {
-        frames,
+        last_frame => walk.path.frames.len().saturating_sub(1),
+        parts => walk_parts(brief),
         pictured,
         complaints,
-        overview => way_overview(&walk.moves),
-        remembered => remembered_lines(brief.memory),
         knows_motion => walk.path.motion.is_known(),
         references => shown_references(brief),
-        target => walk.path.target.as_ref().filter(|_| ends_in_task(brief)).map(|target| target_line(walk, target)),
+        target => walk.path.target.as_ref().filter(|_| ends_in_task(brief)).map(|target| target_line(brief, target)),
         constraints => style_constraints(brief),
         earlier => brief.earlier,
     }
@@ -66,39 +50,45 @@ fn ends_in_task(brief: &WritingBrief<'_>) -> bool {
     brief.style.constraints.ends_in_task || brief.profile.tasks >= 0.5
 }
 
-/// The things of a frame that a text may name, each once, with its colour and side where they are known.
-fn frame_landmarks(walk: &ObservedWalk, frame: usize) -> Vec<String> {
-    let mut names: Vec<&str> = Vec::new();
-    let mut landmarks = Vec::new();
-    for seen in walk.seen_from(frame) {
-        let name = seen.sighting.name.as_str();
-        if landmarks.len() == MAX_FRAME_LANDMARKS || names.iter().any(|other| names_agree(other, name)) {
-            continue;
+/// The target in words: a description that fits no other object, and where it is at the end.
+fn target_line(brief: &WritingBrief<'_>, target: &PathTarget) -> String {
+    let by =
+        |facts: &[ObjectDistinction]| facts.iter().map(ObjectDistinction::to_predicate).collect::<Vec<_>>().join(", ");
+    let mut line = target.name.clone();
+    match target.descriptions.first() {
+        Some(description) if description.leaves == 1 && description.by.is_empty() => {}
+        Some(description) if description.leaves == 1 => {
+            line += &format!(", to be told from others: {}", by(&description.by));
         }
-        names.push(name);
-        let colour = seen.sighting.colour.as_ref().filter(|colour| !name.contains(colour.as_str()));
-        let colour = colour.map_or(String::new(), |colour| format!("{colour} "));
-        let several = if seen.sighting.several { "several " } else { "" };
-        let side = match seen.side {
-            Some(Side::Left) => " (left)",
-            Some(Side::Right) => " (right)",
-            Some(Side::Behind) => " (behind)",
-            Some(Side::Ahead) | None => "",
-        };
-        landmarks.push(format!("{several}{colour}{name}{side}"));
+        Some(description) => {
+            let leaves = description.leaves;
+            line += &format!(", {} (with this, {leaves} objects of the building still fit)", by(&description.by));
+        }
+        None if target.has_namesake => line += &format!(" (others like it are visible; it is {})", by(&target.told_by)),
+        None => {}
     }
-    landmarks
+    line += &target_spot(brief, target);
+    if !brief.memory.things.iter().any(|thing| names_agree(&thing.name, &target.name)) {
+        line += " (nobody described it: name it by this word, and say nothing else of its looks)";
+    }
+    line
 }
 
-/// The target in words for the prompt, with a distinction where other objects of its name are in view.
-fn target_line(walk: &ObservedWalk, target: &PathTarget) -> String {
-    let told_by = target.told_by.first().map(|told_by| format!("it is {}", told_by.to_predicate()));
-    match told_by.filter(|_| target.has_namesake) {
-        Some(told_by) => format!("{} (others like it are visible; {told_by})", target.name),
-        None if !walk.describes_target() => {
-            format!("{} (no description mentions it: name it by this word, and say nothing else of it)", target.name)
-        }
-        None => target.name.clone(),
+/// Where the target is for somebody who arrives at the last frame, where that is known.
+fn target_spot(brief: &WritingBrief<'_>, target: &PathTarget) -> String {
+    let (memory, last) = (brief.known, brief.known.frame_count().saturating_sub(1));
+    let thing = memory.things.iter().find(|thing| thing.object.as_ref() == Some(&target.object));
+    let far_m = thing.and_then(|thing| memory.distance_m(thing, last));
+    let side = thing.and_then(|thing| memory.side_at(thing, last)).filter(|_| brief.walk.path.motion.is_known());
+    let side = side.map(|side| match side {
+        Side::Ahead => "ahead",
+        Side::Left => "on the left",
+        Side::Right => "on the right",
+        Side::Behind => "behind",
+    });
+    match (side, far_m) {
+        (Some(side), Some(far_m)) => format!("; who arrives has it {side}, {far_m:.1} metres away"),
+        _ => String::new(),
     }
 }
 

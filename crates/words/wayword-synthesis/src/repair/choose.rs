@@ -1,8 +1,11 @@
 //! Chooses among several candidate texts of one walk the one by which a follower finds the way most surely.
 
-use super::{InstructionOrder, WritingOutcome, write_until_good};
-use crate::{observe::ObservationRoles, writer::InstructionWriter};
-use wayword_core::{ChosenBy, Instruction, ModelError, TextSelection, Verdict};
+use super::{InstructionOrder, WritingOutcome, refine::write_candidate};
+use crate::{
+    observe::ObservationRoles,
+    writer::{InstructionWriter, RulesWriter},
+};
+use wayword_core::{ChosenBy, Instruction, ModelError, TextSelection, Verdict, WrittenDraft};
 use wayword_language::text::word_count;
 
 /// The cost of a word in natural logs of the probability to arrive: of two texts that lead there equally surely the
@@ -16,29 +19,48 @@ pub(super) fn write_best(
     order: InstructionOrder<'_>,
 ) -> Result<WritingOutcome, ModelError> {
     let mut accepted: Vec<TextCandidate> = Vec::new();
-    let mut rejected: Option<WritingOutcome> = None;
+    let mut rejected: Option<(Option<Instruction>, String)> = None;
     let mut passed = 0;
+    let mut drafts: Vec<WrittenDraft> = Vec::new();
     let all = 0..order.candidates.max(1);
-    for number in order.only.map_or(all, |only| only..only + 1) {
-        match write_until_good(writer, observers, order, number)? {
-            WritingOutcome::Accepted(instruction) => {
+    let numbers: Vec<u32> = order.only.map_or(all, |only| only..only + 1).collect();
+    let write = |number: u32| write_candidate(writer, observers, order, number);
+    for (number, outcome) in numbers.iter().copied().zip(order.together.write_each(&numbers, &write)) {
+        match outcome? {
+            WritingOutcome::Accepted(mut instruction) => {
                 passed += 1;
+                drafts.append(&mut instruction.provenance.drafts);
                 if accepted.iter().all(|other| other.instruction.text != instruction.text) {
                     accepted.push(TextCandidate { number, instruction });
                 }
             }
-            outcome @ WritingOutcome::Rejected { .. } => rejected = rejected.or(Some(outcome)),
+            WritingOutcome::Rejected { last, reason, drafts: mut earlier } => {
+                drafts.append(&mut earlier);
+                rejected = rejected.or(Some((last, reason)));
+            }
         }
     }
+    let texts: Vec<(u32, String)> =
+        accepted.iter().map(|candidate| (candidate.number, candidate.instruction.text.clone())).collect();
     let (best, by) = best_candidate(accepted, order);
     Ok(match (best, rejected) {
         (Some(TextCandidate { number, mut instruction }), _) => {
+            if writer.name() != RulesWriter.name() {
+                let others = texts.into_iter().filter(|(other, _)| *other != number);
+                let reasons = vec!["another candidate was chosen".to_owned()];
+                drafts.extend(others.map(|(candidate, text)| WrittenDraft {
+                    text,
+                    candidate,
+                    reasons: reasons.clone(),
+                }));
+            }
+            instruction.provenance.drafts = drafts;
             let chosen = TextSelection { among: order.candidates, passed, number, by };
             instruction.provenance.chosen = (order.candidates > 1).then_some(chosen);
             WritingOutcome::Accepted(instruction)
         }
-        (None, Some(rejected)) => rejected,
-        (None, None) => WritingOutcome::Rejected { last: None, reason: "no text was written".to_owned() },
+        (None, Some((last, reason))) => WritingOutcome::Rejected { last, reason, drafts },
+        (None, None) => WritingOutcome::Rejected { last: None, reason: "no text was written".to_owned(), drafts },
     })
 }
 
@@ -105,6 +127,10 @@ mod tests {
 
         fn leads_there(&self, text: &str) -> Option<f64> {
             (!text.contains("sofa")).then(|| 0.2 + 0.3 * text.matches("lamp").count() as f64)
+        }
+
+        fn advice(&self, _: &Instruction) -> Vec<String> {
+            Vec::new()
         }
     }
 

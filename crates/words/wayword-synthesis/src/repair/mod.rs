@@ -1,18 +1,27 @@
 //! Writes an instruction, checks it, and writes it again with the reasons where a check failed. If several candidates
 //! are written, the one that a follower finds the way by most surely is chosen.
+//!
+//! - `attempts`: one candidate, written until it passes.
+//! - `questions`: asks the model that sees about what the checks could not decide.
+//! - `refine`: writes a text again by which a follower does not arrive.
+//! - `choose`: the best of several candidates.
 
+mod attempts;
 mod choose;
+mod questions;
+mod refine;
 
 use crate::{
     dialogue::DialogueMode,
     observe::ObservationRoles,
     style::StyleProfile,
     walk::ObservedWalk,
-    writer::{FramePicture, InstructionWriter, RulesWriter, TextComplaint, WriteError, WritingBrief},
+    writer::{FramePicture, InstructionWriter, TextComplaint, WritingBrief},
 };
 use wayword_checks::{CheckSubject, Evidence, TextFindings, WalkMemory, check_own_text};
 use wayword_core::{
-    CheckFinding, CheckKind, Instruction, InstructionStyle, ModelError, TextAmbiguity, TextProvenance, Verdict, seed,
+    CheckFinding, CheckKind, Instruction, InstructionStyle, ModelError, TextAmbiguity, TextProvenance, Verdict, View,
+    WrittenDraft, seed,
 };
 use wayword_language::text::split_words;
 
@@ -47,10 +56,37 @@ pub struct InstructionOrder<'a> {
     pub earlier: &'a [String],
     /// Pictures of frames, for a writer that sees.
     pub pictures: &'a [FramePicture],
+    /// The view ahead of each frame, for questions to a model that sees; empty where none sees.
+    pub views: &'a [View],
+    /// How often a text that passed is written again at most, if the follower does not arrive by it surely.
+    pub refinements: u32,
+    /// Writes several candidates at the same time.
+    pub together: &'a dyn WriteTogether,
+}
+
+/// Writes several candidates at the same time, or one after the other.
+pub trait WriteTogether: Sync {
+    /// Calls `write` with each of the numbers. The results are in the order of the numbers; after an error the last ones
+    /// may be missing.
+    fn write_each(&self, numbers: &[u32], write: &CandidateWriting<'_>) -> Vec<CandidateResult>;
+}
+
+/// Writes the candidate of a number.
+pub type CandidateWriting<'a> = dyn Fn(u32) -> CandidateResult + Sync + 'a;
+/// The outcome of a candidate.
+pub type CandidateResult = Result<WritingOutcome, ModelError>;
+
+/// Writes candidates one after the other.
+pub struct OneByOne;
+
+impl WriteTogether for OneByOne {
+    fn write_each(&self, numbers: &[u32], write: &CandidateWriting<'_>) -> Vec<CandidateResult> {
+        numbers.iter().map(|number| write(*number)).collect()
+    }
 }
 
 /// Follows texts on the map around their path.
-pub trait TextFollower {
+pub trait TextFollower: Sync {
     /// Follows a checked text. Adds a finding if the text leads elsewhere, and returns how many ends and objects the
     /// text may mean.
     fn follow(&self, text: &str, checked: &mut TextFindings) -> TextAmbiguity;
@@ -59,6 +95,10 @@ pub trait TextFollower {
     /// follower than [`Self::follow`], so that the text is not judged by the one that chose it. `None` if the text
     /// cannot be followed.
     fn leads_there(&self, text: &str) -> Option<f64>;
+
+    /// What a text lacks for a walker to arrive by it, in sentences for its writer: parts of the walk that no words
+    /// tell, and words that fit other ways as well.
+    fn advice(&self, instruction: &Instruction) -> Vec<String>;
 }
 
 /// The writer of an instruction, and the one that takes over if it fails.
@@ -82,6 +122,8 @@ pub enum WritingOutcome {
         last: Option<Instruction>,
         /// The checks that it fails, with the reasons.
         reason: String,
+        /// The texts of a model before it.
+        drafts: Vec<WrittenDraft>,
     },
 }
 
@@ -108,8 +150,10 @@ pub fn write_and_repair(
     let (WritingOutcome::Rejected { .. }, Some(finisher)) = (&first, writers.finisher) else { return Ok(first) };
     let more_repairs = InstructionOrder { repairs: order.repairs.max(MIN_FINISHER_REPAIRS), ..order };
     let finished = choose::write_best(finisher, observers, more_repairs)?;
+    let WritingOutcome::Rejected { drafts, .. } = &first else { return Ok(first) };
     Ok(match finished {
         WritingOutcome::Accepted(mut instruction) => {
+            instruction.provenance.drafts.clone_from(drafts);
             instruction.provenance.finished_for = Some(writers.writer.name().to_owned());
             WritingOutcome::Accepted(instruction)
         }
@@ -120,50 +164,6 @@ pub fn write_and_repair(
 /// Least number of repairs that a finisher by rules may make. They cost nothing, so the limit for a model does not
 /// apply.
 const MIN_FINISHER_REPAIRS: u32 = 8;
-
-/// Lets one writer write until a text passes; `candidate` is the number of the candidate.
-fn write_until_good(
-    writer: &dyn InstructionWriter,
-    observers: ObservationRoles<'_>,
-    order: InstructionOrder<'_>,
-    candidate: u32,
-) -> Result<WritingOutcome, ModelError> {
-    let mut complaints: Vec<TextComplaint> = Vec::new();
-    let mut least_bad: Option<Instruction> = None;
-    for repairs in 0..=order.repairs {
-        let text = match writer.write(&brief_for_attempt(order, candidate, &complaints)) {
-            Ok(text) if has_same_words(&text, order.earlier) => {
-                complaints
-                    .push(unusable_complaint(text, "this way already has this text: write another one".to_owned()));
-                continue;
-            }
-            Ok(text) => text,
-            Err(error @ WriteError::NoObject) => {
-                return Ok(WritingOutcome::Rejected { last: least_bad, reason: error.to_string() });
-            }
-            Err(WriteError::Unusable { text, reason }) => {
-                complaints.push(unusable_complaint(text, reason));
-                continue;
-            }
-            Err(WriteError::Model(error)) => return Err(error),
-        };
-        let instruction = check_text(text, text_provenance(writer, observers, order, repairs), order);
-        // Attempts by rules are free, so they go on until every check passes. A model only writes again what failed a
-        // check.
-        let good_enough = if writer.name() == RulesWriter.name() { Verdict::Pass } else { Verdict::Unverified };
-        if verdict_on_words(&instruction.findings) <= good_enough {
-            return Ok(WritingOutcome::Accepted(instruction));
-        }
-        complaints.push(TextComplaint { text: instruction.text.clone(), findings: instruction.findings.clone() });
-        if least_bad.as_ref().is_none_or(|before| instruction.verdict < before.verdict) {
-            least_bad = Some(instruction);
-        }
-    }
-    Ok(match least_bad {
-        Some(instruction) if instruction.verdict == Verdict::Unverified => WritingOutcome::Accepted(instruction),
-        last => WritingOutcome::Rejected { reason: failure_reasons(last.as_ref(), &complaints), last },
-    })
-}
 
 /// The verdict of the checks that other words could change: without a map, no words make a route known.
 fn verdict_on_words(findings: &[CheckFinding]) -> Verdict {
@@ -185,7 +185,9 @@ fn brief_for_attempt<'a>(
         0 => order.seed,
         number => seed::derive_seed(order.seed, &["text", &number.to_string()]),
     };
-    WritingBrief { candidate, complaints, earlier, pictures, ..WritingBrief::new(walk, memory, style, profile, seed) }
+    let known = order.evidence_memory;
+    let brief = WritingBrief::new(walk, memory, style, profile, seed);
+    WritingBrief { known, candidate, complaints, earlier, pictures, ..brief }
 }
 
 /// Whether one of the earlier texts has the same words.
@@ -222,15 +224,6 @@ fn check_text(text: String, provenance: TextProvenance, order: InstructionOrder<
     }
 }
 
-/// The checks that the best text fails, with the reasons; if there is no text, the reason why the last reply was
-/// unusable.
-fn failure_reasons(best: Option<&Instruction>, complaints: &[TextComplaint]) -> String {
-    let unusable = || complaints.last().map_or(&[][..], |complaint| &complaint.findings);
-    let findings = best.map_or_else(unusable, |instruction| &instruction.findings);
-    let failed = findings.iter().filter(|finding| finding.verdict == Verdict::Fail);
-    failed.map(|finding| format!("{}: {}", finding.check.name(), finding.reason)).collect::<Vec<_>>().join("; ")
-}
-
 /// Who asked, answered, summarised and wrote, with the seed and the hashes of the inputs.
 fn text_provenance(
     writer: &dyn InstructionWriter,
@@ -255,13 +248,15 @@ fn text_provenance(
         detector: observers.detector.map(str::to_owned),
         summariser: summariser.to_owned(),
         writer: writer.name().to_owned(),
-        checked_against: order.evidence.source.name().to_owned(),
+        checked_against: order.evidence.source_name().to_owned(),
         seed: order.seed,
         style_hash: order.style_hash.to_owned(),
         prompts_hash: observers.prompts_hash.map(str::to_owned),
         repairs,
         finished_for: None,
         chosen: None,
+        drafts: Vec::new(),
+        refined: Vec::new(),
         target_undescribed: !order.walk.describes_target(),
     }
 }

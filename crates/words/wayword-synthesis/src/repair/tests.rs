@@ -4,12 +4,13 @@ use crate::{
     offline::LabelAnswerer,
     style::built_in,
     writer::RulesWriter,
+    writer::WriteError,
 };
 use proptest::prelude::*;
 use std::sync::{Arc, Mutex};
 use wayword_core::{
-    Caption, CaptionedView, DVec3, FrameObservation, Image, ObjectSighting, Path, PathMotion, SceneId, ViewGaze,
-    ViewThird, WitnessAnswer, path::PathStop,
+    Caption, CaptionedView, DVec3, FrameObservation, Image, ObjectSighting, Path, PathMotion, SceneId, ViewAnswerer,
+    ViewGaze, ViewQuestion, ViewThird, WitnessAnswer, path::PathStop,
 };
 
 /// A writer that gives prepared texts in their order, and counts the complaints that it gets.
@@ -86,6 +87,9 @@ pub(super) fn order<'a>(
         follower: None,
         earlier: &[],
         pictures: &[],
+        views: &[],
+        refinements: 0,
+        together: &OneByOne,
     }
 }
 
@@ -170,7 +174,7 @@ fn finisher_by_rules_takes_over_and_is_recorded() {
 #[test]
 fn without_a_finisher_it_is_rejected_with_the_reason() {
     let (outcome, _) = outcome(vec![said(WITH_A_PIANO)], false, 0);
-    let WritingOutcome::Rejected { last, reason } = outcome.unwrap() else { panic!("it was accepted") };
+    let WritingOutcome::Rejected { last, reason, .. } = outcome.unwrap() else { panic!("it was accepted") };
     assert!(reason.contains("piano") && last.unwrap().text == WITH_A_PIANO, "{reason}");
 }
 
@@ -178,7 +182,7 @@ fn without_a_finisher_it_is_rejected_with_the_reason() {
 fn an_empty_text_is_rejected_with_the_reason() {
     let empty = || Err(WriteError::Unusable { text: String::new(), reason: "it was empty".into() });
     let (outcome, _) = outcome(vec![empty(), empty()], false, 1);
-    let WritingOutcome::Rejected { last: None, reason } = outcome.unwrap() else { panic!("there is a text") };
+    let WritingOutcome::Rejected { last: None, reason, .. } = outcome.unwrap() else { panic!("there is a text") };
     assert!(reason.contains("it was empty"), "{reason}");
 }
 
@@ -365,4 +369,134 @@ proptest! {
             prop_assert_eq!(stays, sights.len() == 1, "{}", text);
         }
     }
+}
+
+/// An answerer of yes and no about pictures, which keeps its questions.
+struct YesOrNo {
+    answer: &'static str,
+    asked: Mutex<Vec<String>>,
+}
+
+impl ViewAnswerer for YesOrNo {
+    fn name(&self) -> &str {
+        "test/eye"
+    }
+
+    fn answer_questions(&self, asks: &[ViewQuestion<'_>]) -> Vec<Result<wayword_core::AnswerText, ModelError>> {
+        let mut asked = self.asked.lock().unwrap();
+        asked.extend(asks.iter().map(|ask| ask.question.to_owned()));
+        asks.iter().map(|_| Ok(self.answer.to_owned())).collect()
+    }
+}
+
+/// The outcome of these texts where a witness was unsure of a mirror beside the lamp, and answers this when it is asked.
+fn asked_about_a_mirror(texts: &[&str], answer: &'static str) -> (WritingOutcome, Vec<String>) {
+    let mut walk = walk();
+    let mirror = ObjectSighting {
+        place: Some(ViewThird::Left),
+        ..ObjectSighting::new("mirror", WitnessAnswer::Unsure, "test/eye")
+    };
+    walk.observations[1].looks[0].caption.sightings.push(mirror);
+    let (evidence, memory) = (walk.evidence().unwrap(), walk.memory());
+    let style = built_in("r2r").unwrap();
+    let profile = StyleProfile::for_style(&style);
+    let image = Arc::new(Image::new(1, 1, vec![0; 3]).unwrap());
+    let view = |frame: &wayword_core::Frame| View::new(frame.pose, 1.5, Some(Arc::clone(&image)), None);
+    let views: Vec<View> = walk.path.frames.iter().map(view).collect();
+    let answerer = YesOrNo { answer, asked: Mutex::default() };
+    let (asker, labels) = (RulesAsker::default(), LabelAnswerer::default());
+    let observers = ObservationRoles { answerer: &answerer, ..observers(&asker, &labels) };
+    let order = InstructionOrder { views: &views, repairs: 1, ..order(&walk, &memory, &evidence, &style, &profile) };
+    let writer = Scripted::new(texts.iter().map(|text| said(text)).collect());
+    let outcome = write_and_repair(WriterPair { writer: &writer, finisher: None }, observers, order).unwrap();
+    (outcome, answerer.asked.into_inner().unwrap())
+}
+
+const PAST_A_MIRROR: &str = "Walk to the mirror and turn right. Stop at the sink.";
+
+#[test]
+fn what_the_checks_cannot_decide_is_asked_of_the_model_that_sees() {
+    let (outcome, asked) = asked_about_a_mirror(&[PAST_A_MIRROR], "Yes, on the left.");
+    let WritingOutcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
+    assert_eq!((asked, instruction.provenance.drafts.len()), (vec!["Is there a mirror?".to_owned()], 0));
+    let landmarks = instruction.findings.iter().filter(|finding| finding.check == CheckKind::Landmarks);
+    assert_eq!(landmarks.map(|finding| finding.verdict).collect::<Vec<_>>(), [Verdict::Pass]);
+    // What it denies is written again, and the draft is kept with its reason.
+    let (outcome, _) = asked_about_a_mirror(&[PAST_A_MIRROR, GOOD], "No, there is no mirror.");
+    let WritingOutcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
+    assert_eq!((instruction.text.as_str(), instruction.provenance.drafts[0].text.as_str()), (GOOD, PAST_A_MIRROR));
+    assert!(instruction.provenance.drafts[0].reasons[0].contains("shows no mirror"), "{instruction:?}");
+    // An answer that says nothing leaves it as it is.
+    let (outcome, _) = asked_about_a_mirror(&[PAST_A_MIRROR], "I am not sure.");
+    let WritingOutcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
+    assert_eq!(instruction.verdict, Verdict::Unverified);
+}
+
+/// A follower that arrives the more surely the more words a text has, and wants the lamp.
+struct LongTexts;
+
+impl TextFollower for LongTexts {
+    fn follow(&self, _: &str, _: &mut TextFindings) -> TextAmbiguity {
+        TextAmbiguity { objects: 1, ..TextAmbiguity::default() }
+    }
+
+    fn leads_there(&self, text: &str) -> Option<f64> {
+        Some(text.split(' ').count() as f64 / 20.0)
+    }
+
+    fn advice(&self, _: &Instruction) -> Vec<String> {
+        vec!["no words tell where the lamp is".to_owned()]
+    }
+}
+
+#[test]
+fn a_text_by_which_a_follower_does_not_arrive_is_written_again_and_the_better_one_kept() {
+    let walk = walk();
+    let (evidence, memory) = (walk.evidence().unwrap(), walk.memory());
+    let style = built_in("r2r").unwrap();
+    let profile = StyleProfile::for_style(&style);
+    const SHORT: &str = "Walk on and turn right. Stop at the sink.";
+    for (second, kept, after) in [
+        (GOOD, GOOD, Some(14.0 / 20.0)),
+        ("Walk and turn right. Stop.", SHORT, Some(5.0 / 20.0)),
+        (WITH_A_PIANO, SHORT, None),
+    ] {
+        let order = InstructionOrder {
+            follower: Some(&LongTexts),
+            refinements: 1,
+            ..order(&walk, &memory, &evidence, &style, &profile)
+        };
+        let (asker, labels) = (RulesAsker::default(), LabelAnswerer::default());
+        let writer = Scripted::new(vec![said(SHORT), said(second)]);
+        let writers = WriterPair { writer: &writer, finisher: None };
+        let outcome = write_and_repair(writers, observers(&asker, &labels), order).unwrap();
+        let WritingOutcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
+        assert_eq!(instruction.text, kept);
+        let round = instruction.provenance.refined[0];
+        assert_eq!((round.before, round.after, round.kept), (9.0 / 20.0, after, kept == GOOD), "{second}");
+        assert_eq!(instruction.provenance.drafts.len(), 1);
+        assert_eq!(writer.complaints.into_inner().unwrap(), [0, 1]);
+    }
+}
+
+#[test]
+fn candidates_that_were_not_chosen_are_kept_as_drafts() {
+    let walk = walk();
+    let (evidence, memory) = (walk.evidence().unwrap(), walk.memory());
+    let style = built_in("r2r").unwrap();
+    let profile = StyleProfile::for_style(&style);
+    let order = InstructionOrder {
+        candidates: 2,
+        follower: Some(&LongTexts),
+        ..order(&walk, &memory, &evidence, &style, &profile)
+    };
+    let (asker, labels) = (RulesAsker::default(), LabelAnswerer::default());
+    let writer = Scripted::new(vec![said("Walk on and turn right. Stop at the sink."), said(WITH_A_PIANO), said(GOOD)]);
+    let writers = WriterPair { writer: &writer, finisher: None };
+    let outcome = write_and_repair(writers, observers(&asker, &labels), order).unwrap();
+    let WritingOutcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
+    let drafts = &instruction.provenance.drafts;
+    assert_eq!(instruction.text, GOOD);
+    assert_eq!(drafts.iter().map(|draft| draft.candidate).collect::<Vec<_>>(), [1, 0]);
+    assert!(drafts[0].reasons[0].contains("piano") && drafts[1].reasons[0].contains("another"), "{drafts:?}");
 }

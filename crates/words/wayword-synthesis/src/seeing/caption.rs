@@ -1,6 +1,6 @@
 //! Turns a structured answer about a view into a caption with sightings, by rules.
 
-use super::read_answer::{ViewReading, ViewThing};
+use super::read_answer::{ViewReading, ViewThing, is_everywhere};
 use crate::dialogue::caption_from_sightings;
 use wayword_core::{Caption, ObjectSighting, ViewThird, WayOut, WitnessAnswer};
 use wayword_language::{
@@ -36,6 +36,7 @@ fn thing_sightings<'a>(thing: &'a ViewThing, by: &'a str) -> impl Iterator<Item 
             colour: colours.next(),
             more_colours: colours.collect(),
             material: thing.reading.material.clone(),
+            detail: thing.reading.detail.clone(),
             is_far: thing.is_far,
             stands_out: thing.stands_out,
             several: thing.reading.several,
@@ -52,8 +53,10 @@ pub(crate) fn caption_text(
     sightings: &[ObjectSighting],
     ways: &[WayOut],
 ) -> String {
+    // Walls, floors and ceilings are in every view, so words about the view name them only where they mark the place.
+    let is_told = |sighting: &&ObjectSighting| sighting.stands_out || !is_everywhere(&sighting.name);
     let mut named: Vec<ObjectSighting> =
-        sightings.iter().filter(|sighting| sighting.witness == WitnessAnswer::Seen).cloned().collect();
+        sightings.iter().filter(|sighting| sighting.witness == WitnessAnswer::Seen).filter(is_told).cloned().collect();
     named.sort_by_key(|sighting| (!sighting.stands_out, sighting.is_far));
     named.truncate(MAX_NAMED_THINGS);
     named.extend(sightings.iter().filter(|sighting| sighting.witness == WitnessAnswer::Denied).cloned());

@@ -3,7 +3,7 @@
 
 use crate::dialogue::colour_at;
 use wayword_language::{
-    answers::{ANYTHING, BUNCHES, GUESSING, MATERIALS, NO_OBJECTS, NUMBERS, QUALITIES, TELLS_NOTHING},
+    answers::{ANYTHING, BUNCHES, GUESSING, MATERIALS, NO_OBJECTS, NUMBERS, PATTERNS, QUALITIES, TELLS_NOTHING},
     lexicon::{find_thing, is_room, is_thing, means_several, normalise_name, to_singular},
     reading::vocabulary::{ABSTRACT, ADJECTIVES, BREAKERS},
 };
@@ -12,6 +12,8 @@ use wayword_language::{
 const MAX_NAME_BYTES: usize = 40;
 /// Most words of a name; a text with more is no name.
 const MAX_NAME_WORDS: usize = 4;
+/// Most words of a detail; later ones are left out.
+pub(super) const MAX_DETAIL_WORDS: usize = 6;
 /// Most names that one thing may have ("sofa or bench" has two); further ones are ignored.
 const MAX_NAMES: usize = 3;
 
@@ -26,11 +28,14 @@ pub(crate) struct NameReading {
     pub(crate) several: bool,
     pub(crate) colours: Vec<String>,
     pub(crate) material: Option<String>,
+    /// Its pattern, or what it shows: "checkered", "of a ship".
+    pub(crate) detail: Option<String>,
 }
 
 /// Reads a name; the result has no names if the text is no name.
 pub(crate) fn read_name(said: &str) -> NameReading {
     let said = &said[..said.floor_char_boundary(4 * MAX_NAME_BYTES)].to_lowercase().replace('’', "'");
+    let said = &said.replace("-and-", " and ");
     let mut named = NameReading { is_guess: said.contains('?'), ..NameReading::default() };
     let plain = said.split('(').next().unwrap_or_default().replace('/', " or ");
     let words: Vec<&str> = plain.split(|c: char| !(c.is_alphanumeric() || "-'".contains(c))).collect();
@@ -48,7 +53,13 @@ pub(crate) fn read_name(said: &str) -> NameReading {
 /// Reads one of the names between "or": takes colours, materials, numbers and qualities off its beginning and notes
 /// them in `named`. `None` if no name of a thing is left.
 fn read_one_name(words: &[&str], named: &mut NameReading) -> Option<String> {
-    let mut words = before_the_place(words);
+    let mut words = words;
+    if let Some(start) = detail_start(words) {
+        let detail = &words[start..];
+        named.detail.get_or_insert(detail[..detail.len().min(MAX_DETAIL_WORDS)].join(" "));
+        words = &words[..start];
+    }
+    words = before_the_place(words);
     loop {
         let (first, rest) = words.split_first()?;
         if is_thing(&normalise_name(&words.join(" "))) {
@@ -60,6 +71,9 @@ fn read_one_name(words: &[&str], named: &mut NameReading) -> Option<String> {
             named.add_colour(colour);
             words = &words[length..];
             continue;
+        } else if *first == "and" && colour_at(rest).is_some() && !named.colours.is_empty() {
+        } else if PATTERNS.contains(first) && !rest.is_empty() {
+            named.detail.get_or_insert((*first).to_owned());
         } else if MATERIALS.contains(first) {
             named.material.get_or_insert((*first).to_owned());
         } else if NUMBERS.contains(first) || first.parse::<u32>().is_ok_and(|count| count > 1) {
@@ -98,6 +112,17 @@ fn before_the_place<'a, 'b>(words: &'a [&'b str]) -> &'a [&'b str] {
     let end = (1..words.len()).find(ends).unwrap_or(words.len());
     let longer = (end..=words.len()).rev().find(|end| is_thing(&normalise_name(&words[..*end].join(" "))));
     &words[..longer.unwrap_or(end)]
+}
+
+/// Where a detail of a thing begins in a name: "picture of a ship", "lamp with a red shade". "Chest of drawers" has none.
+fn detail_start(words: &[&str]) -> Option<usize> {
+    const LEADS: [&str; 4] = ["of", "with", "showing", "depicting"];
+    let names = |from: usize, to: usize| is_thing(&normalise_name(&words[from..to].join(" ")));
+    let starts = |at: &usize| {
+        let is_whole = (at + 1..=words.len()).any(|end| names(0, end) || names(at - 1, end));
+        LEADS.contains(&words[*at]) && names(at - 1, *at) && !is_whole
+    };
+    (1..words.len().saturating_sub(1)).find(starts)
 }
 
 /// Whether a word only describes a thing ("large", "wooden") or means nothing.

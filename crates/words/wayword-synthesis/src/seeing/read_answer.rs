@@ -1,7 +1,7 @@
 //! Parses a structured answer (the JSON about a view) leniently: models use other field names, other types and another
 //! case than the schema.
 
-use super::names::{NameReading, read_name, read_rooms};
+use super::names::{MAX_DETAIL_WORDS, NameReading, read_name, read_rooms};
 use crate::dialogue::colour_at;
 use serde_json::{Map, Value};
 use wayword_core::{ViewThird, WayOut};
@@ -55,6 +55,9 @@ pub(super) fn read_view_answer(answer: &str, takes_part: bool) -> Result<ViewRea
     if is_cut && !takes_part {
         return Err("it was cut off: name fewer things".to_owned());
     }
+    if is_foreign(&fields) {
+        return Err("it is not in English: give every name in English".to_owned());
+    }
     let room = find_field(&fields, &ROOM_FIELDS);
     let listed = find_field(&fields, &THINGS_FIELDS);
     let cues: Vec<NameReading> = find_field(&fields, &["standsout", "standout", "landmarks", "salient"])
@@ -83,6 +86,28 @@ pub(super) fn read_view_answer(answer: &str, takes_part: bool) -> Result<ViewRea
         ways: ways.into_iter().filter_map(read_way_out).take(MAX_WAYS_OUT).collect(),
         things: merge_like_things(things),
     })
+}
+
+/// Whether most letters of an answer's values are of another script than the Latin one.
+fn is_foreign(fields: &Map<String, Value>) -> bool {
+    fn count(value: &Value, letters: &mut [usize; 2]) {
+        match value {
+            Value::String(text) => {
+                text.chars().filter(|c| c.is_alphabetic()).for_each(|c| letters[usize::from(c > '\u{24F}')] += 1);
+            }
+            Value::Array(values) => values.iter().for_each(|value| count(value, letters)),
+            Value::Object(fields) => fields.values().for_each(|value| count(value, letters)),
+            _ => {}
+        }
+    }
+    let mut letters = [0; 2];
+    // The words that the form itself asks for ("left", "sure") are English in any answer.
+    let named = fields.iter().flat_map(|(_, value)| match value {
+        Value::Array(entries) => entries.iter().map(|entry| entry.get("name").unwrap_or(entry)).collect(),
+        other => vec![other],
+    });
+    named.for_each(|value| count(value, &mut letters));
+    letters[1] > letters[0]
 }
 
 /// The first of these fields that is present. Case and underscores do not matter.
@@ -159,9 +184,9 @@ fn read_thing(entry: &Value, cues: &[NameReading]) -> Option<ViewThing> {
         .find(|word| MATERIALS.contains(word))
         .map(str::to_owned)
         .or(told.material);
+    let detail = find_field(fields, &["detail", "details", "pattern", "shows", "looks"]).map(value_text);
+    told.detail = detail.and_then(|said| read_detail(&said)).or(told.detail);
     let stands_out = cues.iter().any(|cue| is_cue(cue, &told));
-    // Walls, floors and ceilings are in every room, so they count only if the model gave them as a mark of the place.
-    told.names.retain(|name| stands_out || !is_everywhere(name));
     if told.names.is_empty() {
         return None;
     }
@@ -184,6 +209,16 @@ fn read_thing(entry: &Value, cues: &[NameReading]) -> Option<ViewThing> {
     })
 }
 
+/// A detail in a few words; `None` for words that say that there is none.
+fn read_detail(said: &str) -> Option<String> {
+    let said = said[..said.floor_char_boundary(200)].to_lowercase();
+    let words: Vec<&str> = said.split(|c: char| !(c.is_alphanumeric() || "-'".contains(c))).collect();
+    let words: Vec<&str> = words.into_iter().filter(|word| !word.is_empty()).take(MAX_DETAIL_WORDS).collect();
+    let is_none =
+        matches!(words[..], [] | ["none" | "plain" | "unknown" | "no" | "solid" | "n"] | ["n", "a"] | ["no", ..]);
+    (!is_none).then(|| words.join(" "))
+}
+
 /// Whether a cue ("stands out") means a thing. "Brick wall" does not mean a white wall.
 fn is_cue(cue: &NameReading, told: &NameReading) -> bool {
     let names = cue.names.iter().any(|cue| told.names.iter().any(|name| names_agree(cue, name)));
@@ -196,7 +231,7 @@ fn is_cue(cue: &NameReading, told: &NameReading) -> bool {
 }
 
 /// Whether every room has such a thing.
-fn is_everywhere(name: &str) -> bool {
+pub(super) fn is_everywhere(name: &str) -> bool {
     find_thing(name).is_some_and(|thing| matches!(thing.name, "wall" | "floor" | "ceiling" | "corner"))
 }
 

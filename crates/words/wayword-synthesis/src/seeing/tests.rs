@@ -71,9 +71,12 @@ fn an_answer_becomes_evidence_and_a_caption_in_one_call() {
     for doubtful in ["armchair", "stool", "piano"] {
         assert_eq!(of(&caption, doubtful).witness, WitnessAnswer::Unsure, "{doubtful}");
     }
-    assert!(of(&caption, "lamp").several && of(&caption, "wall").stands_out);
+    assert!(of(&caption, "lamp").several);
     let walls = caption.sightings.iter().filter(|sighting| sighting.name == "wall");
-    assert_eq!(walls.map(|wall| wall.material.as_deref()).collect::<Vec<_>>(), [Some("brick")]);
+    // A plain wall is kept as evidence, although the caption does not name it.
+    let of_walls: Vec<_> =
+        walls.map(|wall| (wall.material.as_deref(), wall.colour.as_deref(), wall.stands_out)).collect();
+    assert_eq!(of_walls, [(None, Some("white"), false), (Some("brick"), None, true)]);
     let kitchen = WayOut { name: "doorway".into(), place: Some(ViewThird::Right), leads_to: Some("kitchen".into()) };
     assert_eq!(caption.ways[0], kitchen);
     assert_eq!(
@@ -103,6 +106,25 @@ fn answers_with_other_names_case_and_types_are_parsed() {
 }
 
 #[test]
+fn patterns_second_colours_pictures_and_certainty_in_numbers_are_kept() {
+    let things = r#"{"room": "hall", "things": [
+        {"name": "black-and-white checkered tile floor", "sure": "0.9"},
+        {"name": "picture of a ship", "detail": "", "sure": "95%"},
+        {"name": "rug", "colours": ["red", "blue"], "detail": "striped", "sure": "0.3"},
+        {"name": "beige wall", "detail": "none", "sure": 1}]}"#;
+    let (caption, _) = seen(&[things], 0);
+    let looks = |name: &str| {
+        let seen = of(&caption, name);
+        (seen.witness, seen.colour.as_deref(), seen.more_colours.join(" "), seen.detail.as_deref())
+    };
+    let (sure, unsure) = (WitnessAnswer::Seen, WitnessAnswer::Unsure);
+    assert_eq!(looks("floor"), (sure, Some("black"), "white".to_owned(), Some("checkered")));
+    assert_eq!(looks("picture"), (sure, None, String::new(), Some("of a ship")));
+    assert_eq!(looks("rug"), (unsure, Some("red"), "blue".to_owned(), Some("striped")));
+    assert_eq!(looks("wall"), (sure, Some("beige"), String::new(), None));
+}
+
+#[test]
 fn missing_fields_and_bare_names_are_enough() {
     let (caption, _) = seen(&[r#"{"things": ["sofa", "two lamps", 7, null, {"name": ["chair"]}]}"#], 0);
     assert_eq!(caption.room, None);
@@ -118,6 +140,7 @@ fn an_answer_that_breaks_the_form_is_asked_for_once_more() {
         r#"{"mood": "calm"}"#,
         "{\"room\": \"ha",
         "I'm sorry, I can't help with that.",
+        r#"{"room": "卧室", "room_sure": "sure", "things": [{"name": "床", "side": "left", "sure": "sure"}]}"#,
     ];
     for bad in bad {
         let (caption, asked) = seen(&[bad, GOOD], 0);

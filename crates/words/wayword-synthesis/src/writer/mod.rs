@@ -46,8 +46,10 @@ pub trait InstructionWriter: Send + Sync {
 pub struct WritingBrief<'a> {
     /// The path and what was seen along it; its target, where one is given.
     pub walk: &'a ObservedWalk,
-    /// The memory of the walk.
+    /// The memory of the walk, by what the writer may know of it.
     pub memory: &'a WalkMemory,
+    /// The memory of the walk by all evidence, for where the target is.
+    pub known: &'a WalkMemory,
     /// The style to write in.
     pub style: &'a InstructionStyle,
     /// The measured properties of the style's references.
@@ -83,7 +85,18 @@ impl<'a> WritingBrief<'a> {
         profile: &'a StyleProfile,
         seed: u64,
     ) -> Self {
-        Self { walk, memory, style, profile, seed, candidate: 0, complaints: &[], earlier: &[], pictures: &[] }
+        Self {
+            walk,
+            memory,
+            known: memory,
+            style,
+            profile,
+            seed,
+            candidate: 0,
+            complaints: &[],
+            earlier: &[],
+            pictures: &[],
+        }
     }
 
     /// Number of words that the text should have. It is the same for all candidates of a walk, so that the choice among

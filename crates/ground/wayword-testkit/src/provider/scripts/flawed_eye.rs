@@ -220,7 +220,7 @@ impl PictureLook<'_> {
                 name.clone()
             };
             json!({
-                "name": name, "colours": thing.colour.iter().collect::<Vec<_>>(), "material": "",
+                "name": name, "colours": thing.colour.iter().collect::<Vec<_>>(), "material": "", "detail": "",
                 "side": side(thing.third), "distance": if thing.is_far { "far" } else { "near" },
                 "sure": if guessed { "perhaps" } else { "sure" },
             })

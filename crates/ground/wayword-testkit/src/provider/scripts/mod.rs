@@ -51,7 +51,7 @@ impl ScriptedCast {
 impl ModelScript for ScriptedCast {
     fn reply(&self, request: &ScriptRequest) -> String {
         let prompt = request.prompt();
-        if prompt.contains("Frame 0:") {
+        if prompt.contains("Write one instruction in this style") {
             self.author.reply(request)
         } else if !request.pictures.is_empty() {
             self.eye.reply(request)

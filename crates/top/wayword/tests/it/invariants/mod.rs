@@ -132,7 +132,7 @@ enum Below {
     LayersAnd(&'static [&'static str]),
 }
 
-const BELOW: [(&str, Below); 32] = [
+const BELOW: [(&str, Below); 33] = [
     ("wayword-core", Below::Crates(&[])),
     ("wayword-testkit", Below::Crates(&["wayword-core"])),
     ("wayword-formats", Below::Crates(&["wayword-core"])),
@@ -150,14 +150,18 @@ const BELOW: [(&str, Below); 32] = [
     ("wayword-queue", Below::Crates(&["wayword-database"])),
     ("wayword-ledger", Below::Crates(&["wayword-database"])),
     ("wayword-local", Below::Crates(&["wayword-core", "wayword-ledger"])),
-    ("wayword-remote", Below::Crates(&["wayword-core", "wayword-ledger"])),
+    ("wayword-replies", Below::Crates(&["wayword-core", "wayword-language"])),
+    ("wayword-remote", Below::Crates(&["wayword-core", "wayword-ledger", "wayword-replies"])),
     ("wayword-checks", Below::Crates(&["wayword-core", "wayword-language"])),
     ("wayword-follower", Below::Crates(&["wayword-core", "wayword-language"])),
-    ("wayword-synthesis", Below::Crates(&["wayword-checks", "wayword-core", "wayword-language"])),
+    ("wayword-synthesis", Below::Crates(&["wayword-checks", "wayword-core", "wayword-language", "wayword-replies"])),
     ("wayword-metrics", Below::Crates(&["wayword-core"])),
     ("wayword-study", Below::Crates(&["wayword-core", "wayword-metrics"])),
     ("wayword-robustness", Below::Crates(&["wayword-checks", "wayword-core", "wayword-language", "wayword-metrics"])),
-    ("wayword-navigation", Below::Crates(&["wayword-core", "wayword-follower", "wayword-language", "wayword-metrics"])),
+    (
+        "wayword-navigation",
+        Below::Crates(&["wayword-core", "wayword-follower", "wayword-language", "wayword-metrics", "wayword-replies"]),
+    ),
     ("wayword-run", Below::LayersAnd(&[])),
     ("wayword-report", Below::LayersAnd(&["wayword-run"])),
     ("wayword-experiments", Below::LayersAnd(&["wayword-report", "wayword-run"])),
