@@ -117,13 +117,13 @@ pub(super) fn name_end(tokens: TokenSlice<'_>, at: usize, known: &BTreeSet<Strin
     named_place_at(tokens, at, known).map(|found| found.to)
 }
 
-/// Whether a word counts paces and names no stairs: "a few steps beyond it".
+/// Whether a word counts paces and names no stairs: "a few steps beyond it", "a step inside".
 fn is_pace(tokens: TokenSlice<'_>, at: usize) -> bool {
-    const ONWARD: [&str; 12] = [
+    const ONWARD: [&str; 15] = [
         "beyond", "past", "further", "farther", "forward", "forwards", "ahead", "away", "more", "back", "after",
-        "before",
+        "before", "inside", "into", "outside",
     ];
-    let is_counted = at > 0 && v::FEW.contains(&tokens.word_at(at - 1));
+    let is_counted = at > 0 && (v::FEW.contains(&tokens.word_at(at - 1)) || tokens.word_at(at - 1) == "a");
     let climbs = || (1..=4).any(|back| at >= back && matches!(tokens.word_at(at - back), "up" | "down"));
     let is_step = matches!(tokens.word_at(at), "step" | "steps" | "pace" | "paces");
     is_step && is_counted && ONWARD.contains(&tokens.word_at(at + 1)) && !climbs()

@@ -11,7 +11,7 @@ use wayword_core::{ClimbDirection, Side};
 crate::data::lists! {
     "words/steps.txt";
     words: MARKING, CONDITIONS, SLIGHT, STRAIGHT, DOOR_WORDS, STAIR_WORDS, OUTDOORS, TOPS, BOTTOMS, LEAVING_WORDS, TURN_VERBS;
-    phrases:;
+    phrases: KEEPING_ON;
 }
 
 /// One step of an instruction.
@@ -158,12 +158,12 @@ impl StepBuilder<'_> {
             span: [self.tokens[first].span[0], self.tokens[last].span[1]],
             turn: None,
             turn_span: None,
-            is_slight: self.has_word(&SLIGHT),
+            is_slight: self.has_word(&SLIGHT) || self.continues_slight(first),
             climb: None,
             floor: None,
             storey: None,
             stops: false,
-            is_straight: self.has_word(&STRAIGHT),
+            is_straight: self.has_word(&STRAIGHT) || self.has_phrase(&KEEPING_ON),
             is_condition: CONDITIONS.contains(&self.tokens[first].word.as_str()),
             at_end: self.has_word(&["end"]),
             door: StepDoor::None,
@@ -227,6 +227,26 @@ impl StepBuilder<'_> {
     /// Whether the step has a word of a list.
     fn has_word(&self, list: &[&str]) -> bool {
         self.undenied_tokens().any(|at| list.contains(&self.tokens[at].word.as_str()))
+    }
+
+    /// Whether the step has no verb of its own behind a slight turn: "bear right at the sofa, left at the lamp".
+    fn continues_slight(&self, first: usize) -> bool {
+        let word = |at: usize| self.tokens[at].word.as_str();
+        if !matches!(word(first), "left" | "right") {
+            return false;
+        }
+        let before = (0..first).rev().find(|at| TURN_VERBS.contains(&word(*at)) || SLIGHT.contains(&word(*at)));
+        before.is_some_and(|at| SLIGHT.contains(&word(at)) && !self.denied[at])
+    }
+
+    /// Whether the step has a phrase of a list.
+    fn has_phrase(&self, list: &[Vec<&str>]) -> bool {
+        let words = &self.tokens[self.range.clone()];
+        let begins_at = |at: usize, phrase: &[&str]| {
+            words[at..].iter().map(|token| token.word.as_str()).take(phrase.len()).eq(phrase.iter().copied())
+        };
+        let is_told = |at: usize| !self.denied[self.range.start + at];
+        (0..words.len()).any(|at| is_told(at) && list.iter().any(|phrase| begins_at(at, phrase)))
     }
 
     /// How the step relates to stairs, by its words.
@@ -313,6 +333,10 @@ mod tests {
         assert_eq!(step("Go to the attic on level 3.").floor.and_then(|floor| floor.number), Some(3));
         assert_eq!(step("Go down from level 3.").floor, None);
         assert_eq!(step("Go to the bedroom upstairs.").storey, Some(ClimbDirection::Up));
+        assert!(step("Keep on into the kitchen.").is_straight && step("Carry on past the sofa.").is_straight);
+        let bends = read_steps(&read_instruction("Bear right at the sofa, left at the lamp.", &BTreeSet::new()));
+        assert!(bends.iter().all(|step| step.turn.is_none() || step.is_slight), "{bends:?}");
+        assert!(!step("Keep left at the sofa.").is_straight && !step("Do not keep on.").is_straight);
     }
 
     #[test]
