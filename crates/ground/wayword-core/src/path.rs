@@ -59,6 +59,13 @@ pub struct PathTarget {
     pub storeys: usize,
 }
 
+impl PathTarget {
+    /// All facts that are known of it: those of `told_by` and of its descriptions.
+    pub fn known_facts(&self) -> impl Iterator<Item = &ObjectDistinction> {
+        self.told_by.iter().chain(self.descriptions.iter().flat_map(|description| &description.by))
+    }
+}
+
 #[allow(clippy::trivially_copy_pass_by_ref)] // serde passes a reference.
 fn is_zero(count: &usize) -> bool {
     *count == 0

@@ -13,6 +13,11 @@ use wayword_language::{
 /// the floor that is 2 m along the floor.
 pub(crate) const MAX_STOP_DISTANCE_M: f64 = 2.5;
 
+/// How findings begin that could not decide the room at the end. A model that sees may be asked.
+pub const UNDECIDED_END_ROOM: &str = "the program cannot check whether the path ends in";
+/// How findings end that could not decide whether a thing is at the end. A model that sees may be asked.
+pub const UNDECIDED_AT_END: &str = "is at the end of the path";
+
 /// The mistake at the end of a text, if there is one. The event `object` is left out: it names the object of the
 /// task, which has a check of its own.
 pub(super) fn check_goal(reading: &TextReading, evidence: &Evidence, object: Option<usize>) -> Option<CheckFinding> {
@@ -76,7 +81,7 @@ fn wrong_room(name: &str, near: &[FrameEvidence]) -> Option<(Verdict, String)> {
     let is_perhaps = near.iter().flat_map(|frame| frame.rooms.iter().chain(&frame.perhaps.rooms)).any(is_it);
     Some(match is_known && !is_perhaps {
         true => (Verdict::Fail, format!("the path does not end in {name:?}")),
-        false => (Verdict::Unverified, format!("the program cannot check whether the path ends in {name:?}")),
+        false => (Verdict::Unverified, format!("{UNDECIDED_END_ROOM} {name:?}")),
     })
 }
 
@@ -103,6 +108,6 @@ fn wrong_thing(name: &str, near: &[FrameEvidence], source: EvidenceSource) -> Op
     let lists = |frame: &FrameEvidence| if source.leaves_out() { frame.lists_things } else { frame.knows_things };
     Some(match is_listed && !is_perhaps && near.iter().all(lists) {
         true => (Verdict::Fail, format!("{name:?} is not seen from the end of the path")),
-        false => (Verdict::Unverified, format!("the program cannot check whether {name:?} is at the end of the path")),
+        false => (Verdict::Unverified, format!("the program cannot check whether {name:?} {UNDECIDED_AT_END}")),
     })
 }

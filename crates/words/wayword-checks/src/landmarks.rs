@@ -1,13 +1,13 @@
 //! Checks that each landmark of a text is shown by a frame of the path, on the side and in the colour that the text
 //! gives it.
 
-use super::{findings_or_pass, new_finding, sides};
+use super::{CheckSubject, findings_or_pass, new_finding, sides};
 use crate::{
     evidence::{Evidence, EvidenceSource, SeenThing},
     memory::{frames_at_doors, is_door},
 };
 use std::collections::BTreeMap;
-use wayword_core::{CheckFinding, CheckKind, Verdict};
+use wayword_core::{CheckFinding, CheckKind, ObjectDistinction, PathTarget, Verdict};
 use wayword_language::{
     lexicon::{ThingClass, find_thing, names_agree, same_colour, same_room},
     reading::{EventContent, PlaceLink, PlaceMention, TextReading},
@@ -36,12 +36,15 @@ pub(super) struct ShownFrames {
 /// true, a place that no witness names counts as invented by the writer, and is wrong.
 pub(super) fn check_landmarks(
     reading: &TextReading,
-    evidence: &Evidence,
+    subject: CheckSubject<'_>,
     object: Option<usize>,
     made_up: bool,
 ) -> LandmarkFindings {
+    let evidence = subject.evidence;
     let (mut findings, mut all_shown) = (Vec::new(), Vec::new());
     let seen = SightingIndex::from_evidence(evidence);
+    let target = subject.target.filter(|_| evidence.source.leaves_out());
+    let facts: Vec<&ObjectDistinction> = target.into_iter().flat_map(PathTarget::known_facts).collect();
     for (at, event) in reading.events.iter().enumerate() {
         let EventContent::Place(place) = &event.what else {
             all_shown.push(ShownFrames::default());
@@ -49,11 +52,13 @@ pub(super) fn check_landmarks(
         };
         let is_object = object == Some(at);
         let shown = if is_object { at_the_end(place, evidence) } else { seen.frames_showing(place) };
-        let wrong = if is_object { None } else { wrong_presence(place, &shown, evidence, made_up) };
+        let is_given = is_object || (shown.frames.is_empty() && names_neighbour(place, &facts));
+        let wrong = if is_given { None } else { wrong_presence(place, &shown, evidence, made_up) };
+        let off_colour = wrong_colour(place, &shown, evidence).filter(|_| !(is_object && has_colour(place, &facts)));
         findings.extend(
             wrong
                 .into_iter()
-                .chain(wrong_colour(place, &shown, evidence))
+                .chain(off_colour)
                 .map(|(verdict, reason)| new_finding(CheckKind::Landmarks, verdict, reason, Some(event.span))),
         );
         all_shown.push(shown);
@@ -67,6 +72,18 @@ pub(super) fn check_landmarks(
         ));
     }
     LandmarkFindings { findings: findings_or_pass(CheckKind::Landmarks, findings), shown: all_shown }
+}
+
+/// Whether the world itself has told that a place is beside the target. Witnesses may have missed it.
+fn names_neighbour(place: &PlaceMention, facts: &[&ObjectDistinction]) -> bool {
+    facts.iter().flat_map(|fact| fact.named_things()).any(|name| names_agree(name, &place.name))
+}
+
+/// Whether the world itself has told the colour that a text gives the target.
+fn has_colour(place: &PlaceMention, facts: &[&ObjectDistinction]) -> bool {
+    let claimed = place.colour.as_deref().unwrap_or_default();
+    let is_it = |fact: &&ObjectDistinction| matches!(fact, ObjectDistinction::Colour { colour } if same_colour(colour, claimed));
+    facts.iter().any(is_it)
 }
 
 /// The mistake in where the text puts a place: it is nowhere along the path, or on another side.
@@ -133,7 +150,7 @@ fn wrong_colour(place: &PlaceMention, shown: &ShownFrames, evidence: &Evidence) 
     let is_disputed = || things.iter().any(|thing| thing.disputed_colour.is_some());
     let known: Vec<&String> = things.iter().flat_map(|thing| thing.colour.iter().chain(&thing.more_colours)).collect();
     // "The brown chair" for a dark brown one is no mistake, nor is "cream" for beige.
-    let fits = known.iter().any(|colour| same_colour(colour, claimed));
+    let fits = known.iter().any(|colour| same_colour(colour, claimed)) || looks_tell_colour(place, claimed, evidence);
     let unverified = |reason: String| Some((Verdict::Unverified, reason));
     match (known.is_empty(), fits) {
         (_, true) => None,
@@ -148,6 +165,13 @@ fn wrong_colour(place: &PlaceMention, shown: &ShownFrames, evidence: &Evidence) 
             Some((wrong_unless_elsewhere(shown), format!("no {:?} along the path is {claimed}", place.name)))
         }
     }
+}
+
+/// Whether the looks of some thing have the colour and the name of a place: "with purple flowers", "in an orange pot".
+fn looks_tell_colour(place: &PlaceMention, claimed: &str, evidence: &Evidence) -> bool {
+    let looks = evidence.frames.iter().flat_map(|frame| &frame.things).filter_map(|thing| thing.detail.as_deref());
+    let has_colour = |look: &str| look.split(' ').any(|word| same_colour(word, claimed));
+    looks.into_iter().any(|look| has_colour(look) && tells_of(look, &place.name))
 }
 
 /// The things of the evidence, sorted by name. A path shows a few dozen names over and over, so each place of a text is

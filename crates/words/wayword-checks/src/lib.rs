@@ -59,6 +59,7 @@ pub use evidence::{
     BuildingInventory, EndSurroundings, Evidence, EvidenceSource, FrameEvidence, ListedDistance, NEAR_M,
     PathSurroundings, SeenThing, UnsureSightings,
 };
+pub use goal::{UNDECIDED_AT_END, UNDECIDED_END_ROOM};
 pub use landmarks::UNDECIDED_PRESENCE;
 pub use leak::{FORMULA_REFERENCES, LONG_RUN, ReferenceRuns, SHARED_RUN, TextTopic};
 pub use memory::WalkMemory;
@@ -173,7 +174,7 @@ fn check_against(
     }
     // Where the style asks for no task, the object of one is a landmark like any other.
     let object = reading.task.as_ref().and_then(|task| task.object).filter(|_| ends_in_task);
-    let places = landmarks::check_landmarks(&reading, subject.evidence, object, from_captions_alone);
+    let places = landmarks::check_landmarks(&reading, subject, object, from_captions_alone);
     let on_walk = check_on_walk(&reading, subject, object, from_captions_alone);
     let walk = order::check_order(&reading, subject.evidence, &places.shown);
     let (mut frames, mut parts) = (walk.frames, Vec::new());

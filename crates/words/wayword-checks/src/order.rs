@@ -7,7 +7,10 @@ use super::{
 };
 use crate::evidence::Evidence;
 use wayword_core::{CheckFinding, CheckKind, Side, Verdict};
-use wayword_language::reading::{EventContent, PlaceLink, TextEvent, TextReading};
+use wayword_language::{
+    reading::{EventContent, PlaceLink, TextEvent, TextReading},
+    text::TextToken,
+};
 
 /// The findings about the order of a text.
 pub(super) struct OrderFindings {
@@ -93,13 +96,21 @@ fn places_alone(steps: &[AlignmentStep]) -> Vec<AlignmentStep> {
 /// For each event, whether it is a place that only locates another place of its clause, or the task's object.
 fn find_asides(reading: &TextReading) -> Vec<bool> {
     let object = reading.task.as_ref().and_then(|task| task.object);
-    // The clause's number, whether it has named a place so far, and whether it has named a goal.
+    // The clause's number, whether it has named a place so far, and whether it has named a goal or a flight.
     let (mut clause, mut tells_place, mut tells_goal) = (0, false, false);
     let is_aside = |(at, event): (usize, &TextEvent)| {
         if event.clause != clause {
-            (clause, tells_place, tells_goal) = (event.clause, false, false);
+            clause = event.clause;
+            // "Go up the stairs, past the pictures" has no command behind the comma.
+            if !begins_beside(reading, at) {
+                (tells_place, tells_goal) = (false, false);
+            }
         }
-        let EventContent::Place(place) = &event.what else { return false };
+        let EventContent::Place(place) = &event.what else {
+            // "Go up the stairs, past the pictures": they hang beside the flight.
+            tells_goal |= matches!(event.what, EventContent::Climb(_));
+            return false;
+        };
         let tells_where = match place.link {
             PlaceLink::Within | PlaceLink::Beside => tells_place,
             // "To the bathroom past the kitchen": the goal is named first, and reached last.
@@ -111,6 +122,14 @@ fn find_asides(reading: &TextReading) -> Vec<bool> {
         tells_where || object.is_some_and(|object| object < at)
     };
     reading.events.iter().enumerate().map(is_aside).collect()
+}
+
+/// Whether the words behind the event before this one begin with where the way lies ("..., past the pictures").
+fn begins_beside(reading: &TextReading, at: usize) -> bool {
+    let from = at.checked_sub(1).map_or(0, |before| reading.events[before].span[1]);
+    let mut behind = reading.tokens().iter().filter(|token| token.span[0] >= from);
+    let is_and = |token: &&TextToken| matches!(token.word.as_str(), "," | "and");
+    behind.find(|token| !is_and(token)).is_some_and(|token| matches!(token.word.as_str(), "past" | "along" | "by"))
 }
 
 /// Why the walk of a text ends at a step: the reason of a finding about turns.

@@ -89,7 +89,8 @@ pub(crate) fn is_any_door(name: &str) -> bool {
 }
 
 /// Whether a name means a door or another opening between rooms.
-pub(crate) fn is_way_through(name: &str) -> bool {
+#[must_use]
+pub fn is_way_through(name: &str) -> bool {
     is_door(name) || is_any_door(name)
 }
 

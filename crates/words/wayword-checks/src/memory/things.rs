@@ -5,14 +5,15 @@ use crate::{
     evidence::{SightingGroup, WalkEyes, group_sightings},
 };
 use std::{
+    collections::BTreeSet,
     f64::consts::{FRAC_PI_3, FRAC_PI_4},
     ops::RangeInclusive,
 };
 use wayword_core::{DVec3, Side};
 use wayword_language::lexicon::normalise_name;
 
-/// A picture ahead shows what lies within this angle of the heading, degrees.
-const AHEAD_DEG: f64 = 50.0;
+/// A picture ahead shows what has its middle within this angle of the heading, degrees: its edge is nearer.
+const AHEAD_DEG: f64 = 60.0;
 /// A walker knows a thing that was ahead at most this many frames before.
 pub const AHEAD_FRAMES: usize = 4;
 
@@ -155,19 +156,23 @@ fn join_sightings(members: &[(usize, &SeenThing)], group: &SightingGroup, eyes: 
     };
     // Where labels and witnesses give different colours, none is sure.
     let is_disputed = members.iter().any(|(_, thing)| thing.disputed_colour.is_some());
-    let mut more_colours: Vec<String> = members.iter().flat_map(|(_, thing)| &thing.more_colours).cloned().collect();
-    more_colours.sort();
-    more_colours.dedup();
+    // A colour that few sightings have may be that of another thing.
+    let named: Vec<&String> = members.iter().flat_map(|(_, thing)| &thing.more_colours).collect();
+    let is_usual = |colour: &&&String| named.iter().filter(|other| other == colour).count() * 2 >= members.len();
+    let more_colours: BTreeSet<String> = named.iter().filter(is_usual).map(|colour| (*colour).clone()).collect();
     let passed = match (&group.places, position) {
         (Some(places), _) => agreed_passing(places, &eyes.eyes),
         (None, Some(position)) => passed_at(position, &eyes.eyes),
         (None, None) => passed_by_glimpses(&glimpses),
     };
+    // What was not seen yet was not passed.
+    let seen_from = members[0].0.saturating_sub(1);
+    let passed = passed.filter(|passed| passed.frame >= seen_from);
     RememberedThing {
         name: first.name.clone(),
         object: first.object.clone(),
         colour: of_all(|thing| thing.colour.as_ref()).filter(|_| !is_disputed),
-        more_colours,
+        more_colours: more_colours.into_iter().collect(),
         material: of_all(|thing| thing.material.as_ref()),
         detail: members.iter().find_map(|(_, thing)| thing.detail.clone()),
         several: members.iter().filter(|(_, thing)| thing.several).count() * 2 > members.len(),

@@ -172,7 +172,11 @@ fn identifying_words<'a>(tokens: &'a [TextToken], claim: &PlaceClaim) -> Vec<&'a
     let end = tokens.partition_point(|token| token.span[1] <= claim.span[1]);
     let before = || tokens[..at].iter().rev().take(IDENTIFYING_REACH_WORDS);
     let article = before().position(|token| is_article(&token.word)).unwrap_or(0);
-    before().take(article).chain(&tokens[at..end]).map(|token| token.word.as_str()).collect()
+    // "The plant in the orange pot", "the picture of a ship".
+    let behind = tokens[end..].iter().take_while(|token| token.is_word()).take(IDENTIFYING_REACH_WORDS + 1);
+    let is_described = tokens.get(end).is_some_and(|token| matches!(token.word.as_str(), "in" | "of" | "with"));
+    let behind = behind.filter(|_| is_described);
+    before().take(article).chain(&tokens[at..end]).chain(behind).map(|token| token.word.as_str()).collect()
 }
 
 /// Whether a word expresses how a motion goes by a place.

@@ -142,6 +142,9 @@ fn a_colour_passes_fails_or_is_open() {
     // The colour of another thing does not count.
     path.frames[1].things.push(SeenThing { name: "rug".into(), colour: Some("green".into()), ..SeenThing::default() });
     is_unverified(CheckKind::Landmarks, text, &path);
+    // What is said of a thing may have it.
+    path.frames[1].things[1].detail = Some("under a green sofa".into());
+    passes(text, &path);
     // A thing that is not there has one mistake, and not two.
     let absent = findings_of(CheckKind::Landmarks, "Walk past the green piano.", &to_the_bedroom());
     assert_eq!(absent.len(), 1, "{absent:?}");

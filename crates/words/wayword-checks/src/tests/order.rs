@@ -125,6 +125,9 @@ fn a_climb_is_a_place_in_the_order() {
     let path = walk(frames.into(), &[(0.0, 0.0), (0.0, 3.0), (0.0, 0.0)]);
     passes("Walk past the plant. Go up the stairs. Walk past the lamp.", &path);
     fails(CheckKind::Order, "Walk past the lamp. Go up the stairs.", &path);
+    // What stands beside a flight may be passed on its first step; a sentence of its own tells what comes next.
+    passes("Go up the stairs, past the plant.", &path);
+    fails(CheckKind::Order, "Go up the stairs. Walk past the plant.", &path);
     // A climb that the path lacks has no place in the order.
     let verdict = findings_of(CheckKind::Order, "Walk past the lamp. Go down the stairs.", &path);
     assert_eq!(verdict[0].0, Verdict::Pass);

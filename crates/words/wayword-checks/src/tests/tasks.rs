@@ -4,7 +4,7 @@ use crate::{
     CheckSubject, Evidence, EvidenceSource, SeenThing, WorldReach, check_text,
     tests::{style, to_the_bedroom},
 };
-use wayword_core::{CheckKind, ObjectId, PathMotion, PathTarget, Verdict};
+use wayword_core::{CheckKind, ObjectDistinction, ObjectId, PathMotion, PathTarget, Verdict};
 
 fn target(name: &str, object: &str) -> PathTarget {
     PathTarget {
@@ -72,6 +72,25 @@ fn the_object_of_a_task_has_to_be_seen_at_the_end() {
     };
     assert_eq!(verdict(text), Verdict::Unverified);
     assert_eq!(verdict("Go to the bedroom and clean the lamp"), Verdict::Pass);
+}
+
+#[test]
+fn a_given_target_is_there_though_no_witness_named_it() {
+    let mut path = to_the_bedroom();
+    path.source = EvidenceSource::Captions;
+    path.frames[2].lists_things = true;
+    let text = "Go to the bedroom and clean the green sofa";
+    let absent = wrong(Verdict::Fail, "sofa", "\"sofa\" is not seen from the final viewpoint");
+    assert_eq!(task_of(text, &path, None), absent);
+    assert_eq!(task_of(text, &path, Some(&target("sofa", "7"))), PASS);
+    // Its colour is the world's, too, whatever a witness says.
+    path.frames[2].things.push(SeenThing { name: "sofa".into(), colour: Some("grey".into()), ..SeenThing::default() });
+    let verdict = |told_by: Vec<ObjectDistinction>| {
+        let (style, target) = (style(true), PathTarget { told_by, ..target("sofa", "7") });
+        check_text(text, CheckSubject::closed_world(&path, &style, Some(&target))).verdict()
+    };
+    assert_eq!(verdict(vec![ObjectDistinction::Colour { colour: "green".into() }]), Verdict::Pass);
+    assert_eq!(verdict(Vec::new()), Verdict::Fail);
 }
 
 #[test]

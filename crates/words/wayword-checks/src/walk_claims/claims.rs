@@ -235,9 +235,18 @@ impl<'a> ClaimLister<'_, 'a> {
                 _ => claim(ClaimedFact::Beside([other, place])),
             };
         }
+        // "From the bedroom, bear left": it is left in the next step.
+        if mention.relation == StepRelation::OutOf && place.is_room && self.begins_with_from(step) {
+            return claim(ClaimedFact::Place { place, role: PlaceRole::Within { at_stop: false } });
+        }
         let is_towards = self.is_towards(step, mention);
         let role = place_role((step, stops), mention.relation, place, is_towards)?;
         claim(ClaimedFact::Place { place, role })
+    }
+
+    fn begins_with_from(&self, step: &InstructionStep) -> bool {
+        let first = self.reading.tokens().iter().find(|token| token.span[0] >= step.span[0]);
+        first.is_some_and(|token| token.word == "from")
     }
 
     /// How wide a step says that its turn is.

@@ -2,7 +2,7 @@
 
 use crate::{
     Evidence, WalkMemory,
-    memory::{RememberedThing, RoomStay, StairFlight, WalkBend},
+    memory::{RememberedThing, RoomStay, StairFlight, WalkBend, is_any_door, is_door},
     sides::{lies_on, wrap_angle},
 };
 use wayword_core::{Side, motion};
@@ -73,8 +73,11 @@ impl<'a> WalkFacts<'a> {
         // "The floor lamp" is no table lamp where there are floor lamps.
         let is_exact = |thing: &&RememberedThing| normalise_name(&thing.name) == place.name;
         let has_exact = place.name.contains(' ') && self.memory.things.iter().any(|thing| is_exact(&thing));
-        let is_alike =
-            |thing: &&RememberedThing| names_agree(&thing.name, &place.name) && (!has_exact || is_exact(thing));
+        // A door stands in a doorway.
+        let is_named = |thing: &RememberedThing| {
+            names_agree(&thing.name, &place.name) || (is_door(&place.name) && is_any_door(&thing.name))
+        };
+        let is_alike = |thing: &&RememberedThing| is_named(thing) && (!has_exact || is_exact(thing));
         let alike = self.memory.things.iter().filter(is_alike);
         let has_colour = |thing: &&RememberedThing| match (&thing.colour, &place.colour) {
             (Some(known), Some(claimed)) => same_colour(known, claimed),

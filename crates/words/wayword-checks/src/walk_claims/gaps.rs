@@ -14,7 +14,7 @@ use crate::{
 };
 use std::collections::BTreeSet;
 use wayword_core::{CheckFinding, CheckKind, Side, Verdict};
-use wayword_language::reading::{PlaceMention, steps::InstructionStep};
+use wayword_language::reading::{PlaceMention, TextReading, steps::InstructionStep};
 
 /// A step with its claims, what was found about them, and its stretch of the walk.
 pub(super) struct JudgedStep<'s, 'a> {
@@ -51,7 +51,11 @@ impl<'s, 'a> JudgedStep<'s, 'a> {
 }
 
 /// The findings about a whole text.
-pub(super) fn find_gaps(facts: &WalkFacts<'_>, steps: &[JudgedStep<'_, '_>]) -> Vec<CheckFinding> {
+pub(super) fn find_gaps(
+    facts: &WalkFacts<'_>,
+    reading: &TextReading,
+    steps: &[JudgedStep<'_, '_>],
+) -> Vec<CheckFinding> {
     let mut found = Vec::new();
     // The frame up to which the text has words.
     let mut told = 0;
@@ -72,7 +76,7 @@ pub(super) fn find_gaps(facts: &WalkFacts<'_>, steps: &[JudgedStep<'_, '_>]) -> 
         before = Some(judged);
     }
     found.extend(vague_stop(facts, steps));
-    found.extend(unclear_stop(facts, steps));
+    found.extend(unclear_stop(facts, reading, steps));
     found
 }
 
@@ -167,9 +171,9 @@ fn way_left_out(facts: &WalkFacts<'_>, judged: &JudgedStep<'_, '_>, mut told: us
     None
 }
 
-/// The finding about a thing to stop at, of which the walk comes to another one first in the same room. A side, a number or a neighbour
-/// tells which one is meant.
-fn unclear_stop(facts: &WalkFacts<'_>, steps: &[JudgedStep<'_, '_>]) -> Option<CheckFinding> {
+/// The finding about a thing to stop at, of which the walk comes to another one first in the same room. A side, a number, a neighbour or
+/// what it shows tells which one is meant.
+fn unclear_stop(facts: &WalkFacts<'_>, reading: &TextReading, steps: &[JudgedStep<'_, '_>]) -> Option<CheckFinding> {
     let stop = steps.last().filter(|stop| stop.stops)?;
     let last = facts.last_frame();
     let is_relation = |claim: &StepClaim<'_>| matches!(claim.what, ClaimedFact::Beside(_) | ClaimedFact::Between(_));
@@ -184,6 +188,10 @@ fn unclear_stop(facts: &WalkFacts<'_>, steps: &[JudgedStep<'_, '_>]) -> Option<C
         return None;
     }
     let (claim, _) = stop.holding().find(|(claim, _)| is_stop(claim))?;
+    let behind = reading.tokens().iter().find(|token| token.span[0] >= claim.span[1]);
+    if behind.is_some_and(|token| matches!(token.word.as_str(), "of" | "with" | "showing")) {
+        return None;
+    }
     let near_m = |thing: &RememberedThing, frame: usize| facts.memory.distance_m(thing, frame).unwrap_or(f64::INFINITY);
     let things = &claim.things[0];
     let meant = things.iter().min_by(|a, b| near_m(a, last).total_cmp(&near_m(b, last)))?;

@@ -29,7 +29,11 @@ mod relations;
 mod tests;
 mod untold;
 
-use crate::{Evidence, WalkMemory, memory::StairFlight, new_finding, pass_finding};
+use crate::{
+    Evidence, WalkMemory,
+    memory::{StairFlight, WalkBend},
+    new_finding, pass_finding,
+};
 use claims::{ClaimedFact, StepClaim, claims_by_step, effective_stops};
 use division::divide_walk;
 use facts::WalkFacts;
@@ -37,7 +41,7 @@ use gaps::{JudgedStep, find_gaps};
 use judge::{judge_claim, turn_word};
 use outcome::ClaimOutcome;
 use std::ops::Range;
-use untold::{names_stairs, untold_bends, untold_flights};
+use untold::{names_stairs, untold_bends};
 use wayword_core::{CheckFinding, CheckKind, InstructionPart, Verdict, walk_cuts::WalkCuts};
 use wayword_language::reading::{
     TextReading,
@@ -160,15 +164,15 @@ pub(super) fn check_walk_claims(
             found.findings.extend(claim_finding(facts, claim, outcome));
         }
         if tells_way {
-            found.findings.extend(untold_findings(facts, claims, step, *stretch));
+            found.findings.extend(untold_turns(facts, claims, step, *stretch));
         }
     }
     if tells_way {
-        found.findings.extend(untold_landings(facts, &judged));
+        found.findings.extend(untold_climbs(facts, &judged));
     }
     // What a text leaves unsaid between two doors is known where all doors are.
     if tells_way && !facts.evidence.source.leaves_out() {
-        found.findings.extend(find_gaps(facts, &judged));
+        found.findings.extend(find_gaps(facts, reading, &judged));
     }
     for check in [CheckKind::Order, CheckKind::Turns] {
         if found.findings.iter().all(|finding| finding.check != check) {
@@ -199,39 +203,33 @@ fn claim_finding(facts: &WalkFacts<'_>, claim: &StepClaim<'_>, outcome: &ClaimOu
     }
 }
 
-/// Findings about flights on whose landing a step turns, and that no step names.
-fn untold_landings(facts: &WalkFacts<'_>, judged: &[JudgedStep<'_, '_>]) -> Vec<CheckFinding> {
+/// Findings about steps that climb a flight of which no step says anything: "take the stairs, then turn right on the landing" tells both
+/// halves of it.
+fn untold_climbs(facts: &WalkFacts<'_>, judged: &[JudgedStep<'_, '_>]) -> Vec<CheckFinding> {
     let tells = |flight: &StairFlight, step: &JudgedStep<'_, '_>| {
         names_stairs(step.claims) && step.stretch[0] <= flight.to && flight.from <= step.stretch[1]
     };
     let is_left_out = |step: &&JudgedStep<'_, '_>| {
         !names_stairs(step.claims)
-            && untold_flights(facts, step.claims, step.stretch).is_empty()
             && facts.flights_on(step.stretch).any(|flight| !judged.iter().any(|other| tells(flight, other)))
     };
-    let finding = |step: &JudgedStep<'_, '_>| untold_flight(Some(step.step.span));
+    let reason = "the path climbs a flight of stairs in this stretch, and the text does not say so";
+    let finding =
+        |step: &JudgedStep<'_, '_>| new_finding(CheckKind::Floors, Verdict::Fail, reason, Some(step.step.span));
     judged.iter().filter(is_left_out).map(finding).collect()
 }
 
-/// The finding about a flight that the text leaves out.
-fn untold_flight(span: Option<[usize; 2]>) -> CheckFinding {
-    let reason = "the path climbs a flight of stairs in this stretch, and the text does not say so";
-    new_finding(CheckKind::Floors, Verdict::Fail, reason, span)
-}
-
-/// Findings about turns and flights of a step's stretch that the step leaves out.
-fn untold_findings(
+/// Findings about turns of a step's stretch that the step leaves out.
+fn untold_turns(
     facts: &WalkFacts<'_>,
     claims: &[StepClaim<'_>],
     step: &InstructionStep,
     stretch: [usize; 2],
 ) -> Vec<CheckFinding> {
-    let span = Some(step.span);
-    let turns = untold_bends(facts, claims, stretch).into_iter().filter(|bend| facts.is_decision(bend)).map(|bend| {
-        let way = turn_word(bend.side());
-        let reason = format!("the path turns {way} in this stretch, and the text does not say so");
-        new_finding(CheckKind::Turns, Verdict::Fail, reason, span)
-    });
-    let flights = untold_flights(facts, claims, stretch).into_iter().map(|_| untold_flight(span));
-    turns.chain(flights).collect()
+    let bends = untold_bends(facts, claims, stretch).into_iter().filter(|bend| facts.is_decision(bend));
+    let finding = |bend: &WalkBend| {
+        let reason = format!("the path turns {} in this stretch, and the text does not say so", turn_word(bend.side()));
+        new_finding(CheckKind::Turns, Verdict::Fail, reason, Some(step.span))
+    };
+    bends.map(finding).collect()
 }

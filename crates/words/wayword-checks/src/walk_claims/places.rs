@@ -13,7 +13,7 @@ use crate::{
 };
 use wayword_core::Side;
 use wayword_language::{
-    lexicon::is_fabric,
+    lexicon::{ThingClass, find_thing, is_fabric},
     reading::{PlaceMention, PlaceOrdinal},
 };
 
@@ -37,6 +37,14 @@ const BEHIND_DEG: f64 = 110.0;
 const PASSED_M: f64 = 3.5;
 /// A thing counts as in sight where a frame up to this many frames away shows it.
 const SIGHT_FRAMES: usize = 3;
+
+/// How far a bed or a bathtub reaches from its middle, metres.
+const LARGE_REACH_M: f64 = 0.8;
+
+/// Whether a thing is so long that a walker stands beside it long after its middle.
+fn is_large(name: &str) -> bool {
+    find_thing(name).is_some_and(|thing| matches!(thing.class, ThingClass::Bed | ThingClass::Tub))
+}
 
 /// The judge of one place on one stretch.
 pub(super) struct PlaceJudge<'f, 'a> {
@@ -92,21 +100,24 @@ impl PlaceJudge<'_, '_> {
     }
 
     /// Whether a change of rooms whose first frame behind it is `behind` belongs to the stretch. A turn just before it may belong to the
-    /// step before; a turn at the end of the stretch comes before a change behind it.
+    /// step before, and a turn just behind it to the step that names the room or the one before; a turn at the end of the stretch comes
+    /// before a change behind it.
     pub(super) fn changes_room_at(&self, behind: usize) -> bool {
         let [from, to] = self.stretch;
         let turns_at =
             |frame: usize| self.facts.memory.bends.iter().any(|bend| (bend.first..=bend.last).contains(&frame));
         match behind {
             _ if (from + 1..=to).contains(&behind) => true,
-            _ if behind == from => behind > 0 && turns_at(behind - 1),
+            _ if behind == from => behind > 0 && (behind - 1..=behind + 1).any(turns_at),
+            _ if behind + 1 == from => behind > 0 && turns_at(behind),
             _ => behind == to + 1 && !turns_at(to),
         }
     }
 
-    /// Whether the turn that the step makes before it comes to a change of rooms comes before it in the walk as well.
+    /// Whether the turn that the step makes before it comes to a change of rooms comes before it in the walk as well, or just behind the
+    /// door.
     pub(super) fn turns_before(&self, behind: usize) -> bool {
-        let turns = |side| self.facts.told_bend(side, [self.stretch[0], behind]).is_some();
+        let turns = |side| self.facts.told_bend(side, [self.stretch[0], behind + 1]).is_some();
         self.claim.turn_before.is_none_or(turns)
     }
 
@@ -261,9 +272,11 @@ impl PlaceJudge<'_, '_> {
             }
             PlaceRole::Reached => (to..=(to + 1).min(last)).filter(|frame| within(*frame, stop_m)).collect(),
             PlaceRole::Stopped | PlaceRole::Within { at_stop: true } => {
-                let is_behind =
-                    facts.direction_rad(thing, last).is_some_and(|rad| rad.abs() >= BEHIND_DEG.to_radians());
-                let limit_m = if is_behind || facts.memory.is_left_behind(thing) { BEHIND_STOP_M } else { stop_m };
+                let limit_m = match self.is_behind_at_last(thing) {
+                    true if is_large(self.name()) => BEHIND_STOP_M + LARGE_REACH_M,
+                    true => BEHIND_STOP_M,
+                    false => stop_m,
+                };
                 let is_there = within(last, limit_m) && (is_seen(last) || within(last, TOUCHED_M));
                 is_there.then_some(last).into_iter().collect()
             }
@@ -299,6 +312,12 @@ impl PlaceJudge<'_, '_> {
         let leaving_rad = self.facts.evidence.moves.get(from).map_or(0.0, |step| step.turn_rad);
         let towards = self.facts.direction_rad(thing, from).map(|rad| wrap_angle(rad - leaving_rad));
         towards.is_some_and(|rad| rad.abs() >= BEHIND_DEG.to_radians())
+    }
+
+    /// Whether a thing lies behind a walker at the last frame, or was passed long before.
+    fn is_behind_at_last(&self, thing: &RememberedThing) -> bool {
+        let direction_rad = self.facts.direction_rad(thing, self.facts.last_frame());
+        direction_rad.is_some_and(|rad| rad.abs() >= BEHIND_DEG.to_radians()) || self.facts.memory.is_left_behind(thing)
     }
 
     /// Whether a thing stands in a room where the walk is not: on the stretch, at its end for a stop, or later for a thing ahead.
@@ -354,6 +373,9 @@ impl PlaceJudge<'_, '_> {
                 match far_m.min_by(f64::total_cmp) {
                     Some(far_m) if far_m > STOP_M && !is_wide(name) => {
                         format!("the nearest {name:?} is {far_m:.1} m from where the path ends")
+                    }
+                    Some(_) if things.iter().any(|thing| self.is_behind_at_last(thing)) => {
+                        format!("{name:?} is behind a walker where the path ends")
                     }
                     _ => format!("{name:?} is not seen from the end of the path"),
                 }

@@ -299,6 +299,42 @@ fn a_door_is_the_one_of_its_number_on_its_side() {
 }
 
 #[test]
+fn a_room_that_a_text_begins_from_is_left_in_the_next_step() {
+    holds(&WHOLE.replace("Walk down the hallway past", "From the hallway, walk past"));
+}
+
+#[test]
+fn two_things_with_words_behind_them_are_two() {
+    let walk = flat_walk_with(&[("plant", [1.0, 2.0])]);
+    let text = |behind: &str| {
+        format!(
+            "Walk past the plant in the red pot and past the plant{behind}. Turn right and enter the bedroom. Walk past the bed, turn left at the dresser and stop by the armchair."
+        )
+    };
+    let repeats =
+        |text: &str| mistakes_by(&walk, text, check_text).iter().any(|found| found.3.contains("a second time"));
+    assert!(!repeats(&text(" in the blue pot")));
+}
+
+#[test]
+fn a_door_stands_in_a_doorway() {
+    let text = WHOLE.replace("Turn right and enter", "Turn right and go through the doorway into");
+    let walk = flat_walk_with(&[("door", [1.5, 5.0])]);
+    assert_eq!(mistakes_by(&walk, &text, check_text), []);
+}
+
+#[test]
+fn a_walker_stops_beside_a_long_thing_whose_middle_is_behind() {
+    let stop_by = |name: &str| {
+        let walk = flat_walk_with(&[(name, [5.9, 6.6])]);
+        mistakes_by(&walk, &WHOLE.replace("stop by the armchair", &format!("stop by the {name}")), check_text)
+    };
+    assert_eq!(stop_by("bathtub"), []);
+    let found = stop_by("cabinet");
+    assert!(found.iter().any(|found| found.3.contains("behind a walker")), "{found:?}");
+}
+
+#[test]
 fn a_stop_that_names_nothing_fails_where_the_walk_goes_on() {
     fails(&WHOLE.replace(" and stop by the armchair", ". Stop"), CheckKind::Landmarks, "Stop");
     holds(&WHOLE.replace(" and stop by the armchair", ", walk past the rug and the lamp. Stop"));
@@ -314,6 +350,7 @@ fn a_stop_at_one_of_several_alike_fails_where_the_walk_comes_to_another_first() 
     );
     holds(&stop("vase next to the armchair"));
     holds(&stop("vase on the right"));
+    assert!(!mistakes(&stop("vase with a blue flower")).iter().any(|found| found.3.contains("comes to another")));
 }
 
 #[test]
