@@ -127,6 +127,14 @@ pub trait LanguageModel: Send + Sync {
 
     /// One result per request, in their order. One that fails does not fail the others.
     fn complete_requests(&self, requests: &[ModelRequest]) -> Vec<Result<ModelReply, ModelError>>;
+
+    /// The most tokens that it reads and writes at once, where a setting says so.
+    fn context_tokens(&self) -> Option<u64> {
+        None
+    }
+
+    /// Tells the user something about its requests, once a run.
+    fn note(&self, _note: String) {}
 }
 
 /// Why a role could not do what it was asked.

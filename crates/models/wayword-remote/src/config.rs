@@ -61,6 +61,8 @@ pub struct ProviderConfig {
     pub local: Option<bool>,
     /// Whether none of its models takes pictures.
     pub blind: Option<bool>,
+    /// The most tokens that its models read and write at once. Prompts to write are shortened to fit.
+    pub context_tokens: Option<u64>,
     /// Its field for the most tokens of a reply (OpenAI's dialects only).
     pub max_tokens_field: Option<String>,
     /// Its field for the seed (OpenAI's dialects only).
@@ -179,7 +181,7 @@ impl ProviderConfig {
         macro_rules! take {
             ($($field:ident),*) => { $(if other.$field.is_some() { self.$field.clone_from(&other.$field); })* };
         }
-        take!(dialect, base_url, key_env, local, blind, max_tokens_field, seed_field, extra, omit);
+        take!(dialect, base_url, key_env, local, blind, context_tokens, max_tokens_field, seed_field, extra, omit);
         take!(requests_per_minute, tokens_per_minute, advertises_requests_per_day, json, tools);
         self
     }

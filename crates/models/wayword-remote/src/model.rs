@@ -190,6 +190,14 @@ impl LanguageModel for RemoteModel {
         &self.name
     }
 
+    fn context_tokens(&self) -> Option<u64> {
+        self.endpoint.provider.context_tokens
+    }
+
+    fn note(&self, note: String) {
+        self.endpoint.note(note);
+    }
+
     fn complete_requests(&self, requests: &[ModelRequest]) -> Vec<Result<ModelReply, ModelError>> {
         if let [only] = requests {
             return vec![self.complete_one(only)];

@@ -10,6 +10,9 @@ const BUILT_IN: &str = include_str!("provider.toml");
 /// Longest name of a model, bytes. A longer one is refused.
 const MAX_NAME_BYTES: usize = 200;
 
+/// The least context of a model, tokens: the shortest prompt to write, with its answer, takes about so many.
+const MIN_CONTEXT_TOKENS: u64 = 1024;
+
 /// A provider with all its settings. The fields are those of [`ProviderConfig`], with defaults filled in.
 #[derive(Debug, Clone)]
 pub(crate) struct RemoteProvider {
@@ -19,6 +22,7 @@ pub(crate) struct RemoteProvider {
     pub(crate) key_env: Option<String>,
     pub(crate) local: bool,
     pub(crate) blind: bool,
+    pub(crate) context_tokens: Option<u64>,
     pub(crate) max_tokens_field: String,
     pub(crate) seed_field: String,
     pub(crate) extra: Map<String, Value>,
@@ -93,6 +97,7 @@ impl ProviderTable {
             key_env: config.key_env.clone().or_else(|| settings.key_env.clone()),
             local: settings.local.unwrap_or(false),
             blind: settings.blind.unwrap_or(false) || !dialect.takes_pictures(),
+            context_tokens: settings.context_tokens,
             max_tokens_field: text(&settings.max_tokens_field, "max_tokens"),
             seed_field: text(&settings.seed_field, "seed"),
             extra: settings.extra.clone().unwrap_or_default(),
@@ -125,6 +130,9 @@ impl RemoteProvider {
             if rate.is_some_and(|rate| !rate.is_finite() || rate <= 0.0) {
                 return Err(wrong(field, "must be above 0"));
             }
+        }
+        if self.context_tokens.is_some_and(|tokens| tokens < MIN_CONTEXT_TOKENS) {
+            return Err(wrong("context_tokens", "must be 1024 or more, since a prompt to write takes about so many"));
         }
         if self.omit.iter().any(|field| !["temperature", "seed", "max_tokens"].contains(&field.as_str())) {
             return Err(wrong("omit", "may contain only temperature, seed and max_tokens"));

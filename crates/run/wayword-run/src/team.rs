@@ -195,6 +195,14 @@ impl LanguageModel for SampledModel {
         };
         self.model.complete_requests(&requests.iter().map(again).collect::<Vec<_>>())
     }
+
+    fn context_tokens(&self) -> Option<u64> {
+        self.model.context_tokens()
+    }
+
+    fn note(&self, note: String) {
+        self.model.note(note);
+    }
 }
 
 /// A model in a role. The spans of its calls have the role as their purpose.
@@ -210,6 +218,14 @@ impl LanguageModel for PurposeModel {
 
     fn complete_requests(&self, requests: &[ModelRequest]) -> Vec<Result<ModelReply, ModelError>> {
         CallContext::with_purpose(self.purpose, || self.model.complete_requests(requests))
+    }
+
+    fn context_tokens(&self) -> Option<u64> {
+        self.model.context_tokens()
+    }
+
+    fn note(&self, note: String) {
+        self.model.note(note);
     }
 }
 

@@ -186,8 +186,8 @@ impl ServiceDialect {
     /// The setting with which a service reads longer prompts.
     pub(crate) fn longer_context(self) -> &'static str {
         match self {
-            Self::Ollama => "set extra = { options = { num_ctx = 32768 } }",
-            _ => "start the server with a longer context, or set picture_px lower; there is no setting for it",
+            Self::Ollama => "set context_tokens = 32768",
+            _ => "start the server with a longer context, or set context_tokens to what it has",
         }
     }
 

@@ -19,7 +19,8 @@ pub(super) fn to_wire(request: DialectRequest<'_>) -> WireRequest {
         options.insert("seed".to_owned(), seed_of_31_bits(sampling).into());
     }
     // Ollama cuts a prompt that is longer than this without a word; its own default is 4,096 or less.
-    options.insert("num_ctx".to_owned(), context_size(request.context_tokens).into());
+    let context = provider.context_tokens.unwrap_or_else(|| context_size(request.context_tokens));
+    options.insert("num_ctx".to_owned(), context.into());
     let messages: Vec<Value> = request.lines.iter().map(message_json).collect();
     let mut body = json!({ "model": request.model, "messages": messages, "stream": false, "options": options });
     if let Some((way, _, schema)) = request.json_form() {

@@ -262,6 +262,7 @@ fn ollama_does_not_think_unless_the_settings_ask_for_it() {
     assert_eq!(body["think"], true);
     assert_eq!(body["options"]["num_ctx"], 3000);
     assert_eq!(body["options"]["num_predict"], 30);
+    assert_eq!(wire_of("[providers.ollama]\ncontext_tokens = 4096").body["options"]["num_ctx"], 4096);
 }
 
 /// A long prompt gets a longer context, in few sizes, because Ollama loads the model again for each.
