@@ -1,22 +1,27 @@
 //! What a text lacks for a walker to arrive by it, in sentences for its writer.
 
 use crate::follow::{FollowedPath, read_followable};
-use wayword_checks::{CoveredDecision, DecisionTold, Evidence, WalkDecision, WalkMemory, cover_walk, memory::WalkBend};
+use wayword_checks::{
+    CoveredDecision, DecisionTold, Evidence, WalkDecision, WalkMemory, cover_walk,
+    memory::{RememberedThing, WalkBend},
+};
 use wayword_core::{ClimbDirection, Instruction, Side};
 use wayword_follower::{
     FeatureWeights,
     doubt::{DoubtBounds, find_doubts},
 };
-use wayword_language::rewording::TokenisedText;
+use wayword_language::{lexicon::names_agree, rewording::TokenisedText};
 
 /// Most sentences of each kind.
 const MAX_SENTENCES: usize = 3;
 
-/// The decisions of the walk that no words tell, the words that would fit the walk better, and how many other ends the text may mean.
+/// The decisions of the walk that no words tell, the words that would fit the walk better, and how many other ends the text may mean. Things
+/// are named only where the writer knows of them.
 pub(crate) fn writing_advice(
     followed: &FollowedPath<'_>,
     instruction: &Instruction,
     (evidence, memory): (&Evidence, &WalkMemory),
+    writers_memory: &WalkMemory,
 ) -> Vec<String> {
     let text = instruction.text.as_str();
     let Ok((guide, reading)) = read_followable(text, None) else { return Vec::new() };
@@ -52,14 +57,17 @@ pub(crate) fn writing_advice(
     }
     let ambiguity = instruction.ambiguity.as_ref();
     if let Some(ends) = ambiguity.and_then(|ambiguity| ambiguity.ends).filter(|ends| *ends > 1) {
-        let apart = ambiguity.and_then(|ambiguity| ambiguity.told_apart_by.as_deref());
+        // A thing that the writer knows nothing of would be made up.
+        let is_known = |name: &&str| writers_memory.things.iter().any(|thing| names_agree(&thing.name, name));
+        let apart = ambiguity.and_then(|ambiguity| ambiguity.told_apart_by.as_deref()).filter(is_known);
         let apart = apart.map_or(String::new(), |apart| format!(": name {apart:?}, which only the right end has"));
         advice.push(format!("the words may end at {ends} places{apart}"));
     }
     if advice.is_empty() {
         let last = memory.frame_count().saturating_sub(1);
-        let near =
-            memory.things.iter().filter(|thing| memory.distance_m(thing, last).is_some_and(|far_m| far_m <= 2.0));
+        let is_near =
+            |thing: &&RememberedThing| writers_memory.distance_m(thing, last).is_some_and(|far_m| far_m <= 2.0);
+        let near = writers_memory.things.iter().filter(is_near);
         let names: Vec<&str> = near.map(|thing| thing.name.as_str()).take(MAX_SENTENCES).collect();
         if !names.is_empty() {
             advice

@@ -162,6 +162,7 @@ pub fn write_item(
         knows_scene,
         evidence: &evidence,
         memory: &evidence_memory,
+        writers_memory: memory,
         rejects_ambiguous: settings.reject_ambiguous,
     };
     let ahead = views_ahead(&world, &walk.path)?;
@@ -259,6 +260,8 @@ struct PathFollower<'a> {
     evidence: &'a Evidence,
     /// The memory of the walk by that evidence.
     memory: &'a WalkMemory,
+    /// What the writer is told of the walk.
+    writers_memory: &'a WalkMemory,
     /// Whether an ambiguous text fails (`--reject-ambiguous`).
     rejects_ambiguous: bool,
 }
@@ -282,7 +285,9 @@ impl TextFollower for PathFollower<'_> {
 
     fn advice(&self, instruction: &Instruction) -> Vec<String> {
         let known = self.followed.as_ref().ok().filter(|_| self.knows_scene);
-        known.map(|followed| writing_advice(followed, instruction, (self.evidence, self.memory))).unwrap_or_default()
+        let advise =
+            |followed| writing_advice(followed, instruction, (self.evidence, self.memory), self.writers_memory);
+        known.map(advise).unwrap_or_default()
     }
 }
 

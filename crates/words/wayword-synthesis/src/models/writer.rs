@@ -20,6 +20,8 @@ pub struct ModelWriter {
 const WRITING_TEMPERATURE: f64 = 0.7;
 /// Room for the longest instruction of a fine-grained style.
 const MAX_TOKENS: u32 = 300;
+/// Bytes of a prompt for each token of the context that a model has: fewer than English text has, so that the prompt surely fits.
+const BYTES_PER_TOKEN: usize = 3;
 /// How much of an over-long text the next prompt shows, bytes.
 const MAX_SHOWN_BYTES: usize = 500;
 
@@ -29,6 +31,21 @@ impl ModelWriter {
     pub fn new(model: Arc<dyn LanguageModel>, prompts: Arc<Prompts>) -> Self {
         Self { model, prompts }
     }
+
+    /// The prompt, shortened for a model that reads little.
+    fn fitting_prompt(&self, brief: &WritingBrief<'_>) -> Result<String, ModelError> {
+        let Some(context) = self.model.context_tokens() else { return Ok(self.prompts.writing_prompt(brief)?) };
+        let room_tokens = context.saturating_sub(u64::from(MAX_TOKENS));
+        let most_bytes = usize::try_from(room_tokens).unwrap_or(usize::MAX).saturating_mul(BYTES_PER_TOKEN);
+        let (prompt, is_shortened) = self.prompts.writing_prompt_within(brief, most_bytes)?;
+        if is_shortened {
+            self.model.note(format!(
+                "{} reads {context} tokens, so prompts to write tell it less than is known of some walks",
+                self.model.name()
+            ));
+        }
+        Ok(prompt)
+    }
 }
 
 impl InstructionWriter for ModelWriter {
@@ -37,7 +54,7 @@ impl InstructionWriter for ModelWriter {
     }
 
     fn write(&self, brief: &WritingBrief<'_>) -> Result<String, WriteError> {
-        let prompt = self.prompts.writing_prompt(brief).map_err(ModelError::from)?;
+        let prompt = self.fitting_prompt(brief)?;
         let pictures = brief.pictures.iter().map(|picture| Arc::clone(&picture.image)).collect();
         let seed = brief.seed.wrapping_add(u64::from(brief.candidate));
         let sampling = SamplingOptions { temperature: WRITING_TEMPERATURE, max_tokens: MAX_TOKENS, seed };

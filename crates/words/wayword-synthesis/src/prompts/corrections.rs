@@ -5,15 +5,20 @@ use super::{
     walk_parts::frame_range,
 };
 use crate::writer::{TextComplaint, WritingBrief};
-use wayword_checks::{WalkMemory, memory::RememberedThing};
+use wayword_checks::{
+    WalkMemory,
+    memory::{RememberedThing, is_way_through},
+};
 use wayword_core::{CheckFinding, CheckKind, ClimbDirection, PathMove, Side, TurnKind, Verdict};
 use wayword_language::{
-    lexicon::names_agree,
+    lexicon::{is_fabric, names_agree, same_room},
     reading::{EventContent, read_instruction},
 };
 
 /// Most things that one correction names.
 const MAX_NAMED_THINGS: usize = 3;
+/// Most things that a correction names of what is seen from the end.
+const MAX_SEEN_THINGS: usize = 8;
 
 /// The reasons why a text failed, each with the words concerned and with a correction.
 pub(super) fn refusal_reasons(brief: &WritingBrief<'_>, complaint: &TextComplaint) -> Vec<String> {
@@ -24,9 +29,14 @@ pub(super) fn refusal_reasons(brief: &WritingBrief<'_>, complaint: &TextComplain
 /// The reason of one finding, with the words concerned before it and the correction behind it.
 fn explain_finding(brief: &WritingBrief<'_>, text: &str, finding: &CheckFinding) -> String {
     let words = finding.span.and_then(|[from, to]| text.get(from..to));
-    let reason = match words {
-        Some(words) if !finding.reason.contains(words) => format!("you wrote {words:?}: {}", finding.reason),
-        _ => finding.reason.clone(),
+    // "Here" is where the clause is.
+    let quoted = match finding.reason.contains("here") {
+        true => finding.span.map(|span| clause_around(text, span)),
+        false => words.filter(|words| !finding.reason.contains(*words)),
+    };
+    let reason = match quoted {
+        Some(quoted) => format!("you wrote {quoted:?}: {}", finding.reason),
+        None => finding.reason.clone(),
     };
     match describe_right(brief, text, finding, words) {
         Some(right) => format!("{reason} ({right})"),
@@ -45,10 +55,19 @@ fn describe_right(brief: &WritingBrief<'_>, text: &str, finding: &CheckFinding, 
         CheckKind::Turns => Some(describe_turns(brief, text, finding.span)),
         CheckKind::Floors => Some(describe_climbs(brief.memory)),
         CheckKind::Landmarks | CheckKind::Order => where_seen(brief, words?),
+        CheckKind::Task => seen_at_end(brief),
         CheckKind::Leak => Some("say it in other words".to_owned()),
         CheckKind::Coverage => Some("use plain words for ways, rooms and things".to_owned()),
-        CheckKind::Form | CheckKind::Task | CheckKind::Route => None,
+        CheckKind::Form | CheckKind::Route => None,
     }
+}
+
+/// The clause of a text around a span.
+fn clause_around(text: &str, [from, to]: [usize; 2]) -> &str {
+    let is_mark = |c: char| matches!(c, '.' | ',' | ';');
+    let start = text.get(..from).and_then(|before| before.rfind(is_mark)).map_or(0, |mark| mark + 1);
+    let end = text.get(to..).and_then(|behind| behind.find(is_mark)).map_or(text.len(), |mark| to + mark);
+    text.get(start..end).unwrap_or_default().trim()
 }
 
 /// The turn of the walk that corresponds to this turn of the text; all turns of the walk if the text has more or fewer.
@@ -80,9 +99,30 @@ fn describe_climbs(memory: &WalkMemory) -> String {
     if climbs.is_empty() { "the walk stays on one floor".to_owned() } else { climbs.join(", ") }
 }
 
-/// Where the named thing is along the walk, and how it looks; advice if it is nowhere.
+/// What a task can be about.
+fn seen_at_end(brief: &WritingBrief<'_>) -> Option<String> {
+    let last = brief.memory.frame_count().saturating_sub(1);
+    let seen = brief.memory.things.iter().filter(|thing| thing.glimpse_from(last).is_some() && !is_fabric(&thing.name));
+    let mut names: Vec<&str> = seen.map(|thing| thing.name.as_str()).collect();
+    names.dedup();
+    names.truncate(MAX_SEEN_THINGS);
+    (!names.is_empty() && brief.walk.path.target.is_none()).then(|| format!("it shows: {}", names.join(", ")))
+}
+
+/// Where the named place is along the walk, and how a thing looks; advice if it is nowhere.
 fn where_seen(brief: &WritingBrief<'_>, words: &str) -> Option<String> {
     let name = words.trim_start_matches("the ").trim();
+    let stays = brief.known.stays.iter().filter(|stay| same_room(&stay.room, name));
+    let stays: Vec<String> = stays.map(|stay| frame_range(stay.entered, stay.left)).collect();
+    if !stays.is_empty() {
+        return Some(format!("the walk is in the {name} in {}", stays.join(" and in ")));
+    }
+    if brief.known.knows_doors() && is_way_through(name) {
+        let ways = brief.known.openings.iter().filter(|opening| opening.has_door);
+        let ways: Vec<String> =
+            ways.map(|way| format!("after {} into the {}", frame_name(way.before), way.to)).collect();
+        return (!ways.is_empty()).then(|| format!("the walk goes through a door {}", ways.join(", ")));
+    }
     let knows_motion = brief.walk.path.motion.is_known();
     let place = |thing: &RememberedThing| {
         let colour = thing.colour.as_ref().map_or(String::new(), |colour| format!("{colour} "));

@@ -6,6 +6,8 @@
 
 mod bounds;
 mod corrections;
+mod detail;
+mod looks;
 mod move_words;
 pub(crate) mod trial_fill;
 mod walk_parts;
@@ -16,6 +18,8 @@ use sha2::{Digest, Sha256};
 use wayword_core::{DialogueExchange, ModelError, ObjectSighting, WitnessAnswer, hex_text};
 
 use crate::{dialogue::is_opening, writer::WritingBrief};
+use detail::PromptDetail;
+use writing::writing_context;
 
 /// The built-in templates: name and source. A user can override each by its name.
 const BUILT_IN: [(&str, &str); 8] = [
@@ -217,7 +221,27 @@ impl Prompts {
     /// # Errors
     /// When an overridden template cannot be filled.
     pub fn writing_prompt(&self, brief: &WritingBrief<'_>) -> Result<String, PromptError> {
-        self.fill_template("write", writing::writing_context(brief))
+        self.fill_template("write", writing_context(brief, PromptDetail::Full))
+    }
+
+    /// The same for a model that reads at most so many bytes: the longest of several prompts that fits, or else the shortest. Also
+    /// whether it tells less than it could.
+    ///
+    /// # Errors
+    /// As for [`Self::writing_prompt()`].
+    pub(crate) fn writing_prompt_within(
+        &self,
+        brief: &WritingBrief<'_>,
+        most_bytes: usize,
+    ) -> Result<(String, bool), PromptError> {
+        let mut shortest = String::new();
+        for detail in PromptDetail::ALL {
+            shortest = self.fill_template("write", writing_context(brief, detail))?;
+            if shortest.len() <= most_bytes {
+                return Ok((shortest, detail != PromptDetail::Full));
+            }
+        }
+        Ok((shortest, true))
     }
 }
 

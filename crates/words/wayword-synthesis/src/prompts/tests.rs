@@ -194,7 +194,7 @@ fn writing_prompt_lists_things_of_frames_and_marks_an_unseen_target() {
     seen.observations[3].looks = vec![CaptionedView { gaze, caption: Caption { sightings, ..Caption::default() } }];
     let prompt = prompt(&seen);
     assert!(!prompt.contains("nobody described it"), "{prompt}");
-    assert!(prompt.contains("- also in sight: white lamp (left); white bed\n"), "{prompt}");
+    assert!(prompt.contains("- seen from the last frame: white lamp (left); white bed\n"), "{prompt}");
     assert!(!prompt.contains("soft"), "no thing is called that: {prompt}");
 }
 
@@ -275,6 +275,13 @@ fn a_writing_prompt_tells_the_whole_walk_in_few_tokens() {
         assert!(prompt.len() / 4 <= most_tokens, "{} tokens: {prompt}", prompt.len() / 4);
         let end = prompt.split("The style,").next().unwrap();
         assert!(end.contains(&format!("{}, kitchen: ", count - 1)) && end.contains("the end\n- "), "{end}");
+        // A model that reads less gets the whole way too, with fewer things and examples.
+        let prompts = Prompts::new(&[]).unwrap();
+        assert_eq!(prompts.writing_prompt_within(&brief, prompt.len()).unwrap(), (prompt.clone(), false));
+        let (short, is_shortened) = prompts.writing_prompt_within(&brief, prompt.len() - 1).unwrap();
+        let (least, _) = prompts.writing_prompt_within(&brief, 100).unwrap();
+        assert!(is_shortened && least.len() < short.len() && short.len() < prompt.len());
+        assert!(least.contains("the end\n- ") && least.len() / 4 <= 1_000, "{} tokens", least.len() / 4);
     }
 }
 

@@ -1,17 +1,14 @@
 //! Computes the values that fill the writing prompt: the parts of the walk, the target, references, constraints.
 
-use super::{corrections::refusal_reasons, walk_parts::walk_parts};
+use super::{corrections::refusal_reasons, detail::PromptDetail, walk_parts::walk_parts};
 use crate::writer::WritingBrief;
 use minijinja::{Value, context};
 use rand::seq::index;
 use wayword_core::{ObjectDistinction, PathTarget, Side, seeded_rng};
 use wayword_language::{lexicon::names_agree, text::word_count};
 
-/// Most reference texts of a prompt. A style may have thousands, and more examples do not make a text more alike.
-const MAX_SHOWN_REFERENCES: usize = 10;
-
 /// The variables of the template `write.j2`.
-pub(super) fn writing_context(brief: &WritingBrief<'_>) -> Value {
+pub(super) fn writing_context(brief: &WritingBrief<'_>, detail: PromptDetail) -> Value {
     let walk = brief.walk;
     let pictured: Vec<String> = brief.pictures.iter().map(|picture| format!("Frame {}", picture.frame)).collect();
     let complaints = brief.complaints.iter();
@@ -20,11 +17,11 @@ pub(super) fn writing_context(brief: &WritingBrief<'_>) -> Value {
         .collect();
     context! {
         last_frame => walk.path.frames.len().saturating_sub(1),
-        parts => walk_parts(brief),
+        parts => walk_parts(brief, detail),
         pictured,
         complaints,
         knows_motion => walk.path.motion.is_known(),
-        references => shown_references(brief),
+        references => shown_references(brief, detail),
         target => walk.path.target.as_ref().filter(|_| ends_in_task(brief)).map(|target| target_line(brief, target)),
         constraints => style_constraints(brief),
         earlier => brief.earlier,
@@ -32,9 +29,9 @@ pub(super) fn writing_context(brief: &WritingBrief<'_>) -> Value {
 }
 
 /// The references that a prompt shows: all of them, or some that are drawn by the seed.
-fn shown_references<'a>(brief: &WritingBrief<'a>) -> Vec<&'a str> {
+fn shown_references<'a>(brief: &WritingBrief<'a>, detail: PromptDetail) -> Vec<&'a str> {
     let all = &brief.style.references;
-    let shown = all.len().min(MAX_SHOWN_REFERENCES);
+    let shown = all.len().min(detail.max_references());
     let mut chosen = match shown == all.len() {
         true => (0..shown).collect(),
         false => index::sample(&mut seeded_rng(brief.seed, &["shown references", &brief.style.name]), all.len(), shown)
@@ -60,11 +57,18 @@ fn target_line(brief: &WritingBrief<'_>, target: &PathTarget) -> String {
         Some(description) if description.leaves == 1 => {
             line += &format!(", to be told from others: {}", by(&description.by));
         }
-        Some(description) => {
-            let leaves = description.leaves;
-            line += &format!(", {} (with this, {leaves} objects of the building still fit)", by(&description.by));
+        Some(description) if description.by.is_empty() => {
+            line += " (others in the building are called so too, so lead the reader to its place)";
         }
-        None if target.has_namesake => line += &format!(" (others like it are visible; it is {})", by(&target.told_by)),
+        Some(description) => {
+            line += &format!(
+                ", {} (others in the building fit this too, so lead the reader to its place)",
+                by(&description.by)
+            );
+        }
+        None if target.has_namesake && !target.told_by.is_empty() => {
+            line += &format!(" (others like it are visible; it is {})", by(&target.told_by))
+        }
         None => {}
     }
     line += &target_spot(brief, target);
@@ -87,7 +91,7 @@ fn target_spot(brief: &WritingBrief<'_>, target: &PathTarget) -> String {
         Side::Behind => "behind",
     });
     match (side, far_m) {
-        (Some(side), Some(far_m)) => format!("; who arrives has it {side}, {far_m:.1} metres away"),
+        (Some(side), Some(far_m)) => format!("; on arrival {side}, {far_m:.1} metres away"),
         _ => String::new(),
     }
 }
@@ -112,7 +116,11 @@ fn style_constraints(brief: &WritingBrief<'_>) -> Vec<String> {
         None => sentences.extend(usual_length(brief)),
     }
     if rules.ends_in_task {
-        sentences.push("The text is a navigation part, the word \"and\", and an activity part: a task on an object of the last frame.".to_owned());
+        let object =
+            if brief.walk.path.target.is_some() { "that object" } else { "a thing that is seen from the last frame" };
+        sentences.push(format!(
+            "The text is a navigation part, the word \"and\", and an activity part: a task on {object}."
+        ));
     }
     sentences
 }

@@ -426,6 +426,13 @@ fn what_the_checks_cannot_decide_is_asked_of_the_model_that_sees() {
     let WritingOutcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
     assert_eq!((instruction.text.as_str(), instruction.provenance.drafts[0].text.as_str()), (GOOD, PAST_A_MIRROR));
     assert!(instruction.provenance.drafts[0].reasons[0].contains("shows no mirror"), "{instruction:?}");
+    // The room at the end is asked for where no witness knew it.
+    for (answer, verdict) in [("It is a kitchen.", Verdict::Pass), ("It is a garage.", Verdict::Unverified)] {
+        let (outcome, asked) =
+            asked_about_a_mirror(&["Walk straight ahead and turn right. Stop in the kitchen."], answer);
+        let WritingOutcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
+        assert_eq!((asked, instruction.verdict), (vec!["What room is this?".to_owned()], verdict));
+    }
     // An answer that says nothing leaves it as it is.
     let (outcome, _) = asked_about_a_mirror(&[PAST_A_MIRROR], "I am not sure.");
     let WritingOutcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
