@@ -7,8 +7,8 @@ use std::{path::PathBuf, process::ExitCode};
 use wayword_fit::{fit_alignment, fit_evidence, fit_follower};
 use wayword_quality::{
     arrivals, budget, checked_texts, claims, corrupt_people, corruption_findings, corruptions, coverage, critics,
-    detector, doubts, eye, house_faults, house_views, people, reader_figures, remembered, reuse, sample, skeleton,
-    stage, steps, study_coverage, sweep, tell_apart, texts, walker,
+    detector, doubts, eye, house_faults, house_views, people, reader_figures, refined, remembered, reuse, sample,
+    skeleton, stage, steps, study_coverage, sweep, tell_apart, texts, walker,
 };
 use wayword_run::{error::CommandError, output::CommandOutput};
 
@@ -92,6 +92,22 @@ enum Measurement {
         #[arg(long, default_value_t = 100)]
         paths: usize,
         /// Seed of the houses, the walks and the eye.
+        #[arg(long, default_value_t = 0)]
+        seed: u64,
+    },
+    /// Measure what judging a text and writing it again mends. A scripted author errs in every first text (a turn flipped, a landmark
+    /// of another part, the end left out), and a follower walks by it and by the text that is kept.
+    Refinement {
+        /// Walks through generated houses.
+        #[arg(long, default_value_t = 60)]
+        paths: usize,
+        /// `--repairs` of the run.
+        #[arg(long, default_value_t = 3)]
+        repairs: u32,
+        /// `--refine` of the run.
+        #[arg(long, default_value_t = 1)]
+        refine: u32,
+        /// Seed of the houses, the walks, the eye and the faults.
         #[arg(long, default_value_t = 0)]
         seed: u64,
     },
@@ -216,6 +232,11 @@ fn run_measurement(what: Measurement, output: &CommandOutput) -> Result<(), Comm
         }
         Measurement::Memory { paths, seed } => {
             let figures = remembered::measure_memory(paths, seed, output)?;
+            output.print_result(&figures, figures);
+            Ok(())
+        }
+        Measurement::Refinement { paths, repairs, refine, seed } => {
+            let figures = refined::measure_refinement(paths, (repairs, refine), seed)?;
             output.print_result(&figures, figures);
             Ok(())
         }

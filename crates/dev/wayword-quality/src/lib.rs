@@ -10,6 +10,7 @@
 //!   has word lists of its own (`word_lists.rs`); `locate.rs` decides whether an edited text is wrong.
 //! - [`texts`], [`tell_apart`]: figures of texts, and a classifier that separates generated ones from people's; `texts/listener/` finds a target by labels.
 //! - [`detector`], [`eye`]: what a detector or a flawed eye with given figures does to texts; `eye_check` checks texts by such an eye.
+//! - [`refined`]: what judging a model's text and writing it again mends.
 //! - [`remembered`]: how right the memory of a walk is that is made from what such an eye saw.
 //! - [`reader_figures`], [`arrivals`], [`critics`], [`sweep`], [`walker`]: followers, critics and agents.
 //! - [`study_coverage`]: how often the intervals of studies cover the truth.
@@ -33,6 +34,7 @@ pub mod house_views;
 pub mod key;
 pub mod people;
 pub mod reader_figures;
+pub mod refined;
 pub mod remembered;
 pub mod reuse;
 pub mod sample;

@@ -22,7 +22,7 @@ use wayword_run::{
     team::RoleTeam,
 };
 use wayword_testkit::provider::{
-    BarcodePlatform, PictureGallery, ProviderBehaviour, ProviderDialect, ScriptedProvider,
+    BarcodePlatform, ModelScript, PictureGallery, ProviderBehaviour, ProviderDialect, ScriptedProvider,
     scripts::{FlawedEye, ScriptedCast},
 };
 
@@ -70,20 +70,33 @@ impl MeasurementStage {
         asked: &MeasuredWorldArgs,
         change: impl FnOnce(FlawedEye) -> FlawedEye,
     ) -> Result<Self, CommandError> {
-        let io = |source| CommandError::Io { path: std::env::temp_dir(), doing: "set the measurement up in", source };
         let gallery = PictureGallery::default();
+        let eye = change(FlawedEye::new(gallery.clone(), asked.seed, 0.0));
+        let cast = ScriptedCast::new(eye.clone(), asked.seed, TEXT_ROLE_ERROR_SHARE);
+        Self::with_scripts(asked, gallery, ProviderBehaviour::for_model("words", cast.clone()).and_model("eye", cast))
+    }
+
+    /// A setup in which one script plays all roles but the eye.
+    pub(super) fn with_author(
+        asked: &MeasuredWorldArgs,
+        change: impl FnOnce(FlawedEye) -> FlawedEye,
+        author: impl ModelScript + 'static,
+    ) -> Result<Self, CommandError> {
+        let gallery = PictureGallery::default();
+        let eye = change(FlawedEye::new(gallery.clone(), asked.seed, 0.0));
+        Self::with_scripts(asked, gallery, ProviderBehaviour::for_model("words", author).and_model("eye", eye))
+    }
+
+    fn with_scripts(
+        asked: &MeasuredWorldArgs,
+        gallery: PictureGallery,
+        scripts: ProviderBehaviour,
+    ) -> Result<Self, CommandError> {
+        let io = |source| CommandError::Io { path: std::env::temp_dir(), doing: "set the measurement up in", source };
         let platform = platforms::open_platform(&asked_job(asked, 1).resolve()?)?;
-        let cast = ScriptedCast::new(
-            change(FlawedEye::new(gallery.clone(), asked.seed, 0.0)),
-            asked.seed,
-            TEXT_ROLE_ERROR_SHARE,
-        );
         Ok(Self {
             world: BarcodePlatform::new(platform, gallery),
-            provider: ScriptedProvider::start(
-                ProviderBehaviour::for_model("words", cast.clone()).and_model("eye", cast),
-            )
-            .map_err(io)?,
+            provider: ScriptedProvider::start(scripts).map_err(io)?,
             folder: tempfile::tempdir().map_err(io)?,
             seed: asked.seed,
             asked: asked.clone(),
@@ -147,6 +160,23 @@ impl MeasurementStage {
         job: &RunJob,
     ) -> Result<(Vec<Result<MadeItem, CommandError>>, CallSpending), CommandError> {
         self.make_items_with_detector(job, None)
+    }
+
+    /// Makes the items of a job one after the other; `before` is called with the number of each.
+    pub(super) fn make_items_in_turn(
+        &self,
+        job: &RunJob,
+        mut before: impl FnMut(usize),
+    ) -> Result<Vec<MadeItem>, CommandError> {
+        let plan = RunPlan::for_writing(job, &self.world)?;
+        let calls = plan.models.open_calls(&fresh_id("measure"), &CommandOutput::new(false, true))?;
+        let team = RoleTeam::new(&job.settings, calls.as_ref(), &self.world)?;
+        let world = RunPlatform { platform: &self.world, data: None, scenes: &KnownScenes::new() };
+        let make = |(number, item)| {
+            before(number);
+            make_item(item, &job.settings, world, &team, &plan.styles, 1)
+        };
+        plan.items.iter().enumerate().map(make).collect()
     }
 
     /// Makes every item of a job, with a detector that looks along the paths, and returns what was spent.

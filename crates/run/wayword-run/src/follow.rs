@@ -98,6 +98,23 @@ enum FollowedPlace<'a> {
     PathAlone(KnownBuilding),
 }
 
+/// How likely each of some texts leads to the end of a path, by its evidence and the survey of its scene; `None` for a text that cannot
+/// be followed.
+///
+/// # Errors
+/// When the platform cannot list its scene.
+pub fn shares_of_arriving(
+    platform: &dyn Platform,
+    scenes: &KnownScenes,
+    path: &Path,
+    evidence: &Evidence,
+    texts: &[&str],
+) -> Result<Vec<Option<f64>>, CommandError> {
+    let scene = scenes.get_or_survey(platform, &path.scene)?;
+    let followed = FollowedPath::new(platform, Some(&scene), path, evidence);
+    Ok(texts.iter().map(|text| followed.as_ref().ok()?.leads_there(text)).collect())
+}
+
 /// The result of following a text.
 pub(crate) struct FollowerFindings {
     /// The finding about the route, and findings about wrong turns.

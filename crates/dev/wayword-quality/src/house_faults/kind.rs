@@ -14,7 +14,7 @@ use super::{
 
 /// A way to make a text about a house wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum HouseFaultKind {
+pub(crate) enum HouseFaultKind {
     /// A turn to the other side.
     TurnFlipped,
     /// A turn behind the room that is entered after it.

@@ -29,7 +29,7 @@ mod words;
 use crate::eye_check::{EyeErrors, EyeWitness};
 use check::check_house_texts;
 use clap::Args;
-use kind::HouseFaultKind;
+pub(crate) use kind::HouseFaultKind;
 use plan::HousePlan;
 use rand::seq::{IndexedRandom, SliceRandom};
 use rayon::prelude::*;
@@ -180,6 +180,13 @@ fn plant_faults(subjects: &[(usize, FaultSubject<'_>)], per_kind: usize, seed: u
         faults.extend(planted.take(per_kind));
     }
     faults
+}
+
+/// A text about a walk through a generated house with one fault of a kind, drawn from a seed; `None` where none can be planted.
+pub(crate) fn plant_fault(walk: &wayword_core::Path, text: &str, kind: HouseFaultKind, seed: u64) -> Option<String> {
+    let plan = HousePlan::new(generate_house(seed_of(walk.scene.as_str())?));
+    let subject = FaultSubject::new(&plan, &walk.frames, text)?;
+    kind.list_edits(&subject).choose(&mut seeded_rng(seed, &["house faults", kind.name()])).cloned()
 }
 
 /// Shows texts with faults that did not fail, with their original texts.
