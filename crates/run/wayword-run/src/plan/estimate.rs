@@ -89,7 +89,7 @@ const OPEN_PER_HUNDRED_VIEWS: u64 = 60;
 /// Tokens of a typical reply of each kind: a question, an answer, a structured answer, and so on.
 const QUESTION_TOKENS: u64 = 20;
 const ANSWER_TOKENS: u64 = 30;
-const STRUCTURED_TOKENS: u64 = 350;
+const STRUCTURED_TOKENS: u64 = 440;
 const CAPTION_TOKENS: u64 = 60;
 const CONDENSED_TOKENS: u64 = 25;
 const INSTRUCTION_TOKENS: u64 = 60;
