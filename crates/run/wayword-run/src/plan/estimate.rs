@@ -48,6 +48,8 @@ pub struct RunEstimate {
     models: ModelBill,
     /// Of a hundred texts of a model, those that are written again for a follower.
     refined: u64,
+    /// Of a hundred texts of a model, those about which the model that sees is asked.
+    asked: u64,
     /// The surplus of shards over a queue.
     #[serde(skip_serializing_if = "Option::is_none")]
     shards: Option<ShardSurcharge>,
@@ -89,7 +91,7 @@ const OPEN_PER_HUNDRED_VIEWS: u64 = 60;
 /// Tokens of a typical reply of each kind: a question, an answer, a structured answer, and so on.
 const QUESTION_TOKENS: u64 = 20;
 const ANSWER_TOKENS: u64 = 30;
-const STRUCTURED_TOKENS: u64 = 440;
+const STRUCTURED_TOKENS: u64 = 350;
 const CAPTION_TOKENS: u64 = 60;
 const CONDENSED_TOKENS: u64 = 25;
 const INSTRUCTION_TOKENS: u64 = 60;
@@ -114,7 +116,8 @@ impl RunEstimate {
         let settings = &plan.job.settings;
         let prompts = settings_prompts(settings)?;
         let refined = refined_per_hundred(settings);
-        let mut estimate = Self { questions: max_questions(settings), refined, ..Self::default() };
+        let asked = asked_per_hundred(settings);
+        let mut estimate = Self { questions: max_questions(settings), refined, asked, ..Self::default() };
         let (mut run_views, mut chunk_views, mut chunk_sum) =
             (DistinctViews::default(), DistinctViews::default(), DistinctCounts::default());
         let mut writing = CallLoad::default();
@@ -238,7 +241,10 @@ impl DialogueLoad {
         let roles = &settings.roles;
         let dialogue = settings.has_dialogue();
         let open = if settings.perception == Perception::FollowUp { views * OPEN_PER_HUNDRED_VIEWS / 100 } else { 0 };
-        let seeing = self.seeing.times(views).plus(self.settling.times(open));
+        // Rules write what labels show, so nothing is asked about their texts.
+        let has_questions = roles.write.model_name().is_some();
+        let about_texts = if has_questions { writing.calls * asked_per_hundred(settings) / 100 } else { 0 };
+        let seeing = self.seeing.times(views).plus(self.settling.times(open + about_texts));
         let summing = self.summing.times(views).plus(self.condensing.times(panoramas));
         let mut bill = ModelBill::default();
         for (role, player, load, takes_part) in [
@@ -283,6 +289,11 @@ const TYPICAL_THINGS: [&str; 20] = [
 /// them surely. A strong model needs fewer, a small one more.
 const REPAIRS_PER_HUNDRED: u64 = 15;
 const REFINED_PER_HUNDRED: u64 = 30;
+
+/// Questions to the model that sees about a hundred texts of a model. Structured answers leave less open.
+fn asked_per_hundred(settings: &RunSettings) -> u64 {
+    if settings.perception.is_structured() { 15 } else { 60 }
+}
 
 /// Of a hundred texts, those that are written again for a follower. Where no labels show the scene, none is followed.
 fn refined_per_hundred(settings: &RunSettings) -> u64 {
@@ -359,8 +370,9 @@ impl fmt::Display for RunEstimate {
         writeln!(
             f,
             "estimate, if dialogues end where they usually do and the ledger is empty; of 100 texts of a model {REPAIRS_PER_HUNDRED} \
-             usually fail a check and {} are written again for a follower (--refine), which is counted:",
-            self.refined
+             usually fail a check, {} raise a question to the model that sees, and {} are written again for a follower (--refine), \
+             which is counted:",
+            self.asked, self.refined
         )?;
         self.models.fmt(f)?;
         let Some(ShardSurcharge { chunk, views, calls, usd }) = &self.shards else { return Ok(()) };

@@ -23,6 +23,8 @@ struct TextQuestion {
     /// The frame whose picture it is about.
     frame: usize,
     subject: QuestionedPlace,
+    /// Whether a "no" makes the words wrong. A thing at the end may stand beside a walker whose picture looks ahead.
+    no_counts: bool,
 }
 
 /// What a question is about.
@@ -89,13 +91,13 @@ pub(super) fn ask_about_text(
         let exchange = DialogueExchange::new(question, &answer?);
         match asked.read_answer(&exchange, observers.answerer.name()) {
             Some(WitnessAnswer::Seen) => instruction.findings[asked.finding] = pass_finding(CheckKind::Landmarks),
-            Some(WitnessAnswer::Denied) => {
+            Some(WitnessAnswer::Denied) if asked.no_counts => {
                 let (QuestionedPlace::Thing(name) | QuestionedPlace::Room(name)) = &asked.subject;
                 let reason = format!("the model that sees was asked, and Frame {} shows no {name}", asked.frame);
                 let wrong = &mut instruction.findings[asked.finding];
                 (wrong.verdict, wrong.reason) = (Verdict::Fail, reason);
             }
-            Some(WitnessAnswer::Unsure) | None => {}
+            Some(WitnessAnswer::Denied | WitnessAnswer::Unsure) | None => {}
         }
     }
     // "Landmarks: pass" stands only where nothing else is found there.
@@ -132,16 +134,17 @@ fn open_question(instruction: &Instruction, finding: usize, order: InstructionOr
     let has_picture = |frame: usize| order.views[frame].image.is_some();
     if let Some(frame) = room_at {
         let subject = QuestionedPlace::Room(bare.to_owned());
-        return has_picture(frame).then_some(TextQuestion { finding, frame, subject });
+        return has_picture(frame).then_some(TextQuestion { finding, frame, subject, no_counts: false });
     }
+    let no_counts = reason.starts_with(UNDECIDED_PRESENCE);
     let frame = match () {
         () if reason.ends_with(UNDECIDED_AT_END) => last,
-        () if reason.starts_with(UNDECIDED_PRESENCE) => {
+        () if no_counts => {
             let unsure = order.evidence.frames_perhaps_with(&name).into_iter().filter(|frame| *frame <= last);
             unsure.min_by_key(|frame| frame.abs_diff(told)).unwrap_or(told)
         }
         () => return None,
     };
     let is_askable = find_thing(&name).is_some() && has_picture(frame);
-    is_askable.then(|| TextQuestion { finding, frame, subject: QuestionedPlace::Thing(name) })
+    is_askable.then(|| TextQuestion { finding, frame, subject: QuestionedPlace::Thing(name), no_counts })
 }
