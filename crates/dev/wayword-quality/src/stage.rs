@@ -72,7 +72,7 @@ impl MeasurementStage {
     ) -> Result<Self, CommandError> {
         let gallery = PictureGallery::default();
         let eye = change(FlawedEye::new(gallery.clone(), asked.seed, 0.0));
-        let cast = ScriptedCast::new(eye.clone(), asked.seed, TEXT_ROLE_ERROR_SHARE);
+        let cast = ScriptedCast::new(eye, asked.seed, TEXT_ROLE_ERROR_SHARE);
         Self::with_scripts(asked, gallery, ProviderBehaviour::for_model("words", cast.clone()).and_model("eye", cast))
     }
 

@@ -39,7 +39,8 @@ impl<'a> ThingLooks<'a> {
         let is_picture = find_thing(name).is_some_and(|thing| thing.class == ThingClass::WallArt);
         let is_told = |colour: &&str| {
             let is_material = material.is_some_and(|material| colour.starts_with(material));
-            !name.contains(colour) && !is_material && !(is_picture && detail.is_some())
+            let is_of_frame = is_picture && detail.is_some();
+            !name.contains(colour) && !is_material && !is_of_frame
         };
         Self {
             name,

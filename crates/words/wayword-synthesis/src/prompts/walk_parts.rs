@@ -70,11 +70,8 @@ fn may_be_one(a: &RememberedThing, b: &RememberedThing) -> bool {
     let differ = |a: &Option<String>, b: &Option<String>| a.as_ref().zip(b.as_ref()).is_some_and(|(a, b)| a != b);
     let are_apart = a.object.is_some() && b.object.is_some();
     let is_picture = find_thing(&a.name).is_some_and(|thing| thing.class == ThingClass::WallArt);
-    names_agree(&a.name, &b.name)
-        && !are_apart
-        && !are_seen_together
-        && !differ(&a.colour, &b.colour)
-        && !(is_picture && differ(&a.detail, &b.detail) && !share_word(&a.detail, &b.detail))
+    let show_others = is_picture && differ(&a.detail, &b.detail) && !share_word(&a.detail, &b.detail);
+    names_agree(&a.name, &b.name) && !are_apart && !are_seen_together && !differ(&a.colour, &b.colour) && !show_others
 }
 
 /// Whether two details have a word in common: "abstract shapes", "abstract oval shapes".

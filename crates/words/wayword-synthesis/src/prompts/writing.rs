@@ -67,7 +67,7 @@ fn target_line(brief: &WritingBrief<'_>, target: &PathTarget) -> String {
             );
         }
         None if target.has_namesake && !target.told_by.is_empty() => {
-            line += &format!(" (others like it are visible; it is {})", by(&target.told_by))
+            line += &format!(" (others like it are visible; it is {})", by(&target.told_by));
         }
         None => {}
     }

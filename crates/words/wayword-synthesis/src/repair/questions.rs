@@ -146,5 +146,5 @@ fn open_question(instruction: &Instruction, finding: usize, order: InstructionOr
         () => return None,
     };
     let is_askable = find_thing(&name).is_some() && has_picture(frame);
-    is_askable.then(|| TextQuestion { finding, frame, subject: QuestionedPlace::Thing(name), no_counts })
+    is_askable.then_some(TextQuestion { finding, frame, subject: QuestionedPlace::Thing(name), no_counts })
 }
