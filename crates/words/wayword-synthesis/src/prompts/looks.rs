@@ -36,10 +36,9 @@ impl<'a> ThingLooks<'a> {
         (material, detail): (Option<&'a str>, Option<&'a str>),
         several: bool,
     ) -> Self {
-        let is_picture = find_thing(name).is_some_and(|thing| thing.class == ThingClass::WallArt);
+        let is_of_frame = detail.is_some() && is_picture(name);
         let is_told = |colour: &&str| {
             let is_material = material.is_some_and(|material| colour.starts_with(material));
-            let is_of_frame = is_picture && detail.is_some();
             !name.contains(colour) && !is_material && !is_of_frame
         };
         Self {
@@ -75,6 +74,11 @@ impl<'a> ThingLooks<'a> {
         let mut known = self.name.split(' ').chain(self.material);
         !detail.contains(' ') && !known.any(|known| detail.starts_with(known) || known.starts_with(detail))
     }
+}
+
+/// Whether a name is that of a picture or a hanging, which is known by what it shows.
+pub(super) fn is_picture(name: &str) -> bool {
+    find_thing(name).is_some_and(|thing| thing.class == ThingClass::WallArt)
 }
 
 fn reads_on(detail: &str) -> bool {

@@ -3,7 +3,7 @@
 
 use super::{
     detail::PromptDetail,
-    looks::ThingLooks,
+    looks::{ThingLooks, is_picture},
     move_words::{climb_words, turn_words},
 };
 use crate::writer::WritingBrief;
@@ -14,7 +14,7 @@ use std::{
 };
 use wayword_checks::memory::{RememberedThing, ThingGlimpse, ThingPassing, WalkBend, WalkMemory};
 use wayword_core::{ClimbDirection, FrameObservation, Side, TurnKind, ViewThird, WayOut, WitnessAnswer};
-use wayword_language::lexicon::{ThingClass, find_thing, is_fabric, names_agree, with_article};
+use wayword_language::lexicon::{find_thing, is_fabric, names_agree, with_article};
 
 /// Most frames of a part of a walk whose motion is not known.
 const MAX_PART_FRAMES: usize = 5;
@@ -69,8 +69,7 @@ fn may_be_one(a: &RememberedThing, b: &RememberedThing) -> bool {
     let are_seen_together = a.glimpses.iter().any(|glimpse| b.glimpse_from(glimpse.frame).is_some());
     let differ = |a: &Option<String>, b: &Option<String>| a.as_ref().zip(b.as_ref()).is_some_and(|(a, b)| a != b);
     let are_apart = a.object.is_some() && b.object.is_some();
-    let is_picture = find_thing(&a.name).is_some_and(|thing| thing.class == ThingClass::WallArt);
-    let show_others = is_picture && differ(&a.detail, &b.detail) && !share_word(&a.detail, &b.detail);
+    let show_others = is_picture(&a.name) && differ(&a.detail, &b.detail) && !share_word(&a.detail, &b.detail);
     names_agree(&a.name, &b.name) && !are_apart && !are_seen_together && !differ(&a.colour, &b.colour) && !show_others
 }
 
