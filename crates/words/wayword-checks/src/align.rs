@@ -15,8 +15,6 @@ pub(super) enum AlignmentStep {
     Place(Vec<usize>),
     /// A turn.
     Turn(Side),
-    /// Going on, however short the way.
-    Onward,
     /// A statement without a place in the order.
     Free,
 }
@@ -106,13 +104,6 @@ fn states_after(
 ) -> Vec<(AlignmentProgress, Option<usize>)> {
     match step {
         AlignmentStep::Free => vec![(state, None)],
-        AlignmentStep::Onward => {
-            if bends.moves {
-                vec![(state, None)]
-            } else {
-                Vec::new()
-            }
-        }
         AlignmentStep::Place(frames) => {
             let first = frames.partition_point(|frame| *frame < state.place.max(state.turn));
             frames
@@ -137,8 +128,6 @@ struct PathBends {
     left: Vec<(usize, usize)>,
     right: Vec<(usize, usize)>,
     around: Vec<(usize, usize)>,
-    /// Whether the path goes anywhere at all.
-    moves: bool,
 }
 
 impl PathBends {
@@ -150,12 +139,7 @@ impl PathBends {
             });
             spans.filter(|(first, last)| is_turn(side, &deg[*first..=*last])).collect()
         };
-        Self {
-            left: turns_to(Side::Left),
-            right: turns_to(Side::Right),
-            around: turns_to(Side::Behind),
-            moves: evidence.motion.goes_anywhere(&evidence.moves, evidence.frames.len()),
-        }
+        Self { left: turns_to(Side::Left), right: turns_to(Side::Right), around: turns_to(Side::Behind) }
     }
 
     /// The turns to a side, from a move on, that begin before every other one has ended. A later turn never lets the
@@ -213,7 +197,6 @@ mod tests {
         let moves = turns_deg.len();
         match step {
             AlignmentStep::Free => fits(rest, state, turns_deg),
-            AlignmentStep::Onward => moves > 0 && fits(rest, state, turns_deg),
             AlignmentStep::Place(frames) => frames
                 .iter()
                 .filter(|frame| **frame >= state.place && **frame >= state.turn)
@@ -233,7 +216,6 @@ mod tests {
                 .prop_map(|frames| AlignmentStep::Place(frames.into_iter().collect())),
             prop_oneof![Just(Side::Left), Just(Side::Right), Just(Side::Behind)].prop_map(AlignmentStep::Turn),
             Just(AlignmentStep::Free),
-            Just(AlignmentStep::Onward),
         ]
     }
 
@@ -269,9 +251,9 @@ mod tests {
     #[test]
     fn align_steps_gives_the_first_frame_that_fits_each_step() {
         let turn = AlignmentStep::Turn;
-        let steps = [places(&[1, 4]), turn(Side::Right), AlignmentStep::Free, places(&[0, 3]), AlignmentStep::Onward];
+        let steps = [places(&[1, 4]), turn(Side::Right), AlignmentStep::Free, places(&[0, 3])];
         let path = walk(&[0.0, 0.0, 90.0, 0.0]);
-        assert_eq!(align_steps(&steps, &path), Ok(vec![Some(1), Some(2), None, Some(3), None]));
+        assert_eq!(align_steps(&steps, &path), Ok(vec![Some(1), Some(2), None, Some(3)]));
         assert_eq!(align_steps(&[places(&[2]), places(&[1])], &path), Err(1));
         assert_eq!(align_steps(&[places(&[1]), turn(Side::Left), places(&[2])], &path), Err(1));
         assert_eq!(align_steps(&[], &path), Ok(vec![]));
@@ -320,11 +302,5 @@ mod tests {
                 is_turn(side, &[60.0, 60.0]) && !is_turn(side, &[40.0, 40.0, 40.0]) && !is_turn(side, &[60.0, -60.0])
             );
         }
-    }
-
-    #[test]
-    fn align_steps_goes_on_only_on_a_path_that_moves() {
-        assert_eq!(align_steps(&[AlignmentStep::Onward], &walk(&[0.0])), Ok(vec![None]));
-        assert_eq!(align_steps(&[AlignmentStep::Onward], &walk(&[])), Err(0));
     }
 }

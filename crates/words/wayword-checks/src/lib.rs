@@ -17,6 +17,7 @@
 //! - `walk_coverage`: which decisions of a walk a text tells.
 //! - `align`, `order`, `goal`: the order and the end of a text where `walk_claims` does not judge them.
 //! - `mentioned_parts`: the parts of a text by its mentions alone, where the motion along its path is unknown.
+//! - `one_place`: a path that goes nowhere, as in a test split, decides nothing.
 //! - `coverage`: what was not understood. `leak`: what was copied from a style's references.
 //! - `world`: whether a text is held against a closed or an open world.
 //! - `open/claims.rs`, `relation.rs`: what a text of another author claims; `features.rs` and `claim_sight.rs`: how far the labels confirm it.
@@ -34,6 +35,7 @@ mod landmarks;
 mod leak;
 pub mod memory;
 mod mentioned_parts;
+mod one_place;
 pub mod open;
 mod order;
 mod sides;
@@ -203,6 +205,9 @@ fn check_against(
             }
         }
         (CheckWorld::Open, _) => findings.extend(open::check_open(whole, &reading, subject)),
+    }
+    if !subject.evidence.goes_anywhere() {
+        one_place::leave_path_undecided(&mut findings);
     }
     findings.extend(coverage::check_coverage(&reading, reading.language.or_tagged(subject.tag)));
     findings.push(leak::check_leak(text, whole.tokens(), subject));

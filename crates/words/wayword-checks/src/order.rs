@@ -83,13 +83,7 @@ fn lay_steps(
 fn places_alone(steps: &[AlignmentStep]) -> Vec<AlignmentStep> {
     steps
         .iter()
-        .map(|step| {
-            if matches!(step, AlignmentStep::Turn(_) | AlignmentStep::Onward) {
-                AlignmentStep::Free
-            } else {
-                step.clone()
-            }
-        })
+        .map(|step| if matches!(step, AlignmentStep::Turn(_)) { AlignmentStep::Free } else { step.clone() })
         .collect()
 }
 
@@ -138,18 +132,14 @@ fn turn_reason(steps: &[AlignmentStep], at: usize) -> &'static str {
         AlignmentStep::Turn(Side::Left) => "no move of the path turns left here",
         AlignmentStep::Turn(Side::Right) => "no move of the path turns right here",
         AlignmentStep::Turn(_) => "no move of the path turns around here",
-        AlignmentStep::Onward => "the path does not go anywhere",
         _ => "the path turns differently before it gets here",
     }
 }
 
 /// The finding on the turns alone, where the places are out of order anyway.
 fn turns_alone(reading: &TextReading, evidence: &Evidence) -> CheckFinding {
-    let turns: Vec<&TextEvent> = reading
-        .events
-        .iter()
-        .filter(|event| matches!(event.what, EventContent::Turn(_) | EventContent::Onward))
-        .collect();
+    let turns: Vec<&TextEvent> =
+        reading.events.iter().filter(|event| matches!(event.what, EventContent::Turn(_))).collect();
     let steps: Vec<AlignmentStep> = turns.iter().map(|event| step_for(event, Vec::new(), evidence)).collect();
     match align_steps(&steps, evidence) {
         Ok(_) => no_wrong_turn(reading, evidence),
@@ -179,10 +169,11 @@ fn step_for(event: &TextEvent, shown: Vec<usize>, evidence: &Evidence) -> Alignm
             let frames = evidence.frames_with_climb(*climb);
             if frames.is_empty() { AlignmentStep::Free } else { AlignmentStep::Place(frames) }
         }
-        EventContent::Onward => AlignmentStep::Onward,
-        EventContent::Place(_) | EventContent::Steps(_) | EventContent::Storey(_) | EventContent::Floor(_) => {
-            AlignmentStep::Free
-        }
+        EventContent::Onward
+        | EventContent::Place(_)
+        | EventContent::Steps(_)
+        | EventContent::Storey(_)
+        | EventContent::Floor(_) => AlignmentStep::Free,
         EventContent::Stop
         | EventContent::Face { .. }
         | EventContent::Compass { .. }

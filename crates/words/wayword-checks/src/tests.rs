@@ -262,11 +262,24 @@ fn denied_actions_are_not_checked() {
 }
 
 #[test]
-fn walking_on_fails_on_a_path_without_moves() {
+fn a_path_of_one_place_decides_nothing() {
     let standing = walk(vec![frame("kitchen", Some(&["sink"]), 1)], &[]);
-    fails(CheckKind::Turns, "Walk straight ahead and stop at the sink.", &standing);
-    fails(CheckKind::Turns, "Continue through the kitchen and stop at the sink.", &standing);
-    passes("Stop at the sink.", &standing);
+    let turned = walk(vec![frame("kitchen", Some(&["sink"]), 1); 2], &[]);
+    let picture = Evidence { frames: vec![frame("kitchen", Some(&["sink"]), 0)], ..on_video() };
+    for path in [&standing, &turned, &picture] {
+        for text in
+            ["Walk straight ahead and stop at the sink.", "Turn left at the piano. Go upstairs.", "Stop at the sink."]
+        {
+            let (verdict, wrong) = told_in(text, path, &style(false));
+            assert_eq!(verdict, Verdict::Unverified, "{text} {wrong:?}");
+            assert!(wrong.contains(&CheckKind::Landmarks) && wrong.contains(&CheckKind::Turns), "{text} {wrong:?}");
+        }
+        let task = |text: &str| told_in(text, path, &style(true)).1.contains(&CheckKind::Task);
+        assert!(task("Go to the kitchen and wash the piano"));
+    }
+    // What a text lacks is seen without a path.
+    let (verdict, _) = told_in("Stop at the sink.", &standing, &style(true));
+    assert_eq!(verdict, Verdict::Fail);
 }
 
 /// The path to the bedroom as a video shows it: without poses.
@@ -308,8 +321,6 @@ fn places_of_an_unknown_motion_are_checked_in_their_order() {
     fails(CheckKind::Landmarks, "Walk past the piano into the bedroom.", &on_video());
     fails(CheckKind::Order, "Walk past the lamp and pass the rug, then stop.", &on_video());
     fails(CheckKind::Order, "Turn left at the lamp and pass the rug, then stop.", &on_video());
-    let picture = Evidence { frames: vec![frame("kitchen", Some(&["sink"]), 0)], ..on_video() };
-    fails(CheckKind::Turns, "Walk straight ahead and stop at the sink.", &picture);
 }
 
 #[test]

@@ -193,6 +193,12 @@ impl Evidence {
         Self::from_frames(path, vec![FrameEvidence::default(); path.frames.len()], EvidenceSource::Nothing)
     }
 
+    /// Whether the path goes from one place to another. If not, it cannot decide what a text says of a way.
+    #[must_use]
+    pub fn goes_anywhere(&self) -> bool {
+        self.motion.goes_anywhere(&self.moves, self.frames.len())
+    }
+
     /// For a thing that no frame shows: whether it is certainly nowhere along the path. That is so where the objects of
     /// every frame are known, and the witnesses could have named it. Captions leave things out, so there it must
     /// have been denied, or be too conspicuous to be missing in lists of every frame.
