@@ -91,6 +91,14 @@ impl Episode {
         }
     }
 
+    /// Whether its path has two different places. If not, its way is not known: a test split gives the start alone.
+    #[must_use]
+    pub fn goes_anywhere(&self) -> bool {
+        let Self { viewpoints, floor_positions, .. } = self;
+        viewpoints.iter().any(|other| viewpoints.first() != Some(other))
+            || floor_positions.iter().any(|other| floor_positions.first() != Some(other))
+    }
+
     /// The tag of an instruction's language, where the file gives one.
     #[must_use]
     pub fn language_of(&self, instruction: usize) -> Option<&str> {

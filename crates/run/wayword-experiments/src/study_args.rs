@@ -68,7 +68,7 @@ pub struct StudyNew {
     /// May be given several times. The same run under two names, one of them marked, shows what the marks are worth.
     #[arg(long, value_name = "NAME")]
     pub doubts: Vec<String>,
-    /// Dataset file of the paths: R2R, REVERIE, RxR or Wayword. [default: the paths of the first run]
+    /// Dataset file of the paths: R2R, REVERIE, RxR, VLN-CE or Wayword. [default: the paths of the first run]
     #[arg(long, value_name = "FILE")]
     pub episodes: Option<PathBuf>,
     /// The platform of the paths.

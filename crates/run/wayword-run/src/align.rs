@@ -29,7 +29,7 @@ and the next part begins where it ends. The confidence is the probability that i
 was fitted to people's texts (docs/RESULTS.md); where frames lie close together and labels are known, the division counts in which the
 fewest claims of the text are false, and nothing is fitted.")]
 pub struct AlignArgs {
-    /// File of instructions: R2R, REVERIE, RxR or Wayword.
+    /// File of instructions: R2R, REVERIE, RxR, VLN-CE or Wayword.
     pub file: PathBuf,
     /// The platform.
     #[command(flatten)]

@@ -24,7 +24,7 @@ pub struct CalibrateArgs {
     /// The platform.
     #[command(flatten)]
     pub platform: AskedPlatform,
-    /// File of texts that people wrote: R2R, REVERIE, RxR or Wayword.
+    /// File of texts that people wrote: R2R, REVERIE, RxR, VLN-CE or Wayword.
     #[arg(long, value_name = "FILE")]
     pub from: PathBuf,
     /// File to write.

@@ -164,7 +164,9 @@ impl<'a> FollowedPath<'a> {
         if !path.motion.is_known() {
             return Err(UNKNOWN_MOTION_REASON);
         }
-        let [first, _, ..] = &path.frames[..] else { return Err("its path is one place, so it goes nowhere") };
+        let Some(first) = path.frames.first().filter(|_| evidence.goes_anywhere()) else {
+            return Err("its path is one place, so it goes nowhere");
+        };
         let heading_rad = first.pose.heading.rad();
         let on_graph = |scene: &KnownScene| {
             let place = |frame: &Frame| scene.survey.viewpoint_index(frame.viewpoint.as_ref()?);

@@ -1,10 +1,9 @@
 //! The items of a run: episodes of a dataset, or random paths, which are drawn only when their turn comes.
 
-use crate::{error::CommandError, settings::RunSettings};
+use crate::{episode_paths::path_for_episode, error::CommandError, settings::RunSettings};
 use std::{collections::BTreeSet, path::Path as FilePath, sync::Arc};
 use wayword_core::{ObjectId, Path, Platform, PlatformError, SceneId, ViewpointId, seed};
 use wayword_formats::Episode;
-use wayword_world::path_for_episode;
 
 /// A path to write instructions for.
 #[derive(Debug, Clone)]
@@ -53,13 +52,21 @@ fn episode_items(
     platform: &dyn Platform,
 ) -> Result<Vec<RunItem>, CommandError> {
     let episodes = wayword_formats::read_any_format(file)?;
-    if let Some(without_viewpoints) = episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
-        let problem =
-            format!("{}: episode {} names no viewpoints, but paths need them", file.display(), without_viewpoints.id);
+    let has_places = |episode: &Episode| !episode.viewpoints.is_empty() || !episode.floor_positions.is_empty();
+    if let Some(without_places) = episodes.iter().find(|episode| !has_places(episode)) {
+        let problem = format!(
+            "{}: episode {} names neither viewpoints nor positions, but paths need them",
+            file.display(),
+            without_places.id
+        );
         return Err(CommandError::usage(
             problem,
-            "give an R2R, REVERIE or RxR file, or a Wayword file whose paths name viewpoints (of matterport, say)",
+            "give an R2R, REVERIE, RxR or VLN-CE file, or a Wayword file whose paths name viewpoints (of matterport, say)",
         ));
+    }
+    if !episodes.is_empty() && !episodes.iter().any(Episode::goes_anywhere) {
+        let problem = format!("{}: every path is one place, as in a test split, whose way is hidden", file.display());
+        return Err(CommandError::usage(problem, "give a split whose items have their whole path"));
     }
     let wanted =
         |episode: &Episode| settings.scan.is_empty() || settings.scan.iter().any(|scan| scan == episode.scene.as_str());
@@ -169,14 +176,10 @@ impl RunItem {
     /// When an episode does not fit its scene, or no scene has a random path of the length asked for.
     pub fn find_path(&self, settings: &RunSettings, platform: &dyn Platform) -> Result<Path, PlatformError> {
         match self {
-            Self::Episode(episode) => path_for_episode(
-                platform,
-                self.id(),
-                &episode.scene,
-                &episode.viewpoints,
-                episode.start_heading,
-                episode.target_object.as_ref(),
-            ),
+            Self::Episode(episode) if !episode.goes_anywhere() => {
+                Err(PlatformError::OnePlace { episode: episode.id.clone() })
+            }
+            Self::Episode(episode) => path_for_episode(platform, episode),
             Self::Walk(path) => Ok((**path).clone()),
             Self::Random { id, scenes, first: start, seed } => {
                 let sample = |scene: &SceneId| platform.sample_path(scene, &settings.request, *seed);

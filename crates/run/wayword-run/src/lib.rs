@@ -14,7 +14,7 @@
 //! - `generate/workers/`: one worker of many. [`stores`]: addresses of object stores in place of folders.
 //! - [`check`]: `check/worlds.rs` chooses the world of a text, `detecting.rs` is `--detector`, `run_texts.rs` for texts edited after an export.
 //! - [`follow`], [`doubts`], [`walk_ranking`]: what the program does with the follower.
-//! - [`platforms`]: platforms by name. [`scene_selection`]: which scenes a run leaves out. [`terms`]: what needs `--i-have-the-right`.
+//! - [`episode_paths`]: an episode of a dataset as a path. [`platforms`]: platforms by name. [`scene_selection`]: which scenes a run leaves out. [`terms`]: what needs `--i-have-the-right`.
 //! - [`error`]: errors and exit codes. [`interrupt`]: Ctrl-C and signals. [`output`]: the only place that prints.
 //! - [`own_format`]: format and version at the head of our files. [`watch`]: spans, with `lines.rs` and `telemetry/`.
 
@@ -30,6 +30,7 @@ pub mod count;
 pub mod doubts;
 #[cfg(feature = "local")]
 pub mod download_bar;
+pub mod episode_paths;
 pub mod error;
 pub mod error_parts;
 pub mod follow;

@@ -345,7 +345,14 @@ fn describe_path_target(path: &mut Path, platform: &dyn Platform, scenes: &Known
 /// # Errors
 /// When a view cannot be had.
 pub fn path_panoramas(platform: &dyn Platform, path: &Path) -> Result<Vec<Vec<View>>, PlatformError> {
-    let views = |frame: &Frame| look_without_pictures(platform, &path.scene, frame, &gazes_around(path, frame));
+    let views = |frame: &Frame| {
+        let gazes = gazes_around(path, frame);
+        match look_without_pictures(platform, &path.scene, frame, &gazes) {
+            // A position of VLN-CE may lie between the viewpoints. It is a place of the path, and nothing is known of what it shows.
+            Err(PlatformError::NotAViewpoint { .. }) => Ok(Vec::new()),
+            views => views,
+        }
+    };
     path.frames.iter().map(views).collect()
 }
 

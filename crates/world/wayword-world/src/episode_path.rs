@@ -1,18 +1,18 @@
-//! Turns an episode of a dataset, a list of viewpoints and perhaps a target object, into a [`Path`] through a scene.
+//! Turns a list of viewpoints, and perhaps a target object, into a [`Path`] through a scene.
 
 use wayword_core::{
     Frame, Heading, ObjectId, ObjectLabel, Path, PathMotion, PathTarget, Platform, PlatformError, SceneId, ViewGaze,
     ViewpointId,
 };
 
-/// The path of an episode: a frame at each of `viewpoints`, the first one looking along `heading`, with `object` as its
+/// A path over a viewpoint graph: a frame at each of `viewpoints`, the first one looking along `heading`, with `object` as its
 /// target.
 ///
 /// The platform provides the target's name; if it has none, the path has no target. `told_by` is left empty.
 ///
 /// # Errors
 /// When the scene or a viewpoint is unknown, two viewpoints in a row have no edge, or data cannot be read.
-pub fn path_for_episode(
+pub fn path_over_viewpoints(
     platform: &dyn Platform,
     id: impl Into<String>,
     scene: &SceneId,

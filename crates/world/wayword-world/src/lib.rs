@@ -5,7 +5,8 @@
 //! out of JSON.
 //!
 //! Paths: [`open_ground`] draws random paths over open ground, and [`graph_walk`] along a viewpoint graph. [`grid_search`]
-//! finds shortest ways over a grid. [`episode_path`] turns an episode of a dataset into a path.
+//! finds shortest ways over a grid. [`episode_path`] turns an episode's viewpoints into a path, and [`floor_path`] positions
+//! on a floor.
 //!
 //! Scenes: [`survey_scene`](mod@survey) collects the rooms and objects at all viewpoints, and [`seen_from`](mod@seen_from)
 //! finds the viewpoints that show an object. [`levels`] finds the storeys of viewpoints. [`object_names`] and [`region_letters`]
@@ -16,6 +17,7 @@
 pub mod connectivity;
 pub mod episode_path;
 pub mod files;
+pub mod floor_path;
 pub mod graph_walk;
 pub mod grid_search;
 pub mod json_values;
@@ -27,6 +29,7 @@ pub mod region_letters;
 pub mod seen_from;
 pub mod survey;
 
-pub use episode_path::{labels_around, path_for_episode};
+pub use episode_path::{labels_around, path_over_viewpoints};
+pub use floor_path::frames_over_floor;
 pub use seen_from::seen_from;
 pub use survey::survey_scene;

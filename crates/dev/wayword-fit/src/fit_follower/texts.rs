@@ -17,7 +17,7 @@ use wayword_run::{
     platforms,
     settings::{AskedPlatform, AskedSettings},
 };
-use wayword_world::{path_for_episode, survey_scene};
+use wayword_world::{path_over_viewpoints, survey_scene};
 
 /// A building as the follower and the platform know it.
 pub struct FollowerScene {
@@ -71,7 +71,7 @@ pub fn read_texts(data: &Path, files: &[PathBuf]) -> Result<(Vec<FollowerScene>,
         let number = numbers[&episode.scene];
         let object = episode.target_object.as_ref();
         let heading = episode.start_heading;
-        let path = path_for_episode(platform, &episode.id, &episode.scene, &episode.viewpoints, heading, None)?;
+        let path = path_over_viewpoints(platform, &episode.id, &episode.scene, &episode.viewpoints, heading, None)?;
         let heading_rad = path.frames.first().map_or(0.0, |frame| frame.pose.heading.rad());
         Ok(scenes[number].episode_texts(number, episode, heading_rad, object))
     };

@@ -15,7 +15,7 @@ use std::path::Path;
 use wayword_core::{Platform, PlatformError};
 use wayword_formats::hear_annotations::{self, LabelledText};
 use wayword_run::{error::CommandError, output::CommandOutput, platforms, settings::AskedSettings};
-use wayword_world::path_for_episode;
+use wayword_world::path_over_viewpoints;
 
 /// Compares the findings of `wayword check` with spans that people labelled, and prints the figures.
 ///
@@ -60,7 +60,8 @@ fn check_labelled_texts(
 /// Refuses a text if the platform does not have its path. The error names the text; that of `check` would name only the path.
 fn refuse_unknown_paths(texts: &[LabelledText], file: &Path, platform: &dyn Platform) -> Result<(), CommandError> {
     for LabelledText { name, episode, .. } in texts {
-        let path = path_for_episode(platform, name, &episode.scene, &episode.viewpoints, episode.start_heading, None);
+        let path =
+            path_over_viewpoints(platform, name, &episode.scene, &episode.viewpoints, episode.start_heading, None);
         if let Err(error) = path {
             let field = if matches!(error, PlatformError::UnknownScene { .. }) { "scan" } else { "path" };
             let problem = format!("{}: text {name}: field {field:?}: {error}", file.display());

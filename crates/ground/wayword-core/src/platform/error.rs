@@ -41,6 +41,14 @@ pub enum PlatformError {
         /// The scene.
         scene: SceneId,
     },
+    /// An episode whose path is one place, as in a test split.
+    #[error(
+        "the path of {episode} is one place, as in a test split whose way is hidden, so there is no way to describe: give episodes with their whole path"
+    )]
+    OnePlace {
+        /// Its id.
+        episode: String,
+    },
     /// A viewpoint graph with a mistake.
     #[error("scene {scene}: {source}")]
     Graph {
@@ -97,6 +105,7 @@ impl PlatformError {
             Self::UnknownScene { .. }
             | Self::UnknownViewpoint { .. }
             | Self::NotAViewpoint { .. }
+            | Self::OnePlace { .. }
             | Self::NoSuchPath { .. }
             | Self::NoFile { .. } => FailureKind::Missing,
             Self::NotDrawn { .. } | Self::Graph { .. } | Self::File { .. } => FailureKind::Broken,

@@ -15,7 +15,7 @@ use wayword_run::{
     run_folder::{file, read_lines, refuse_other_format},
     settings::RunSettings,
 };
-use wayword_world::path_for_episode;
+use wayword_world::path_over_viewpoints;
 
 /// Gives the pictures ahead of the frames of any item's path.
 pub struct PathPictures {
@@ -154,7 +154,7 @@ impl PathPictures {
                 let Episode { id, scene, viewpoints, start_heading, .. } = &**episode;
                 draw_views(
                     &**platform,
-                    &path_for_episode(&**platform, id.as_str(), scene, viewpoints, *start_heading, None)?,
+                    &path_over_viewpoints(&**platform, id.as_str(), scene, viewpoints, *start_heading, None)?,
                 )
             }
             (FramePictureSource::Run(_), Some(ItemPathSource::Episode(_))) | (_, None) => Ok(Vec::new()),

@@ -34,7 +34,7 @@ pub struct CompareArgs {
     /// The platform.
     #[command(flatten)]
     pub platform: AskedPlatform,
-    /// File of the items: R2R, REVERIE, RxR or Wayword.
+    /// File of the items: R2R, REVERIE, RxR, VLN-CE or Wayword.
     #[arg(long, value_name = "FILE")]
     pub episodes: PathBuf,
     /// A set of instructions: `original` (those of the episodes' file), NAME=RUN#STYLE or NAME=FILE. Give the flag several times to

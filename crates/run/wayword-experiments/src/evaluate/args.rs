@@ -23,7 +23,7 @@ pub struct EvaluateArgs {
     /// File of trajectories, as the evaluators of R2R and REVERIE take it.
     #[arg(value_name = "SUBMISSION")]
     pub submission: PathBuf,
-    /// File of the episodes that were walked: R2R, REVERIE, RxR or Wayword.
+    /// File of the episodes that were walked: R2R, REVERIE, RxR, VLN-CE or Wayword.
     #[arg(long, value_name = "FILE")]
     pub episodes: PathBuf,
     /// The platform.

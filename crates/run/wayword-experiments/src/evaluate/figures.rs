@@ -40,7 +40,9 @@ pub(super) struct SubmissionReport {
     /// Only this many items count, from the beginning of the episodes' file.
     #[serde(skip_serializing_if = "Option::is_none")]
     limit: Option<u32>,
-    /// Trajectories for later items, which do not count.
+    /// Items that are not scored because their path is one place, as in a test split.
+    hidden_items: usize,
+    /// Trajectories for later items and for hidden ones, which do not count.
     left_out: usize,
     /// Instructions for which an object was named.
     objects_named: usize,
@@ -94,6 +96,7 @@ impl SubmissionReport {
             of_instructions: covered.instructions,
             of_items: covered.items,
             limit: args.limit,
+            hidden_items: covered.hidden,
             left_out: covered.left_out,
             objects_named: scores.rows().iter().filter(|row| row.names_object).count(),
             level: CONFIDENCE_LEVEL,
@@ -156,10 +159,18 @@ impl fmt::Display for SubmissionReport {
                 self.episodes
             )?;
         }
+        if self.hidden_items > 0 {
+            writeln!(
+                f,
+                "{} of {} not scored: the path is one place, as in a test split, whose way is hidden",
+                count_phrase(self.hidden_items, "item"),
+                self.episodes
+            )?;
+        }
         if let Some(limit) = self.limit {
             writeln!(
                 f,
-                "only the first {} of {} count; left out, because they are for later items: {}",
+                "only the first {} of {} count; left out, because they are for other items: {}",
                 count_phrase(u64::from(limit), "item"),
                 self.episodes,
                 count_phrase(self.left_out, "trajectory")

@@ -31,7 +31,9 @@ struct SubmissionCoverage {
     instructions: usize,
     /// All items.
     items: usize,
-    /// Trajectories for items beyond the limit.
+    /// Items whose way is hidden. They are not among `items`.
+    hidden: usize,
+    /// Trajectories for items beyond the limit, and for those whose way is hidden.
     left_out: usize,
 }
 
@@ -42,7 +44,11 @@ struct SubmissionCoverage {
 pub fn run_evaluate(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
     refuse_to_overwrite(args)?;
     let platform = platforms::open_at(args.platform.name(), (&args.platform).into())?;
-    let episodes = episodes::read_episodes(&args.episodes, platform.as_ref())?;
+    let mut split = episodes::read_split(&args.episodes, platform.as_ref())?;
+    let hidden = if args.partial && !split.known.is_empty() { std::mem::take(&mut split.hidden) } else { Vec::new() };
+    let hint =
+        "only the leaderboard of a test split can score it; with --partial, the items whose way is known are scored";
+    let episodes = split.refuse_hidden(&args.episodes, hint)?;
     let limit = args.limit.map_or(usize::MAX, |limit| limit as usize).min(episodes.len());
     let (episodes, later_episodes) = episodes.split_at(limit);
     let reading = submission::read_submission(&args.submission);
@@ -52,9 +58,12 @@ pub fn run_evaluate(args: &Args, output: &CommandOutput) -> Result<Exit, Command
     let judge = TrajectoryJudge::new(episodes, platform.as_ref())?;
     let instruction_names =
         |episode: &Episode| (0..episode.instructions.len()).map(|place| instr_id(episode, place)).collect();
-    let later_instructions: BTreeSet<String> =
-        later_episodes.iter().flat_map(|episode| -> Vec<String> { instruction_names(episode) }).collect();
-    let (scores, left_out) = match judge.score_all(&reading, &later_instructions, args.partial) {
+    let ignored_instructions: BTreeSet<String> = later_episodes
+        .iter()
+        .chain(&hidden)
+        .flat_map(|episode| -> Vec<String> { instruction_names(episode) })
+        .collect();
+    let (scores, left_out) = match judge.score_all(&reading, &ignored_instructions, args.partial) {
         Ok(scored) => scored,
         Err(problems) => {
             let refusal = SubmissionRefusal::new(&args.submission, problems);
@@ -71,7 +80,12 @@ pub fn run_evaluate(args: &Args, output: &CommandOutput) -> Result<Exit, Command
         write_score_lines(file, &scores)?;
     }
     let drawn = SubmissionResampling { resamples: args.resamples as usize, seed: args.seed };
-    let covered = SubmissionCoverage { instructions: judge.instruction_count(), items: judge.item_count(), left_out };
+    let covered = SubmissionCoverage {
+        instructions: judge.instruction_count(),
+        items: judge.item_count(),
+        hidden: hidden.len(),
+        left_out,
+    };
     let report = SubmissionReport::new(args, &scores, covered, &rules, drawn);
     output.print_result(&report, &report);
     Ok(Exit::Done)

@@ -17,9 +17,8 @@ use wayword_core::{Heading, Path, Platform, SceneId, ViewpointId, seeded_rng};
 use wayword_formats::{DatasetFormat, detect_format, jsonl};
 use wayword_metrics::SceneDistances;
 use wayword_navigation::swap::{SwapCandidate, other_path};
-use wayword_run::{count::count_phrase, error::CommandError, output::CommandOutput};
+use wayword_run::{count::count_phrase, episode_paths::path_for_episode, error::CommandError, output::CommandOutput};
 use wayword_study::{ConditionKind, StudyCondition, StudyTask, StudyText};
-use wayword_world::path_for_episode;
 
 /// The names of the two control conditions: texts that people wrote, and texts of other paths.
 const PEOPLE_CONDITION: &str = "people";
@@ -238,15 +237,7 @@ fn read_candidates(
             wayword_formats::read_any_format(&file)?
         };
         let to_candidate = |episode: wayword_formats::Episode| {
-            let object = episode.target_object.as_ref();
-            let path = path_for_episode(
-                platform,
-                &*episode.id,
-                &episode.scene,
-                &episode.viewpoints,
-                episode.start_heading,
-                object,
-            )?;
+            let path = path_for_episode(platform, &episode)?;
             let name = episodes::episode_path_name(&episode);
             Ok(CandidatePath {
                 id: episode.id,

@@ -105,7 +105,7 @@ pub struct ExportArgs {
     /// alternatives for each. docs/CHECKS.md explains which words these are.
     #[arg(long, value_name = "NAME")]
     pub highlight: Option<PathBuf>,
-    /// With --highlight: the texts of this file instead of a run's: R2R, REVERIE, RxR or Wayword.
+    /// With --highlight: the texts of this file instead of a run's: R2R, REVERIE, RxR, VLN-CE or Wayword.
     #[arg(long, value_name = "FILE")]
     pub texts: Option<PathBuf>,
     /// The platform of --texts. A run knows its own.

@@ -17,7 +17,7 @@ Examples:
   wayword check runs/houses/instructions.jsonl --platform house --style r2r
   wayword check edited.json --run runs/houses")]
 pub struct CheckArgs {
-    /// File of instructions: R2R, REVERIE, RxR or Wayword.
+    /// File of instructions: R2R, REVERIE, RxR, VLN-CE or Wayword.
     pub file: PathBuf,
     /// The platform.
     #[command(flatten)]

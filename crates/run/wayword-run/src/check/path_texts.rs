@@ -1,13 +1,13 @@
 //! The texts of a file, gathered by the path that they are about.
 
-use crate::error::CommandError;
+use crate::{episode_paths::path_for_episode, error::CommandError};
 use std::{collections::BTreeMap, path::Path as FilePath};
 use wayword_core::{Path, Platform, SceneId, TextProvenance, ViewpointId};
 use wayword_formats::{
     DatasetFormat,
     jsonl::{self, InstructionRecord},
 };
-use wayword_world::path_for_episode;
+use wayword_world::path_over_viewpoints;
 
 /// A path with every text about it, so that the views along the path are looked up once for all of them.
 pub(crate) struct PathTexts {
@@ -67,14 +67,7 @@ pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
     }
     for episode in wayword_formats::read_any_format(file)? {
         // The check ends with an error at the first missing scene.
-        let path = path_for_episode(
-            platform,
-            &episode.id,
-            &episode.scene,
-            &episode.viewpoints,
-            episode.start_heading,
-            episode.target_object.as_ref(),
-        )?;
+        let path = path_for_episode(platform, &episode)?;
         for (at, words) in episode.instructions.iter().enumerate() {
             let tag = episode.language_of(at).map(str::to_owned);
             walks.add_text(path.clone(), FileText::from_dataset(&path, words.clone(), tag));
@@ -134,7 +127,7 @@ fn with_platform_poses(platform: &dyn Platform, path: Path) -> Result<Path, Comm
     }
     let heading = path.frames.first().map(|frame| frame.pose.heading);
     let object = path.target.as_ref().map(|target| &target.object);
-    Ok(path_for_episode(platform, &path.id, &path.scene, &viewpoints, heading, object)?)
+    Ok(path_over_viewpoints(platform, &path.id, &path.scene, &viewpoints, heading, object)?)
 }
 
 #[cfg(test)]

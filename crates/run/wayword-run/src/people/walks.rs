@@ -1,6 +1,6 @@
 //! Reads the buildings, paths and texts of a dataset that weights are fitted on.
 
-use crate::{error::CommandError, pipeline::path_panoramas};
+use crate::{episode_paths::path_for_episode, error::CommandError, pipeline::path_panoramas};
 use rayon::prelude::*;
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -14,7 +14,7 @@ use wayword_language::{
     lexicon::normalise_name,
     reading::{TextReading, read_instruction},
 };
-use wayword_world::{path_for_episode, survey_scene};
+use wayword_world::survey_scene;
 
 /// The surveys of the scenes.
 pub type SceneSurveys = BTreeMap<SceneId, ViewpointSurvey>;
@@ -75,8 +75,7 @@ pub fn read_people_walks(
     let buildings: BTreeMap<&SceneId, Arc<BuildingInventory>> =
         surveys.iter().map(|(scene, survey)| (scene, Arc::new(BuildingInventory::from_survey(survey)))).collect();
     let walk = |episode: &Episode| {
-        let path =
-            path_for_episode(platform, &episode.id, &episode.scene, &episode.viewpoints, episode.start_heading, None)?;
+        let path = Path { target: None, ..path_for_episode(platform, episode)? };
         let views = path_panoramas(platform, &path)?;
         let evidence = Evidence::from_labels(&path, &views).unwrap_or_else(|| Evidence::for_path_alone(&path));
         let around = PathSurroundings::around_path(&buildings[&episode.scene], &path);

@@ -291,20 +291,25 @@ fn the_screen_shows_twenty_problems_and_counts_the_others() {
 }
 
 #[test]
-fn episodes_without_viewpoints_are_refused() {
+fn positions_of_another_scene_are_refused() {
     let building = Building::new();
-    building.write(
-        "vlnce.json",
-        json!({"episodes": [{
-            "episode_id": 1, "trajectory_id": 1, "scene_id": "mp3d/x/x.glb", "start_position": [0.0, 0.0, 0.0],
-            "start_rotation": [0.0, 0.0, 0.0, 1.0], "goals": [{"position": [1.0, 0.0, 0.0], "radius": 3.0}],
-            "reference_path": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
-            "instruction": {"instruction_text": "Go.", "instruction_tokens": [2]}, "info": {"geodesic_distance": 1.0},
-        }], "instruction_vocab": {"word_list": ["<pad>", "<unk>", "go"]}})
-        .to_string(),
-    );
-    let ran = evaluate(&building, &annotated(&building, R2R), "vlnce.json", &[]);
-    assert!(ran.refused().contains("no viewpoints") && ran.err.contains("hint:"), "{ran:?}");
+    let write = |scene: &str| {
+        building.write(
+            "vlnce.json",
+            json!({"episodes": [{
+                "episode_id": 1, "trajectory_id": 1, "scene_id": format!("mp3d/{scene}/{scene}.glb"),
+                "start_position": [40.0, 0.0, 0.0], "start_rotation": [0.0, 0.0, 0.0, 1.0],
+                "goals": [{"position": [41.0, 0.0, 0.0], "radius": 3.0}],
+                "reference_path": [[40.0, 0.0, 0.0], [41.0, 0.0, 0.0]],
+                "instruction": {"instruction_text": "Go.", "instruction_tokens": [2]}, "info": {"geodesic_distance": 1.0},
+            }], "instruction_vocab": {"word_list": ["<pad>", "<unk>", "go"]}})
+            .to_string(),
+        );
+        evaluate(&building, &annotated(&building, R2R), "vlnce.json", &[])
+    };
+    assert!(write("x").refused().contains("there is no scene x"));
+    let far = write(wayword_testkit::SCAN);
+    assert!(far.refused().contains("path 1: its place at 40.00, 0.00, 1.50") && far.err.contains("hint:"), "{far:?}");
 }
 
 #[test]
@@ -376,7 +381,7 @@ fn a_limit_takes_the_first_items_alone() {
     assert_eq!(numbers, [6, 3, 3, 13]);
     let shown = evaluate(&building, &submitted, R2R, &["--limit", "3"]);
     let told =
-        format!("only the first 3 items of {R2R} count; left out, because they are for later items: 13 trajectories");
+        format!("only the first 3 items of {R2R} count; left out, because they are for other items: 13 trajectories");
     assert!(shown.out.lines().nth(1).is_some_and(|line| line == told), "{shown:?}");
     let alone = report(&evaluate(&building, &submitted[..6], R2R, &["--limit", "3", "--json"]));
     assert_eq!((&alone["rules"], &alone["left_out"]), (&found["rules"], &json!(0)));

@@ -26,6 +26,7 @@ mod generate;
 mod graphs;
 mod habitat;
 mod invariants;
+mod known_paths;
 mod local_models;
 mod lost_worlds;
 mod model_kills;

@@ -7,7 +7,7 @@ use tempfile::TempDir;
 use wayword_core::{Frame, Heading, ObjectId, PathRequest, Platform, PlatformError, SceneId, ViewGaze, ViewpointId};
 use wayword_platforms::MatterportPlatform;
 use wayword_testkit::{SCAN, viewpoint_id, wall_colour, write_building, write_skyboxes};
-use wayword_world::{labels_around, path_for_episode};
+use wayword_world::{labels_around, path_over_viewpoints};
 
 fn building() -> (TempDir, MatterportPlatform) {
     let folder = tempfile::tempdir().unwrap();
@@ -128,7 +128,7 @@ fn an_episode_names_its_target_and_notes_namesakes() {
     let (_folder, platform) = building();
     let bedroom: Vec<_> = [0, 1, 6, 7, 8, 9, 10].map(viewpoint).into();
     let pillow = ObjectId::new("27").unwrap();
-    let path = path_for_episode(&platform, "a", &scene(), &bedroom, Some(heading(0.0)), Some(&pillow)).unwrap();
+    let path = path_over_viewpoints(&platform, "a", &scene(), &bedroom, Some(heading(0.0)), Some(&pillow)).unwrap();
     let target = path.target.unwrap();
     assert_eq!((target.name.as_str(), target.has_namesake), ("pillow", true));
     assert_eq!(path.frames[0].pose.heading, heading(0.0));
@@ -171,7 +171,7 @@ fn errors_name_missing_scenes_and_viewpoints() {
     let (_folder, platform) = building();
     let elsewhere = SceneId::new("elsewhere").unwrap();
     assert!(matches!(platform.graph_for_scene(&elsewhere), Err(PlatformError::UnknownScene { .. })));
-    let apart = path_for_episode(&platform, "a", &scene(), &[viewpoint(0), viewpoint(13)], None, None).unwrap_err();
+    let apart = path_over_viewpoints(&platform, "a", &scene(), &[viewpoint(0), viewpoint(13)], None, None).unwrap_err();
     assert!(apart.to_string().contains("no edge"), "{apart}");
     let mut between = frame(&platform, 0);
     between.viewpoint = None;
@@ -250,7 +250,7 @@ fn fixture_episodes_can_be_walked_to_a_visible_target() {
     for item in &items {
         let viewpoints: Vec<ViewpointId> = serde_json::from_value(item["path"].clone()).unwrap();
         let object = ObjectId::new(item["objId"].to_string()).unwrap();
-        let path = path_for_episode(&platform, "a", &scene(), &viewpoints, None, Some(&object)).unwrap();
+        let path = path_over_viewpoints(&platform, "a", &scene(), &viewpoints, None, Some(&object)).unwrap();
         assert!((4..=7).contains(&path.moves().len()));
         let around = labels_around(&platform, &scene(), path.frames.last().unwrap()).unwrap();
         let target = path.target.unwrap();

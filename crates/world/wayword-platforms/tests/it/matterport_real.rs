@@ -11,7 +11,7 @@ use serde_json::Value;
 use std::path::PathBuf;
 use wayword_core::{Heading, ObjectId, Path, PathRequest, Platform, SceneId, Side, ViewGaze, ViewpointId};
 use wayword_platforms::MatterportPlatform;
-use wayword_world::{labels_around, path_for_episode};
+use wayword_world::{labels_around, path_over_viewpoints};
 
 fn data() -> Option<PathBuf> {
     let beside = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../../shared/data"));
@@ -39,7 +39,7 @@ fn path(platform: &MatterportPlatform, item: &Value) -> Path {
     let heading = Heading::new(item["heading"].as_f64().unwrap()).unwrap();
     let object = ObjectId::new(item["objId"].to_string()).unwrap();
     let id = item["id"].as_str().unwrap();
-    path_for_episode(platform, id, &scene_of(item), &viewpoints, Some(heading), Some(&object)).unwrap()
+    path_over_viewpoints(platform, id, &scene_of(item), &viewpoints, Some(heading), Some(&object)).unwrap()
 }
 
 #[test]

@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 use wayword_core::{Platform, SceneId, ViewpointSurvey};
 use wayword_formats::Episode;
 use wayword_run::error::CommandError;
-use wayword_world::path_for_episode;
+use wayword_world::path_over_viewpoints;
 
 /// The listener's result for one text.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -93,7 +93,7 @@ pub(super) fn hear_episodes(
         let known = ListenerScene::from_survey(survey);
         for episode in episodes {
             let path =
-                path_for_episode(platform, &*episode.id, scene, &episode.viewpoints, episode.start_heading, None)?;
+                path_over_viewpoints(platform, &*episode.id, scene, &episode.viewpoints, episode.start_heading, None)?;
             let target = known.objects.iter().position(|object| Some(&object.id) == episode.target_object.as_ref());
             let last = path.frames.last();
             let at = last.and_then(|frame| known.viewpoint_index(frame.viewpoint.as_ref()?.as_str()));

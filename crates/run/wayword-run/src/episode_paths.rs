@@ -1,0 +1,22 @@
+//! Turns an episode of a dataset into a path, by its viewpoints or by its positions on the floor.
+
+use wayword_core::{Path, PathMotion, Platform, PlatformError};
+use wayword_formats::Episode;
+use wayword_world::{episode_path::target_for_object, frames_over_floor, path_over_viewpoints};
+
+/// The path of an episode: over its viewpoints, or else over its positions on the floor (VLN-CE). Without either it has no frames.
+///
+/// # Errors
+/// When the scene or a viewpoint is unknown, two viewpoints in a row have no edge, or data cannot be read.
+pub fn path_for_episode(platform: &dyn Platform, episode: &Episode) -> Result<Path, PlatformError> {
+    let (scene, heading, object) = (&episode.scene, episode.start_heading, episode.target_object.as_ref());
+    if !episode.viewpoints.is_empty() {
+        return path_over_viewpoints(platform, &*episode.id, scene, &episode.viewpoints, heading, object);
+    }
+    let frames = frames_over_floor(platform, scene, &episode.floor_positions, heading)?;
+    let target = match (object, frames.last()) {
+        (Some(object), Some(last)) => target_for_object(platform, scene, last, object)?,
+        _ => None,
+    };
+    Ok(Path { id: episode.id.clone(), scene: scene.clone(), frames, motion: PathMotion::Known, target })
+}
