@@ -9,7 +9,7 @@
 use crate::{calls::ModelCalls, error::CommandError, output::CommandOutput};
 #[cfg(unix)]
 use signal_hook::{
-    consts::{SIGINT, SIGTERM, SIGUSR1},
+    consts::{SIGINT, SIGTERM, SIGUSR1, SIGXFSZ},
     iterator::Signals,
 };
 use std::{
@@ -102,12 +102,13 @@ pub fn forget_interrupt() {
 /// Interrupts that are not handled yet.
 pub struct PendingSignals(#[cfg(unix)] Option<Signals>);
 
-/// Catches SIGINT, SIGTERM and SIGUSR1 from now on. SIGHUP is left alone, because `nohup` has to work.
+/// Catches SIGINT, SIGTERM and SIGUSR1 from now on. SIGHUP is left alone, because `nohup` has to work. SIGXFSZ is caught so that a file
+/// beyond the user's limit is an error of its write, and does not end the process without a word.
 #[cfg(unix)]
 #[must_use]
 pub fn catch_signals() -> PendingSignals {
     // Without a handler the signals end the process, as usual.
-    PendingSignals(Signals::new([SIGINT, SIGTERM, SIGUSR1]).ok())
+    PendingSignals(Signals::new([SIGINT, SIGTERM, SIGUSR1, SIGXFSZ]).ok())
 }
 
 /// Handles interrupts until the process ends, those since [`catch_signals`] among them.
@@ -116,7 +117,10 @@ pub fn listen_for_signals(pending: PendingSignals, output: &CommandOutput) {
     let output = output.clone();
     let Some(mut signals) = pending.0 else { return };
     thread::spawn(move || {
-        for _ in signals.forever() {
+        for signal in signals.forever() {
+            if signal == SIGXFSZ {
+                continue;
+            }
             let is_second = INTERRUPT_ASKED.swap(true, Ordering::Relaxed);
             match lock_ending().as_ref() {
                 Some(ending) if !is_second => finish_items(ending, output.clone()),

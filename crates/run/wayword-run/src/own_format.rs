@@ -68,6 +68,13 @@ pub fn with_header<S: OwnFormat>(body: &str) -> String {
     format!("{FORMAT_KEY} = \"{}\"\n{WRITER_KEY} = \"{}\"\n{body}", S::NAME, env!("CARGO_PKG_VERSION"))
 }
 
+/// Whether a text records the settings of a run, of this version or another.
+pub(crate) fn is_run_record(text: &str) -> bool {
+    let table: Option<Table> = toml::from_str(text).ok();
+    let format = table.as_ref().and_then(|table| table.get(FORMAT_KEY)?.as_str());
+    format.is_some_and(|format| format.split('/').next() == RunSettings::NAME.split('/').next())
+}
+
 /// Reads the content of a file.
 ///
 /// # Errors

@@ -1,12 +1,18 @@
 //! Reads the settings file of a command (`--config`).
 
-use crate::{error::CommandError, settings::AskedSettings, text_file};
+use crate::{error::CommandError, own_format, settings::AskedSettings, text_file};
 use std::path::Path;
 
 /// The settings in a file; all of them are empty if no file is given.
 pub fn read_settings(path: Option<&Path>) -> Result<AskedSettings, CommandError> {
     let Some(path) = path else { return Ok(AskedSettings::default()) };
     let text = text_file::read_text_file(path, "read the settings")?;
+    if own_format::is_run_record(&text) {
+        return Err(CommandError::usage(
+            format!("{}: it records the settings of a run, and is no settings file", path.display()),
+            "to continue that run, give the command that began it; a settings file has the names of `wayword generate --help`",
+        ));
+    }
     toml::from_str(&text).map_err(|error| {
         CommandError::usage(
             format!("{}: {}", path.display(), error.to_string().trim()),

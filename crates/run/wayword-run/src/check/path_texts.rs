@@ -1,6 +1,6 @@
 //! The texts of a file, gathered by the path that they are about.
 
-use crate::{episode_paths::path_for_episode, error::CommandError};
+use crate::{count::count_phrase, episode_paths::path_for_episode, error::CommandError};
 use std::{collections::BTreeMap, path::Path as FilePath};
 use wayword_core::{Path, Platform, SceneId, TextProvenance, ViewpointId};
 use wayword_formats::{
@@ -65,13 +65,22 @@ pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
         }
         return Ok(walks.all);
     }
+    let mut items = 0;
     for episode in wayword_formats::read_any_format(file)? {
         // The check ends with an error at the first missing scene.
         let path = path_for_episode(platform, &episode)?;
+        items += 1;
         for (at, words) in episode.instructions.iter().enumerate() {
             let tag = episode.language_of(at).map(str::to_owned);
             walks.add_text(path.clone(), FileText::from_dataset(&path, words.clone(), tag));
         }
+    }
+    if walks.all.is_empty() {
+        let problem = format!("{}: {} without an instruction", file.display(), count_phrase(items, "item"));
+        return Err(CommandError::usage(
+            problem,
+            "give a file whose items have instructions; test splits of some datasets have none",
+        ));
     }
     Ok(walks.all)
 }

@@ -4,7 +4,7 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-use crate::common::{Building, files};
+use crate::common::{Building, files, run};
 use std::{
     collections::BTreeMap,
     fs,
@@ -169,4 +169,25 @@ fn a_lack_that_all_items_share_ends_the_run_early() {
     assert_eq!(ran.code, Some(1), "{ran:?}");
     assert!(ran.out.contains("failed for the same reason"), "{ran:?}");
     assert_eq!(building.lines("run/errors.jsonl").len(), 5);
+}
+
+/// The system signals a program that writes beyond the user's limit; that must not end it without a word.
+#[test]
+fn a_file_beyond_the_size_limit_is_an_error_of_its_write() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let args = "export --run run --style r2r --format r2r --out large.json";
+    let mut shell = Command::new("sh");
+    shell.arg("-c").arg(format!("ulimit -f 1; exec '{}' {args}", env!("CARGO_BIN_EXE_wayword")));
+    let ran = run(shell.current_dir(building.path("")));
+    assert!(ran.refused().contains("large.json: cannot write it"), "{ran:?}");
+    assert!(!building.path("large.json").exists());
+}
+
+#[test]
+fn the_record_of_a_run_is_no_settings_file() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let said = building.generate("again", &["--config", "run/config.toml"]);
+    assert!(said.refused().contains("records the settings of a run"), "{said:?}");
 }

@@ -146,3 +146,13 @@ fn people_s_texts_get_the_verdicts_of_r2r_where_vln_ce_gives_positions() {
     let differ = as_r2r.iter().filter(|(text, verdict)| as_vlnce.get(*text) != Some(*verdict)).count();
     assert!(!as_r2r.is_empty() && differ * 50 <= as_r2r.len(), "{differ} of {} verdicts differ", as_r2r.len());
 }
+
+#[test]
+fn check_refuses_items_without_instructions() {
+    let building = Building::new();
+    let mut items: Vec<Value> = serde_json::from_slice(&fs::read(building.r2r()).unwrap()).unwrap();
+    items.iter_mut().for_each(|item| item["instructions"] = json!([]));
+    building.write("bare.json", Value::from(items).to_string());
+    let said = on_building(&building, &["check", "bare.json"]);
+    assert!(said.refused().contains("bare.json: 10 items without an instruction"), "{said:?}");
+}
