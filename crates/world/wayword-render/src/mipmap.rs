@@ -3,7 +3,7 @@
 //! Trilinear filtering uses a mip chain: copies of the texture, each half as large as the one before. Far surfaces look up
 //! a small copy, so that fine patterns do not shimmer.
 
-use crate::texture::Texture;
+use crate::texture::{Texture, TextureFilter};
 use glam::{Vec2, Vec3};
 
 /// Weights between texels come in this many steps, as on GPUs and in llvmpipe.
@@ -135,14 +135,17 @@ impl MipMap {
         Self { base, smaller: Vec::new(), is_nearest: false }
     }
 
-    /// Sets whether lookups blend between texels.
-    pub(crate) fn set_blending(&mut self, blends: bool) {
-        self.is_nearest = !blends;
+    /// Prepares the texture for a way of looking it up.
+    pub(crate) fn set_filter(&mut self, filter: TextureFilter) {
+        self.is_nearest = filter == TextureFilter::Nearest;
+        self.smaller.clear();
+        if filter == TextureFilter::Trilinear {
+            self.build_chain();
+        }
     }
 
     /// Builds the levels down to one texel.
-    pub(crate) fn build_chain(&mut self) {
-        self.drop_chain();
+    fn build_chain(&mut self) {
         loop {
             let smallest = self.smaller.last().unwrap_or(&self.base);
             if smallest.width == 1 && smallest.height == 1 {
@@ -151,11 +154,6 @@ impl MipMap {
             let next = smallest.half_size();
             self.smaller.push(next);
         }
-    }
-
-    /// Drops all levels but the full picture.
-    pub(crate) fn drop_chain(&mut self) {
-        self.smaller.clear();
     }
 
     /// Colour at `uv`, 0..=255 per channel. `footprint` gives the change of `uv` from a pixel to the next one to the
@@ -218,7 +216,7 @@ mod tests {
     #[test]
     fn nearest_texels_are_never_blended() {
         let mut two = map(2, 1, vec![[10, 20, 30, 255], [200, 100, 0, 255]]);
-        two.set_blending(false);
+        two.set_filter(TextureFilter::Nearest);
         for (u, red) in [(0.0, 10.0), (0.49, 10.0), (0.51, 200.0), (0.99, 200.0), (-0.01, 200.0), (1.01, 10.0)] {
             assert_eq!(at(&two, u, 0.3).x, red, "{u}");
         }
@@ -237,7 +235,7 @@ mod tests {
         let mut map = checks(64);
         let uv = Vec2::splat(0.5 / 64.0);
         assert_eq!(map.sample_at(uv, wide), Vec3::splat(255.0));
-        map.build_chain();
+        map.set_filter(TextureFilter::Trilinear);
         assert_eq!(map.smaller.len(), 6);
         assert!((map.sample_at(uv, wide) - Vec3::splat(128.0)).length() < 2.0);
         let near = || [Vec2::new(0.001, 0.0), Vec2::new(0.0, 0.001)];
@@ -249,8 +247,8 @@ mod tests {
     #[test]
     fn hostile_coordinates_stay_inside() {
         let mut map = checks(4);
-        for blends in [true, false] {
-            map.set_blending(blends);
+        for filter in [TextureFilter::Trilinear, TextureFilter::Bilinear, TextureFilter::Nearest] {
+            map.set_filter(filter);
             for u in [f32::MAX, f32::MIN, 1e-38, -1e-38, 8_388_609.0, -0.0, f32::NAN, f32::INFINITY] {
                 assert!(at(&map, u, -u).is_finite());
             }

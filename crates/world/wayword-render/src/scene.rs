@@ -4,25 +4,13 @@ use crate::background::PictureBackground;
 use crate::cluster::TriangleSoup;
 use crate::mesh::{Mesh, MeshMaterial};
 use crate::mipmap::MipMap;
-use crate::texture::{Texture, TextureError};
+use crate::texture::{Texture, TextureError, TextureFilter};
 
 /// Most triangles of a scene.
 pub const MAX_TRIANGLES: usize = 1 << 26;
 
 /// Positions must not lie further from the origin than this, on any axis.
 pub const MAX_COORDINATE_M: f32 = 1e6;
-
-/// How a texture is looked up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum TextureFilter {
-    /// Bilinear on the full picture, as Habitat does: exact, but fine patterns shimmer in the distance.
-    #[default]
-    Bilinear,
-    /// The nearest texel, unblended: for pictures with object ids encoded as colours.
-    Nearest,
-    /// Between the two levels of a mip chain that fit the pixel's footprint: no shimmer in the distance.
-    Trilinear,
-}
 
 /// Meshes, materials and textures, checked and prepared for drawing.
 #[derive(Debug)]
@@ -171,13 +159,14 @@ impl RenderScene {
     /// The same scene with another texture lookup (the default is [`TextureFilter::Bilinear`]).
     #[must_use]
     pub fn with_filter(mut self, filter: TextureFilter) -> Self {
-        for texture in &mut self.textures {
-            texture.set_blending(filter != TextureFilter::Nearest);
-            match filter {
-                TextureFilter::Bilinear | TextureFilter::Nearest => texture.drop_chain(),
-                TextureFilter::Trilinear => texture.build_chain(),
-            }
-        }
+        self.textures.iter_mut().for_each(|texture| texture.set_filter(filter));
+        self
+    }
+
+    /// The same scene with a lookup for each texture, in their order. Textures without one keep theirs.
+    #[must_use]
+    pub fn with_texture_filters(mut self, filters: &[TextureFilter]) -> Self {
+        self.textures.iter_mut().zip(filters).for_each(|(texture, filter)| texture.set_filter(*filter));
         self
     }
 }

@@ -1,4 +1,4 @@
-//! Textures as the caller gives them, with the check of their sizes.
+//! Textures as the caller gives them, with the check of their sizes, and the ways of looking them up.
 
 /// The longest side a texture may have.
 pub const MAX_TEXTURE_SIDE: u32 = 16_384;
@@ -12,6 +12,18 @@ pub struct Texture {
     pub height: u32,
     /// Red, green, blue, alpha as stored (gamma-encoded); row 0 is the top, `width * height` of them.
     pub texels: Vec<[u8; 4]>,
+}
+
+/// How a texture is looked up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TextureFilter {
+    /// Bilinear on the full picture: exact, but fine patterns shimmer in the distance.
+    #[default]
+    Bilinear,
+    /// The nearest texel, unblended: for pictures with object ids encoded as colours.
+    Nearest,
+    /// Between the two levels of a mip chain that fit the pixel's footprint: no shimmer in the distance.
+    Trilinear,
 }
 
 /// Why a texture cannot be used.

@@ -53,8 +53,7 @@ impl HabitatScene {
             }
         };
         let semantics = semantics::load_semantics(&files.semantic_files(&stage), stage.habitat_from_asset)?;
-        let scene = RenderScene::new(model.meshes, model.materials, model.textures);
-        let scene = scene.map_err(|error| FileError::new(&stage.asset, error.to_string(), DRAW_HINT))?;
+        let scene = model.into_drawable().map_err(|error| FileError::new(&stage.asset, error.to_string(), DRAW_HINT))?;
         let (id, graph) = (id.clone(), Arc::new(graph));
         let off_graph = options.off_graph;
         Ok(Self { id, scene, walkable, graph, off_graph, semantics, seen_from: OnceLock::new() })

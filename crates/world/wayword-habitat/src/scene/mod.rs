@@ -28,7 +28,7 @@ use crate::{axes::wayword_from_habitat, file_error::FileError};
 use asset::GltfAsset;
 use glam::{DMat3, Vec3};
 use std::{collections::BTreeMap, path::Path};
-use wayword_render::{Mesh, MeshMaterial, Texture};
+use wayword_render::{Mesh, MeshMaterial, RenderScene, SceneError, Texture, TextureFilter};
 
 const EXPORT_HINT: &str = "export the scene again as GLB";
 /// Triangle corners that any file may have. There is a limit because a file can place one mesh many times.
@@ -45,6 +45,8 @@ pub struct SceneModel {
     pub materials: Vec<MeshMaterial>,
     /// The materials' textures.
     pub textures: Vec<Texture>,
+    /// How each texture is looked up.
+    pub filters: Vec<TextureFilter>,
 }
 
 impl SceneModel {
@@ -69,6 +71,15 @@ impl SceneModel {
         let asset = GltfAsset::read(file)?;
         asset.check_views().map_err(|reason| FileError::new(file, reason, EXPORT_HINT))?;
         SceneModelBuilder::from_asset(&asset).place_meshes(file, habitat_from_asset)
+    }
+
+    /// The scene as Habitat draws it.
+    ///
+    /// # Errors
+    /// [`SceneError`] names the first mesh, material or texture that cannot be drawn.
+    pub fn into_drawable(self) -> Result<RenderScene, SceneError> {
+        let scene = RenderScene::new(self.meshes, self.materials, self.textures)?;
+        Ok(scene.with_texture_filters(&self.filters))
     }
 
     /// Its triangles.
@@ -169,7 +180,9 @@ impl<'a> SceneModelBuilder<'a> {
         if let Some(known) = self.textures.get(&number) {
             return Ok(*known);
         }
-        self.model.textures.push(pictures::read_texture(self.asset, number)?);
+        let (texture, filter) = pictures::read_texture(self.asset, number)?;
+        self.model.textures.push(texture);
+        self.model.filters.push(filter);
         let index = self.model.textures.len() - 1;
         let texels: u64 = self.model.textures.iter().map(|texture| texture.texels.len() as u64).sum();
         let most = pictures::max_total_texels(self.asset.total_bytes());

@@ -1,10 +1,14 @@
-//! Reads textures: PNG and JPEG, and Basis as HM3D uses it (`GOOGLE_texture_basis`).
+//! Reads textures: PNG and JPEG, and Basis as HM3D uses it (`GOOGLE_texture_basis`); and how Habitat looks each up.
 
 use super::asset::GltfAsset;
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
+use gltf::json::{
+    texture::{MagFilter, MinFilter},
+    validation::Checked,
+};
 use std::io::Cursor;
 use wayword_core::contain_panics::run_decoder;
-use wayword_render::{MAX_TEXTURE_SIDE, Texture};
+use wayword_render::{MAX_TEXTURE_SIDE, Texture, TextureFilter};
 
 /// Texels (pixels of a texture) that any picture may have.
 const FREE_TEXELS: u64 = 1 << 20;
@@ -12,8 +16,8 @@ const FREE_TEXELS: u64 = 1 << 20;
 /// less uniform.
 const TEXELS_PER_BYTE: u64 = 512;
 
-/// Reads the texture with this number.
-pub(super) fn read_texture(asset: &GltfAsset, number: usize) -> Result<Texture, String> {
+/// Reads the texture with this number, and how it is looked up.
+pub(super) fn read_texture(asset: &GltfAsset, number: usize) -> Result<(Texture, TextureFilter), String> {
     let texture = asset.root.textures.get(number).ok_or_else(|| format!("texture {number} does not exist"))?;
     let basis = texture.extensions.as_ref().and_then(|all| all.others.get("GOOGLE_texture_basis"));
     let basis = basis.and_then(|basis| basis.get("source")).and_then(serde_json::Value::as_u64);
@@ -29,13 +33,40 @@ pub(super) fn read_texture(asset: &GltfAsset, number: usize) -> Result<Texture, 
         }
         (None, None) => return Err(wrong("has no bytes".to_owned())),
     };
-    decode_texture(bytes).map_err(wrong)
+    let DecodedPicture { texture: texels, has_levels } = decode_texture(bytes).map_err(wrong)?;
+    let filter = match wanted_filter(asset, texture) {
+        TextureFilter::Trilinear if !has_levels => TextureFilter::Bilinear,
+        wanted => wanted,
+    };
+    Ok((texels, filter))
 }
 
-/// Decodes a picture. The first bytes determine its format.
-fn decode_texture(bytes: &[u8]) -> Result<Texture, String> {
+/// A picture, and whether Habitat has smaller copies of it for surfaces far away.
+struct DecodedPicture {
+    texture: Texture,
+    has_levels: bool,
+}
+
+/// The lookup that a texture's sampler asks for. Without a sampler, or without `minFilter` in it, Habitat uses smaller copies
+/// (Magnum's `GltfImporter`). Where they are used at all, two of them are blended, though a sampler may ask for the nearer one.
+fn wanted_filter(asset: &GltfAsset, texture: &gltf::json::Texture) -> TextureFilter {
+    let sampler = texture.sampler.and_then(|sampler| asset.root.samplers.get(sampler.value()));
+    let unblended = sampler.is_some_and(|it| matches!(it.mag_filter, Some(Checked::Valid(MagFilter::Nearest))));
+    match sampler.and_then(|sampler| sampler.min_filter) {
+        Some(Checked::Valid(MinFilter::Nearest)) if unblended => TextureFilter::Nearest,
+        Some(Checked::Valid(MinFilter::Nearest | MinFilter::Linear)) => TextureFilter::Bilinear,
+        _ => TextureFilter::Trilinear,
+    }
+}
+
+/// Decodes a picture. The first bytes determine its format. Habitat makes smaller copies of PNG and JPEG itself, and of Basis it
+/// takes those in the file (`ResourceManager::loadTextures`).
+fn decode_texture(bytes: &[u8]) -> Result<DecodedPicture, String> {
     // "sB", the signature of a .basis file.
-    if bytes.starts_with(b"sB") { decode_basis(bytes) } else { decode_common(bytes) }
+    if bytes.starts_with(b"sB") {
+        return decode_basis(bytes);
+    }
+    Ok(DecodedPicture { texture: decode_common(bytes)?, has_levels: true })
 }
 
 /// Most texels of all pictures together, for a file of this many bytes. A limit for each picture is not enough, because
@@ -65,14 +96,15 @@ fn decode_common(bytes: &[u8]) -> Result<Texture, String> {
     Texture::new(picture.width(), picture.height(), texels).map_err(|error| error.to_string())
 }
 
-fn decode_basis(bytes: &[u8]) -> Result<Texture, String> {
+fn decode_basis(bytes: &[u8]) -> Result<DecodedPicture, String> {
     run_decoder(|| {
         let transcoder = Transcoder::new(bytes).map_err(|error| format!("Basis: {error:?}"))?;
         let (width, height) = transcoder.base_dimensions();
         check_size(width, height, bytes.len())?;
         let rgba = transcoder.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE);
         let rgba = rgba.map_err(|error| format!("Basis: {error:?}"))?;
-        Texture::new(width, height, rgba.as_chunks().0.to_vec()).map_err(|error| error.to_string())
+        let texture = Texture::new(width, height, rgba.as_chunks().0.to_vec()).map_err(|error| error.to_string())?;
+        Ok(DecodedPicture { texture, has_levels: transcoder.level_count() > 1 })
     })
 }
 
@@ -93,7 +125,8 @@ pub(crate) mod tests {
 
     #[test]
     fn basis_files_are_unpacked() {
-        let texture = decode_texture(&etc1s()).unwrap();
+        let DecodedPicture { texture, has_levels } = decode_texture(&etc1s()).unwrap();
+        assert!(!has_levels);
         assert_eq!((texture.width, texture.height), (16, 16));
         for (x, y, expected) in [(2, 8, [200, 40, 40]), (13, 2, [40, 200, 40]), (13, 13, [40, 40, 200])] {
             let [red, green, blue, _] = texture.texels[16 * y + x];
@@ -111,7 +144,7 @@ pub(crate) mod tests {
 
     #[test]
     fn pngs_keep_their_texels() {
-        let texture = decode_texture(&png(2, 1, &[1, 2, 3, 255, 4, 5, 6, 7])).unwrap();
+        let DecodedPicture { texture, .. } = decode_texture(&png(2, 1, &[1, 2, 3, 255, 4, 5, 6, 7])).unwrap();
         assert_eq!((texture.width, texture.height, texture.texels), (2, 1, vec![[1, 2, 3, 255], [4, 5, 6, 7]]));
     }
 
@@ -124,13 +157,13 @@ pub(crate) mod tests {
         let mut crc = flate2::Crc::new();
         crc.update(&bytes[12..29]);
         bytes[29..33].copy_from_slice(&crc.sum().to_be_bytes());
-        assert!(decode_texture(&bytes).unwrap_err().contains("16000 x 16000 texels in"));
+        assert!(decode_texture(&bytes).err().unwrap().contains("16000 x 16000 texels in"));
     }
 
     #[test]
     fn decode_refuses_bytes_that_are_no_picture() {
         assert!(decode_texture(b"").is_err());
-        assert!(decode_texture(b"sB").unwrap_err().starts_with("Basis: "));
+        assert!(decode_texture(b"sB").err().unwrap().starts_with("Basis: "));
         assert!(decode_texture(&[b's', b'B', 0x13, 0, 77, 0, 0xff, 0xff, 0xff, 0xff].repeat(20)).is_err());
     }
 }

@@ -90,6 +90,26 @@ fn textures_of_hm3d_are_found_where_their_extension_says() {
     document["extensionsRequired"] = json!(["GOOGLE_texture_basis", "KHR_materials_unlit"]);
     let model = read(&glb(&document, &bytes)).unwrap();
     assert_eq!((model.textures[0].width, model.textures[0].height), (16, 16));
+    assert_eq!(model.filters, [TextureFilter::Bilinear], "the file has no smaller copies");
+}
+
+#[test]
+fn textures_are_looked_up_as_their_sampler_asks() {
+    let filter = |sampler: serde_json::Value| {
+        let (mut document, bytes) = triangle();
+        document["samplers"] = json!([sampler]);
+        document["textures"][0]["sampler"] = 0.into();
+        read(&glb(&document, &bytes)).unwrap().filters[0]
+    };
+    for mipmapped in [9984, 9985, 9986, 9987] {
+        assert_eq!(filter(json!({ "magFilter": 9729, "minFilter": mipmapped })), TextureFilter::Trilinear);
+    }
+    assert_eq!(filter(json!({})), TextureFilter::Trilinear, "Habitat's default");
+    assert_eq!(filter(json!({ "magFilter": 9729, "minFilter": 9729 })), TextureFilter::Bilinear);
+    assert_eq!(filter(json!({ "minFilter": 9728 })), TextureFilter::Bilinear, "near by it blends");
+    assert_eq!(filter(json!({ "magFilter": 9728, "minFilter": 9728 })), TextureFilter::Nearest);
+    let (document, bytes) = triangle();
+    assert_eq!(read(&glb(&document, &bytes)).unwrap().filters, [TextureFilter::Trilinear], "no sampler");
 }
 
 #[test]

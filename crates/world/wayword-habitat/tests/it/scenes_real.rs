@@ -5,14 +5,17 @@
 use wayword_core::{DVec3, PathRequest, Platform, ViewGaze, seeded_rng};
 use wayword_habitat::{HabitatOptions, HabitatPlatform, NavMeshGround};
 
-/// A scene, and the length of its unit in metres.
-const SCENES: [(&str, f64); 3] =
-    [("house.glb", 40.0), ("three_pathfinding_level.glb", 1.0), ("cube-room/cube-room.gltf", 1.0)];
+/// A scene, the length of its unit in metres, and the area of its floor by habitat-sim, square metres, where that was measured.
+const SCENES: [(&str, f64, Option<f64>); 3] = [
+    ("house.glb", 40.0, None),
+    ("three_pathfinding_level.glb", 1.0, Some(66.3)),
+    ("cube-room/cube-room.gltf", 1.0, Some(81.2)),
+];
 
 #[test]
 fn scenes_without_navmesh_are_baked_walked_and_seen() {
     let Some(folder) = crate::oracles::folder() else { return };
-    for (name, units) in SCENES {
+    for (name, units, floor_m2) in SCENES {
         let file = folder.join("../scenes").join(name).canonicalize().unwrap();
         let configs = tempfile::tempdir().unwrap();
         let config = configs.path().join("scene.stage_config.json");
@@ -35,6 +38,10 @@ fn scenes_without_navmesh_are_baked_walked_and_seen() {
             graph.len(),
             graph.edges().count()
         );
+        if let Some(floor_m2) = floor_m2 {
+            let largest_m2 = ground.islands_m2().next().unwrap();
+            assert!((largest_m2 / floor_m2 - 1.0).abs() < 0.03, "{name}: {largest_m2} m2, in habitat-sim {floor_m2}");
+        }
         assert_eq!(graph.count_components(), 1);
         walk_all_over(&ground);
         let path = platform.sample_path(&scene, &PathRequest { hops: 0..=99, length_m: 1.0..=30.0 }, 5).unwrap();
