@@ -9,16 +9,12 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use wayword_render::{Mesh, MeshMaterial, Texture};
 
-/// Converts a factor for gamma-encoded colours, which this program multiplies, into one for linear light, which glTF
-/// multiplies.
-fn linear_from_stored(stored: f32) -> f32 {
-    libm::powf(stored, 2.2)
-}
-
 /// The bytes of a `.glb` file.
 ///
 /// Nodes are named by object and number ("sofa 41"); `extras` holds the number, the same as in the id buffer. Materials
-/// are unlit (`KHR_materials_unlit`) because the light is baked.
+/// are unlit (`KHR_materials_unlit`) because the light is baked. Colour factors and light are those of this program, which
+/// multiplies stored colours by them. So does Habitat; a program that follows glTF to the letter takes them for linear light, and
+/// shows the house brighter.
 ///
 /// # Errors
 /// When a texture cannot be encoded, or the file would be larger than a GLB may be.
@@ -63,7 +59,7 @@ fn nodes_and_meshes(house: &House, meshes: &[Mesh], buffer: &mut GlbBuffer) -> (
     for mesh in meshes.iter().filter(|mesh| !mesh.triangles.is_empty()) {
         let position = buffer.add_positions(&mesh.positions);
         let uv = buffer.add_floats(mesh.uvs.iter().flat_map(|uv| uv.to_array()), 2);
-        let light = buffer.add_floats(mesh.colours.iter().flatten().map(|factor| linear_from_stored(*factor)), 3);
+        let light = buffer.add_floats(mesh.colours.iter().flatten().copied(), 3);
         by_object.entry(mesh.id).or_default().push(json!({
             "attributes": { "POSITION": position, "TEXCOORD_0": uv, "COLOR_0": light },
             "indices": buffer.add_indices(&mesh.triangles),
@@ -88,8 +84,7 @@ fn used_textures(materials: &[MeshMaterial]) -> Vec<usize> {
 }
 
 fn material_json(material: &MeshMaterial, used: &[usize]) -> Value {
-    let [r, g, b, a] = material.base_colour;
-    let mut surface = json!({ "baseColorFactor": [linear_from_stored(r), linear_from_stored(g), linear_from_stored(b), a], "metallicFactor": 0.0 });
+    let mut surface = json!({ "baseColorFactor": material.base_colour, "metallicFactor": 0.0 });
     if let Some(at) = material.texture.and_then(|texture| used.binary_search(&texture).ok()) {
         surface["baseColorTexture"] = json!({ "index": at });
     }

@@ -11,7 +11,8 @@ use super::{
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// The bytes of a `.semantic.glb`: every vertex has the colour of its object.
+/// The bytes of a `.semantic.glb`: every vertex has the colour of its object, as linear light. Habitat converts the vertex colours
+/// of a `.glb` to sRGB before it looks them up in the list (`GenericSemanticMeshData::buildSemanticMeshData`).
 ///
 /// # Errors
 /// When the file would be larger than a GLB may be.
@@ -19,7 +20,7 @@ pub fn semantic_glb(house: &House) -> Result<Vec<u8>, SaveError> {
     let mut buffer = GlbBuffer::default();
     let drawn = drawing::draw_house(house).meshes;
     let primitives = drawn.iter().filter(|mesh| !mesh.triangles.is_empty()).map(|mesh| {
-        let paint = colour_for_id(mesh.id).map(|channel| f32::from(channel) / 255.0);
+        let paint = colour_for_id(mesh.id).map(linear_from_srgb);
         let painted = buffer.add_floats(mesh.positions.iter().flat_map(|_| paint), 3);
         json!({
             "attributes": { "POSITION": buffer.add_positions(&mesh.positions), "COLOR_0": painted },
@@ -71,6 +72,12 @@ pub(super) fn stage_config(name: &str, has_navmesh: bool) -> Value {
         config["nav_asset"] = json!(format!("{name}.navmesh"));
     }
     config
+}
+
+/// The linear light of a channel in sRGB, from 0 to 1 (IEC 61966-2-1).
+fn linear_from_srgb(channel: u8) -> f32 {
+    let encoded = f32::from(channel) / 255.0;
+    if encoded <= 0.04045 { encoded / 12.92 } else { libm::powf((encoded + 0.055) / 1.055, 2.4) }
 }
 
 /// The colour of an object's number. Multiplying by an odd factor gives each of the 2^24 numbers its own colour.

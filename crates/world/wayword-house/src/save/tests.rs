@@ -45,6 +45,18 @@ fn a_saved_house_can_be_read_by_gltf_libraries() {
 }
 
 #[test]
+fn factors_and_light_are_saved_as_they_are_multiplied() {
+    let house = generate_house(4);
+    let (file, drawing) = (Gltf::from_slice(&encode_glb(&house).unwrap()).unwrap(), drawing::draw_house(&house));
+    let saved: Vec<_> = file.materials().map(|each| each.pbr_metallic_roughness().base_color_factor()).collect();
+    assert_eq!(saved, drawing.materials.iter().map(|each| each.base_colour).collect::<Vec<_>>());
+    let sum = |light: &mut dyn Iterator<Item = [f32; 3]>| light.flatten().map(f64::from).sum::<f64>();
+    let saved = sum(&mut vertices(&file).into_iter().map(|(_, light)| light));
+    let drawn = sum(&mut drawing.meshes.iter().flat_map(|mesh| mesh.colours.iter().copied()));
+    assert!((saved / drawn - 1.0).abs() < 1e-9, "{saved} {drawn}");
+}
+
+#[test]
 fn north_is_minus_z_and_up_is_y_in_gltf() {
     assert_eq!(gltf_from_wayword(Vec3::Y), Vec3::NEG_Z);
     assert_eq!(gltf_from_wayword(Vec3::Z), Vec3::Y);
@@ -88,7 +100,10 @@ fn semantic_glb_gives_every_object_its_own_colour() {
             panic!("colours are floats")
         };
         let hex = |[r, g, b]: [u8; 3]| format!("{r:02X}{g:02X}{b:02X}");
-        seen.extend(painted.map(|colour| hex(colour.map(|factor| (255.0 * factor).round() as u8))));
+        // Habitat converts vertex colours from linear light to sRGB.
+        let encode =
+            |light: f32| if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
+        seen.extend(painted.map(|colour| hex(colour.map(|light| (255.0 * encode(light)).round() as u8))));
     }
     assert!(seen.is_subset(&colours) && seen.len() > 20, "{} of {}", seen.len(), colours.len());
 }
