@@ -7,12 +7,12 @@ use super::{
 };
 use crate::{
     scene::{HabitatStage, SceneModel},
-    semantics::{self, SemanticFiles},
+    semantics::{self, SemanticFindings},
     triangle_columns::TriangleColumns,
 };
 use wayword_core::{GraphFit, GraphSize, PlatformError, RoomNames, SceneCondition, SceneId, SceneLack};
 
-/// Reads a scene's files without decoding its pictures, and reports what they offer and which faults they have.
+/// Reads a scene's files without decoding the pictures that it is drawn with, and reports what they offer and which faults they have.
 pub(super) fn examine_scene(id: &SceneId, files: &StageFiles) -> Result<SceneCondition, PlatformError> {
     let mut condition = SceneCondition {
         scene: id.clone(),
@@ -64,17 +64,19 @@ fn fill_condition(condition: &mut SceneCondition, files: &StageFiles) -> Result<
         None => {}
     }
     drop(model);
-    let semantics = files.semantic_files(&stage);
-    condition.rooms = semantics::check_semantics(&semantics, stage.habitat_from_asset)?;
-    condition.has_labels = semantics != SemanticFiles::default();
-    if !condition.has_labels {
+    let found = semantics::check_semantics(&files.semantic_files(&stage), stage.habitat_from_asset)?;
+    let Some(SemanticFindings { has_labels, rooms, lack }) = found else {
         condition.lacks.push(SceneLack {
             what: "no labels and no rooms: there are no semantic files beside it".to_owned(),
             hint: "put NAME.semantic.glb with NAME.semantic.txt, or NAME_semantic.ply with NAME.house, beside the \
                    scene where its dataset has them, or let a model see: --see PROVIDER/MODEL"
                 .to_owned(),
         });
-    }
+        return Ok(());
+    };
+    condition.has_labels = has_labels;
+    condition.rooms = rooms;
+    condition.lacks.extend(lack);
     Ok(())
 }
 

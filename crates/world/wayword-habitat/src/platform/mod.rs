@@ -48,7 +48,7 @@ pub struct HabitatPlatform {
     ready: RecentCache<SceneId, HabitatScene>,
     /// The condition of each scene that was examined, so that none is examined twice.
     examined: Mutex<BTreeMap<SceneId, SceneCondition>>,
-    /// Scenes for which a warning was already given.
+    /// Scenes for which warnings were already given.
     warned: Mutex<BTreeSet<SceneId>>,
 }
 
@@ -89,7 +89,8 @@ impl Default for HabitatOptions {
 impl HabitatPlatform {
     /// Opens the scenes at a path: one file (`.glb`, `.gltf`, `.stage_config.json`), or a folder of them, such as
     /// HM3D's, Matterport3D's or Gibson's. The navmesh and the semantic files beside a scene belong to it; if there is
-    /// no navmesh, one is baked. `hear` receives a warning if it is doubtful on which of a scene's islands people walk.
+    /// no navmesh, one is baked. `hear` receives a warning if it is doubtful on which of a scene's islands people walk, or
+    /// if few of a semantic mesh's colours are in its list.
     ///
     /// # Errors
     /// If there is no scene, or a folder cannot be read.
@@ -126,10 +127,8 @@ impl HabitatPlatform {
         self.ready.get_or_make(scene.clone(), || {
             let fits = self.known_condition(scene).is_some_and(|condition| condition.unusable.is_none());
             let prepared = HabitatScene::from_files(scene, files, &self.options, fits)?;
-            if let Some(doubt) = prepared.walkable.as_ref().and_then(|walkable| walkable.island_doubt())
-                && self.warned.lock().unwrap_or_else(PoisonError::into_inner).insert(scene.clone())
-            {
-                (self.hear)(&format!("scene {scene}: {doubt}"));
+            if self.warned.lock().unwrap_or_else(PoisonError::into_inner).insert(scene.clone()) {
+                prepared.doubts().for_each(|doubt| (self.hear)(&format!("scene {scene}: {doubt}")));
             }
             Ok(prepared)
         })

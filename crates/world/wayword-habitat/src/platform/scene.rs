@@ -12,7 +12,7 @@ use std::{
 };
 use wayword_core::{
     DVec3, DepthImage, Frame, FromAbove, GroundIsland, GroundRoute, GroundTruth, Heading, Image, ObjectId, ObjectLabel,
-    PlatformError, Pose, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
+    PlatformError, Pose, SceneId, SceneLack, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
 use wayword_render::{PinholeCamera, RenderError, RenderScene, draw_storey, render_ids, render_scene};
 use wayword_world::seen_from;
@@ -28,7 +28,10 @@ pub(super) struct HabitatScene {
     pub(super) graph: Arc<ViewpointGraph>,
     /// Whether views may be taken off the graph from a file.
     off_graph: bool,
+    /// Its objects, where some are known.
     pub(super) semantics: Option<SceneSemantics>,
+    /// The fault in its labels.
+    lack: Option<SceneLack>,
     /// The viewpoints that see each object; computed when first needed.
     seen_from: OnceLock<BTreeMap<ObjectId, BTreeSet<ViewpointId>>>,
 }
@@ -53,10 +56,20 @@ impl HabitatScene {
             }
         };
         let semantics = semantics::load_semantics(&files.semantic_files(&stage), stage.habitat_from_asset)?;
-        let scene = model.into_drawable().map_err(|error| FileError::new(&stage.asset, error.to_string(), DRAW_HINT))?;
+        let lack = semantics.as_ref().and_then(|semantics| semantics.lack.clone());
+        let semantics = semantics.filter(|semantics| semantics.has_labels);
+        let scene =
+            model.into_drawable().map_err(|error| FileError::new(&stage.asset, error.to_string(), DRAW_HINT))?;
         let (id, graph) = (id.clone(), Arc::new(graph));
         let off_graph = options.off_graph;
-        Ok(Self { id, scene, walkable, graph, off_graph, semantics, seen_from: OnceLock::new() })
+        Ok(Self { id, scene, walkable, graph, off_graph, semantics, lack, seen_from: OnceLock::new() })
+    }
+
+    /// The warnings that the user should see before a run uses the scene.
+    pub(super) fn doubts(&self) -> impl Iterator<Item = String> {
+        let island = self.walkable.as_ref().and_then(WalkableGround::island_doubt);
+        let labels = self.lack.as_ref().map(|lack| format!("{}; {}", lack.what, lack.hint));
+        island.into_iter().chain(labels)
     }
 
     /// The islands of its navmesh, the largest first.
@@ -82,7 +95,7 @@ impl HabitatScene {
         let truth = match &self.semantics {
             Some(semantics) => Some(GroundTruth {
                 labels: semantics.visible_labels(&camera, gaze).map_err(|error| self.not_drawn(&error))?,
-                lists_objects: true,
+                lists_objects: semantics.lists_objects,
                 room: semantics.room_at(eye, gaze.heading).map(str::to_owned),
             }),
             None => None,

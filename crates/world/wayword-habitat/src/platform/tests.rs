@@ -64,8 +64,9 @@ pub(super) fn folder(has_labels: bool) -> tempfile::TempDir {
     let paint = file([[90, 90, 90, 255], [200, 10, 10, 255]]);
     std::fs::write(folder.path().join("yard.glb"), &paint).unwrap();
     if has_labels {
-        std::fs::write(folder.path().join("yard.semantic.glb"), &paint).unwrap();
-        let text = "HM3D Semantic Annotations\n1,5A5A5A,\"floor\",0\n2,C80A0A,\"toy_box\",0\n";
+        let objects = file([[0, 0, 255, 255], [255, 0, 0, 255]]);
+        std::fs::write(folder.path().join("yard.semantic.glb"), objects).unwrap();
+        let text = "HM3D Semantic Annotations\n1,0000FF,\"floor\",0\n2,FF0000,\"toy_box\",0\n";
         std::fs::write(folder.path().join("yard.semantic.txt"), text).unwrap();
     }
     folder
@@ -143,6 +144,43 @@ fn a_scene_without_semantics_has_no_labels_and_targets() {
     assert!(NavMesh::from_bytes(&platform.navmesh(&scene).unwrap().to_bytes()).is_ok());
     let elsewhere = platform.graph_for_scene(&SceneId::new("attic").unwrap()).unwrap_err().to_string();
     assert_eq!(elsewhere, "there is no scene attic: there are 1: yard ...");
+}
+
+#[test]
+fn semantic_colours_that_are_not_in_the_list_give_a_warning_and_no_labels() {
+    let folder = folder(true);
+    // The colours of the list, stored without conversion to linear light, as the program wrote them once.
+    let stored = file([[90, 90, 90, 255], [200, 10, 10, 255]]);
+    let list = "HM3D Semantic Annotations\n1,5A5A5A,\"floor\",0\n2,C80A0A,\"toy_box\",0\n";
+    std::fs::write(folder.path().join("yard.semantic.glb"), stored).unwrap();
+    std::fs::write(folder.path().join("yard.semantic.txt"), list).unwrap();
+    let heard = Arc::new(Mutex::new(Vec::new()));
+    let hearing = Arc::clone(&heard);
+    let hear: OutputListener = Arc::new(move |line: &str| hearing.lock().unwrap().push(line.to_owned()));
+    let platform = HabitatPlatform::open(folder.path(), HabitatOptions::default(), hear).unwrap();
+    let scene = platform.list_scenes().unwrap().remove(0);
+    let examined = platform.files().examine_scene(&scene).unwrap().unwrap();
+    assert!(!examined.has_labels && examined.rooms == wayword_core::RoomNames::Unknown, "{examined:?}");
+    let lack = examined.lacks.last().unwrap();
+    assert!(lack.what.starts_with("0.0 % of the painted triangles in yard.semantic.glb"), "{lack:?}");
+    assert!(platform.prepared_scene(&scene).unwrap().semantics.is_none());
+    assert_eq!(platform.sample_path(&scene, &PathRequest::default(), 3).unwrap().target, None);
+    let heard = heard.lock().unwrap();
+    let [warning] = &heard[..] else { panic!("{heard:?}") };
+    assert!(warning.starts_with("scene yard: 0.0 %") && warning.contains("wayword house --seed SEED"), "{warning}");
+}
+
+#[test]
+fn a_list_that_lacks_many_colours_gives_labels_but_no_absences() {
+    let folder = folder(true);
+    std::fs::write(folder.path().join("yard.semantic.txt"), "HM3D Semantic Annotations\n2,FF0000,\"toy_box\",0\n")
+        .unwrap();
+    let platform = HabitatPlatform::open(folder.path(), HabitatOptions::default(), Arc::new(|_: &str| {})).unwrap();
+    let scene = platform.list_scenes().unwrap().remove(0);
+    let examined = platform.files().examine_scene(&scene).unwrap().unwrap();
+    assert!(examined.has_labels && examined.lacks.last().unwrap().hint.contains("put the list beside the mesh"));
+    let prepared = platform.prepared_scene(&scene).unwrap();
+    assert!(prepared.semantics.as_ref().is_some_and(|semantics| !semantics.lists_objects));
 }
 
 #[test]

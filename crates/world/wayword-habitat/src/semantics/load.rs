@@ -1,6 +1,11 @@
 //! Reads the semantic files of a scene: a mesh that is painted in the colours of its objects, or one with numbered faces.
 
-use super::{SceneSemantics, SemanticThing, hm3d, house, ply, rooms::NumberedRooms};
+use super::{
+    SceneSemantics, SemanticThing, hm3d, house,
+    paint::{PaintTally, TrianglePaint},
+    ply,
+    rooms::NumberedRooms,
+};
 use crate::{
     axes::wayword_from_habitat,
     file_error::{self, FileError},
@@ -11,7 +16,7 @@ use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
 };
-use wayword_core::RoomNames;
+use wayword_core::{RoomNames, SceneLack};
 use wayword_render::{Mesh, MeshMaterial, RenderScene, Texture, TextureFilter};
 
 /// Largest list of objects and largest mesh that are read, bytes; larger ones are errors.
@@ -46,18 +51,27 @@ pub(crate) fn load_semantics(
     }
 }
 
-/// Reads the files as [`load_semantics`] does, but decodes no picture. Returns the source of the rooms' names.
-pub(crate) fn check_semantics(files: &SemanticFiles, habitat_from_asset: DMat3) -> Result<RoomNames, FileError> {
-    if let Some((mesh, names)) = &files.painted {
-        hm3d::parse_annotations(&read_text(names, HM3D_HINT)?)
-            .map_err(|reason| FileError::new(names, reason, HM3D_HINT))?;
-        SceneModel::read_shape(mesh, habitat_from_asset)?;
-        return Ok(RoomNames::Rules);
-    }
-    match &files.numbered {
-        Some((mesh, names)) => load_numbered(mesh, names, habitat_from_asset).map(|_| RoomNames::Dataset),
-        None => Ok(RoomNames::Unknown),
-    }
+/// What the files offer to a run.
+#[derive(Debug, PartialEq)]
+pub(crate) struct SemanticFindings {
+    pub(crate) has_labels: bool,
+    pub(crate) rooms: RoomNames,
+    /// The fault in the labels.
+    pub(crate) lack: Option<SceneLack>,
+}
+
+/// Reads the files as [`load_semantics`] does, and returns what they offer; `None` if a scene has none.
+pub(crate) fn check_semantics(
+    files: &SemanticFiles,
+    habitat_from_asset: DMat3,
+) -> Result<Option<SemanticFindings>, FileError> {
+    let rooms = if files.painted.is_some() { RoomNames::Rules } else { RoomNames::Dataset };
+    let loaded = load_semantics(files, habitat_from_asset)?;
+    Ok(loaded.map(|SceneSemantics { has_labels, lack, .. }| SemanticFindings {
+        has_labels,
+        rooms: if has_labels { rooms } else { RoomNames::Unknown },
+        lack,
+    }))
 }
 
 fn read_text(file: &Path, hint: &'static str) -> Result<String, FileError> {
@@ -70,20 +84,23 @@ fn load_painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> R
     let hm3d::Hm3dAnnotations { mut things, by_colour } = hm3d::parse_annotations(&read_text(annotations, HM3D_HINT)?)
         .map_err(|reason| FileError::new(annotations, reason, HM3D_HINT))?;
     let model = SceneModel::read_file(mesh, habitat_from_asset)?;
-    let (mut meshes, mut shells) = (Vec::new(), Vec::new());
+    let (mut meshes, mut shells, mut tally) = (Vec::new(), Vec::new(), PaintTally::default());
     for each in model.meshes {
         let texture = model.materials.get(each.material).and_then(|material| material.texture);
         let texture = texture.and_then(|texture| model.textures.get(texture));
-        let colour = |corners: [u32; 3]| match texture {
-            Some(texture) => texel_at(texture, uv_middle(&each.uvs, corners)),
+        let paint = |corners: [u32; 3]| match texture {
+            Some(texture) => texel_at(texture, uv_middle(&each.uvs, corners)).map(TrianglePaint::from_texel),
             // The vertices are painted: a triangle belongs to the object of its first corner.
             None => {
                 let [first, ..] = corners;
-                let factors = Vec3::from_array(*each.colours.get(first as usize)?);
-                Some((factors * 255.0 + 0.5).as_u8vec3().to_array())
+                each.colours.get(first as usize).copied().map(TrianglePaint::from_vertex)
             }
         };
-        let thing = |corners: [u32; 3]| colour(corners).and_then(|colour| by_colour.get(&colour)).copied();
+        let mut thing = |corners: [u32; 3]| {
+            let paint = paint(corners)?;
+            tally.count(paint, &by_colour);
+            by_colour.get(&paint.colour).copied()
+        };
         let owned_triangles: Vec<OwnedTriangle> =
             each.triangles.iter().map(|corners| (*corners, thing(*corners))).collect();
         measure_things(&each.positions, &owned_triangles, &mut things);
@@ -113,6 +130,9 @@ fn load_painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> R
         things,
         regions: Vec::new(),
         rooms,
+        has_labels: tally.knows_any(),
+        lists_objects: tally.knows_most(),
+        lack: tally.lack(mesh, annotations),
     })
 }
 
@@ -133,7 +153,16 @@ fn load_numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result
     // Scans are seen only from inside, and the winding of their faces is not reliable.
     let material = MeshMaterial { double_sided: true, ..MeshMaterial::default() };
     let scene = RenderScene::new(meshes, vec![material], Vec::new()).map_err(|error| wrong(error.to_string()))?;
-    Ok(SceneSemantics { scene, by_colour: BTreeMap::new(), things, regions, rooms: NumberedRooms::default() })
+    Ok(SceneSemantics {
+        scene,
+        by_colour: BTreeMap::new(),
+        things,
+        regions,
+        rooms: NumberedRooms::default(),
+        has_labels: true,
+        lists_objects: true,
+        lack: None,
+    })
 }
 
 /// A triangle and the thing that it belongs to.

@@ -10,10 +10,13 @@
     )
 )]
 
+#[cfg(test)]
+mod genuine_tests;
 mod hm3d;
 mod house;
 mod labels;
 mod load;
+mod paint;
 mod ply;
 #[allow(
     clippy::indexing_slicing,
@@ -26,11 +29,11 @@ mod rooms;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use load::{SemanticFiles, check_semantics, load_semantics};
+pub(crate) use load::{SemanticFiles, SemanticFindings, check_semantics, load_semantics};
 
 use rooms::{NumberedRooms, ShellPart};
 use std::collections::BTreeMap;
-use wayword_core::{DVec3, Heading, ObjectId};
+use wayword_core::{DVec3, Heading, ObjectId, SceneLack};
 use wayword_render::{PinholeCamera, RenderError, RenderScene, RenderedPicture, render_ids, render_scene};
 use wayword_world::{object_names, region_letters};
 
@@ -81,6 +84,12 @@ pub(crate) struct SceneSemantics {
     regions: Vec<HouseRegion>,
     /// The rooms, where they are numbered.
     rooms: NumberedRooms,
+    /// Whether any surface is known to belong to an object.
+    pub(crate) has_labels: bool,
+    /// Whether so many are known that an object which is not seen is not there.
+    pub(crate) lists_objects: bool,
+    /// The fault in its colours.
+    pub(crate) lack: Option<SceneLack>,
 }
 
 impl SceneSemantics {

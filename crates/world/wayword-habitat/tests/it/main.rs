@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod frames_real;
+mod house_export;
 mod navmesh_real;
 mod oracles;
 mod scenes_real;
