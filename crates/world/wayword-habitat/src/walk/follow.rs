@@ -78,7 +78,7 @@ pub enum WalkFollowError {
 /// Follows a walk greedily, along the shortest ways from each of its places to the next. The agent begins at the first place and
 /// looks along `heading`. Before each step forward it makes the turns after which the step ends nearest to a point two steps ahead.
 /// It takes no step that the ground blocks or that ends more than `tolerance_m` off the walk. It stops when less than half a step is
-/// left.
+/// left, or where no step leads farther and the end is within `tolerance_m`.
 ///
 /// # Errors
 /// [`WalkFollowError`] names the place of the walk, or where the agent was blocked.
@@ -163,8 +163,12 @@ impl LineFollower<'_> {
                 return Err(WalkFollowError::TooLong);
             }
             let Some((turns, next)) = self.best_step(now, along) else {
-                let left_m = self.line.length_m() - along;
                 let (at, tolerance_m) = (now.foothold.place, self.tolerance_m);
+                let left_m = self.line.length_m() - along;
+                let end = self.line.place_at(self.line.length_m());
+                if left_m.max((end - at).truncate().length()) <= tolerance_m {
+                    break;
+                }
                 return Err(WalkFollowError::Blocked { at, actions: actions.len(), left_m, tolerance_m });
             };
             let turn = if turns < 0 { AgentAction::Left } else { AgentAction::Right };

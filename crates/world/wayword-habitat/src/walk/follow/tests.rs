@@ -82,6 +82,19 @@ fn follow_reports_the_place_that_blocks_a_walk() {
     );
 }
 
+#[test]
+fn a_walk_that_is_blocked_within_its_tolerance_of_the_end_is_taken() {
+    let ground = NavMeshGround::new(&paved(&ring()));
+    // The ninth step ends 0.18 m before the end, and the tenth would end beyond the border.
+    let places = [place(0.5, 0.55, 0.0), place(0.5, 2.98, 0.0)];
+    let gait = AgentGait::new(0.25, 90.0).unwrap();
+    let walked = follow_places(&ground, &places, Heading::NORTH, gait, TOLERANCE_M).unwrap();
+    assert_eq!((walked.actions.len(), walked.reached.len()), (10, 2));
+    assert!((walked.off_m - 0.18).abs() < 1e-9, "{}", walked.off_m);
+    let blocked = follow_places(&ground, &places, Heading::NORTH, gait, 0.15).unwrap_err();
+    assert!(matches!(blocked, WalkFollowError::Blocked { actions: 9, .. }), "{blocked}");
+}
+
 proptest! {
     #[test]
     fn walks_end_near_their_end_whatever_the_gait(
