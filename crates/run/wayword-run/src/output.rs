@@ -1,6 +1,5 @@
 //! The only place that writes to the terminal: results to standard output, messages and progress to standard error. Inside
 //! another program (the Python package) a listener gets them instead.
-#![allow(clippy::print_stdout, clippy::print_stderr)] // This file is the one place that prints.
 
 pub use indicatif::ProgressBar;
 use indicatif::{HumanDuration, ProgressDrawTarget, ProgressState, ProgressStyle};
@@ -79,7 +78,12 @@ fn tame_json(json: &str) -> String {
 
 /// Prints a line that comes from elsewhere, such as a child process or a platform, on standard error.
 pub fn print_foreign_line(line: &str) {
-    eprintln!("{}", tame_error(line));
+    print_to_stderr(&tame_error(line));
+}
+
+/// Prints a line on standard error. Where that is closed or full the line is lost, and the program goes on: `eprintln!` would panic.
+fn print_to_stderr(line: &str) {
+    let _ = writeln!(io::stderr(), "{line}");
 }
 
 impl CommandOutput {
@@ -120,14 +124,15 @@ impl CommandOutput {
         if let Some(listener) = &self.listener {
             listener.take_message(tame_text(&text.to_string()));
         } else if !self.quiet {
-            eprintln!("{}", tame_text(&text.to_string()));
+            print_to_stderr(&tame_text(&text.to_string()));
         }
     }
 
     /// Prints an error.
     pub fn print_error(&self, error: &impl Display) {
         let red = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-        eprintln!("{}: {}", if red { "\x1b[31merror\x1b[0m" } else { "error" }, tame_error(&error.to_string()));
+        let head = if red { "\x1b[31merror\x1b[0m" } else { "error" };
+        print_to_stderr(&format!("{head}: {}", tame_error(&error.to_string())));
     }
 
     /// A progress bar over `total` things, which `what` names, as in "items". Hidden if standard error is not a
