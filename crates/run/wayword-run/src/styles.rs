@@ -42,13 +42,33 @@ pub fn find_styles(names: &[String]) -> Result<Vec<MeasuredStyle>, CommandError>
     let mut styles: Vec<MeasuredStyle> = Vec::new();
     for name in names {
         let style = find_one(name)?;
-        if styles.iter().any(|other| other.style.name == style.name) {
-            return Err(CommandError::usage(format!("style {} is given twice", style.name), "give each style once"));
+        if let Some((_, other)) = styles.iter().zip(names).find(|(other, _)| other.style.name == style.name) {
+            return Err(same_name_error(&style.name, other, name));
         }
         let (profile, hash) = (StyleProfile::for_style(&style), hash_style(&style));
         styles.push(MeasuredStyle { style, profile, hash });
     }
     Ok(styles)
+}
+
+/// The error for two styles with one name; `first` and `second` are how they were given.
+fn same_name_error(name: &str, first: &str, second: &str) -> CommandError {
+    if first == second {
+        return CommandError::usage(format!("style {name} is given twice"), "give each style once");
+    }
+    let problem = format!("--style {first} and --style {second} are two styles with the name {name}");
+    CommandError::usage(problem, "change `name` in a file of one's own, or leave one out")
+}
+
+/// Refuses a style of a file that has the name of another, built-in style: records name the style that they were written in.
+fn refuse_built_in_name(file: &str, style: &InstructionStyle) -> Result<(), CommandError> {
+    match built_in(&style.name) {
+        Ok(known) if known.constraints != style.constraints || known.references != style.references => {
+            let problem = format!("{file}: it has the name of the built-in style {}, and is another", style.name);
+            Err(CommandError::usage(problem, "change `name` in the file"))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn find_one(name: &str) -> Result<InstructionStyle, CommandError> {
@@ -59,7 +79,9 @@ fn find_one(name: &str) -> Result<InstructionStyle, CommandError> {
     let more = dataset.map(dataset_texts).transpose()?;
     if is_toml(name) {
         let text = text_file::read_text_file(Path::new(name), "read the style")?;
-        return Ok(parse_style_with(name, &text, more.unwrap_or_default())?);
+        let style = parse_style_with(name, &text, more.unwrap_or_default())?;
+        refuse_built_in_name(name, &style)?;
+        return Ok(style);
     }
     let Some(references) = more else { return Ok(built_in(name)?) };
     let constraints = built_in(name).map_or_else(|_| StyleConstraints::default(), |style| style.constraints);
@@ -84,4 +106,46 @@ fn dataset_texts(file: &Path) -> Result<Vec<String>, CommandError> {
 /// A text on one line.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    const OWN: &str = "references = [\"Cross the nursery and wait by the crib.\"]";
+
+    fn told(names: &[&str]) -> String {
+        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+        find_styles(&names).map_or_else(|error| error.to_string(), |_| String::new())
+    }
+
+    #[test]
+    fn styles_with_one_name_are_told_apart_from_one_given_twice() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str, text: String| {
+            let path = folder.path().join(name);
+            fs::write(&path, text).unwrap();
+            path.display().to_string()
+        };
+        let (mine, other) = (
+            file("mine.toml", format!("name = \"mine\"\n{OWN}")),
+            file("other.toml", format!("name = \"mine\"\n{OWN}")),
+        );
+        assert!(told(&["r2r", "r2r"]).contains("style r2r is given twice"));
+        assert!(told(&[&mine, &mine]).contains("style mine is given twice"));
+        let both = told(&[&mine, &other]);
+        assert!(both.contains("mine.toml") && both.contains("other.toml") && both.contains("two styles"), "{both}");
+        assert_eq!(told(&["r2r", &mine]), "");
+    }
+
+    #[test]
+    fn a_file_does_not_take_the_name_of_a_built_in_style() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("r2r.toml");
+        fs::write(&path, format!("name = \"r2r\"\n{OWN}")).unwrap();
+        let told = told(&[&path.display().to_string()]);
+        assert!(told.contains("r2r.toml: it has the name of the built-in style r2r"), "{told}");
+        assert!(told.contains("change `name`"), "{told}");
+    }
 }

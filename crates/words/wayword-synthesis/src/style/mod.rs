@@ -9,7 +9,7 @@ pub mod way;
 mod wording;
 
 use sha2::{Digest, Sha256};
-use wayword_core::{InstructionStyle, hex_text};
+use wayword_core::{InstructionStyle, StyleConstraints, hex_text};
 
 pub use profile::StyleProfile;
 pub use wording::{PlaceWording, WordingShares};
@@ -51,6 +51,14 @@ pub enum StyleError {
         "style {0} has more than {MAX_REFERENCES} reference texts, or one of more than {MAX_REFERENCE_BYTES} bytes: give fewer or shorter ones"
     )]
     TooLarge(String),
+    /// No text can keep its rules.
+    #[error("style {name}: no text can keep its rules: {reason}")]
+    Contradictory {
+        /// The style.
+        name: String,
+        /// The rules, and what to do.
+        reason: String,
+    },
 }
 
 /// The names of the built-in styles.
@@ -113,7 +121,25 @@ pub fn validate_style(style: InstructionStyle) -> Result<InstructionStyle, Style
     if style.references.len() > MAX_REFERENCES || style.references.iter().any(|text| text.len() > MAX_REFERENCE_BYTES) {
         return Err(StyleError::TooLarge(style.name));
     }
-    Ok(style)
+    match contradiction_in(&style) {
+        Some(reason) => Err(StyleError::Contradictory { name: style.name, reason }),
+        None => Ok(style),
+    }
+}
+
+/// Rules of a style that no text can keep together, with what to do. A sentence has at least one word.
+fn contradiction_in(style: &InstructionStyle) -> Option<String> {
+    let StyleConstraints { min_sentences, max_sentences, fewer_words_than, .. } = style.constraints;
+    let least = min_sentences.unwrap_or(1).max(1);
+    if let Some(most) = max_sentences.filter(|most| *most < least) {
+        return Some(format!("min_sentences is {least}, and max_sentences {most}; change one of them"));
+    }
+    let limit = fewer_words_than?;
+    if limit <= least {
+        return Some(format!("min_sentences is {least}, and fewer_words_than {limit}; change one of them"));
+    }
+    let are_too_long = !style.words.is_empty() && style.words.iter().all(|words| *words >= limit);
+    are_too_long.then(|| format!("every number in `words` is {limit} or more; change it or fewer_words_than"))
 }
 
 /// A short hash of a style's content, for provenance.
@@ -172,6 +198,19 @@ mod tests {
         assert_eq!(validate_style(unnamed), Err(StyleError::Unnamed));
         let empty = parse_style("x.toml", "name = \"x\"\nreferences = [\" \"]");
         assert_eq!(empty, Err(StyleError::NoReferences("x.toml".into())));
+        for (rules, told) in [
+            ("min_sentences = 5\nmax_sentences = 2", "min_sentences is 5, and max_sentences 2"),
+            ("max_sentences = 0", "max_sentences 0"),
+            ("fewer_words_than = 1", "fewer_words_than 1"),
+            ("min_sentences = 9\nfewer_words_than = 9", "min_sentences is 9, and fewer_words_than 9"),
+        ] {
+            let text = format!("name = \"x\"\nreferences = [\"Stop.\"]\n[constraints]\n{rules}");
+            let error = parse_style("x.toml", &text).unwrap_err().to_string();
+            assert!(error.contains(told) && error.contains("; change "), "{error}");
+        }
+        let text = "name = \"x\"\nreferences = [\"Stop.\"]\nwords = [8, 12]\n[constraints]\nfewer_words_than = 8";
+        assert!(parse_style("x.toml", text).unwrap_err().to_string().contains("every number in `words` is 8 or more"));
+        assert!(parse_style("x.toml", &text.replace("= 8", "= 9")).is_ok());
         let long = format!("name = \"x\"\nreferences = [\"{}\"]", "a".repeat(4001));
         let long = parse_style("x.toml", &long).unwrap_err().to_string();
         assert!(
