@@ -58,6 +58,6 @@ pub use error::{FormatError, ItemPlace, WrongItem};
 pub use format::{DatasetFormat, UnknownFormat, detect_format, read_any_format};
 pub(crate) use item::DatasetItem;
 pub use official::OfficialSplit;
-pub use output::write_sidecar;
+pub use output::{is_stream, write_sidecar};
 pub use splits::split_by_scene;
 pub use vocabulary::TokenVocabulary;

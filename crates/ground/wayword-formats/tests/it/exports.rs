@@ -251,7 +251,33 @@ fn no_writer_invents_poses_for_a_path_without_them() {
 fn write_sidecar_puts_the_file_next_to_its_dataset() {
     let folder = tempfile::tempdir().unwrap();
     let dataset = folder.path().join("d.json.gz");
-    let sidecar = write_sidecar(&dataset, &[json!({"episode_id": "0_0"}), json!({"episode_id": "0_1"})]).unwrap();
+    let sidecar =
+        write_sidecar(&dataset, &[json!({"episode_id": "0_0"}), json!({"episode_id": "0_1"})]).unwrap().unwrap();
     assert_eq!(sidecar, folder.path().join("d.json.gz.provenance.jsonl"));
     assert_eq!(std::fs::read_to_string(sidecar).unwrap(), "{\"episode_id\":\"0_0\"}\n{\"episode_id\":\"0_1\"}\n");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_written_through_and_a_link_is_followed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (pipe, real, link) = (folder.path().join("pipe"), folder.path().join("real.json"), folder.path().join("link"));
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let episodes = [episode("1", None, &["Stop."])];
+    let reader = {
+        let pipe = pipe.clone();
+        std::thread::spawn(move || std::fs::read_to_string(pipe).unwrap())
+    };
+    r2r::write_r2r_file(&pipe, &episodes).unwrap();
+    let through = reader.join().unwrap();
+    std::fs::write(&real, "old").unwrap();
+    std::os::unix::fs::symlink(&real, &link).unwrap();
+    r2r::write_r2r_file(&link, &episodes).unwrap();
+    assert_eq!(std::fs::read_to_string(&real).unwrap(), through);
+    assert!(std::fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert_eq!(write_sidecar(&pipe, &[json!({})]).unwrap(), None);
+    let left: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left.len(), 3, "{left:?}");
+    let dash = r2r::write_r2r_file("-".as_ref(), &episodes).unwrap_err().to_string();
+    assert!(dash.contains("/dev/stdout") && !std::path::Path::new("-").exists(), "{dash}");
 }

@@ -70,7 +70,7 @@ pub fn write_items(
         .iter()
         .map(|record| json!({"path": record.path.id, "text": record.instruction.text, "wayword": provenance_json(record)}))
         .collect();
-    Ok(Some(write_sidecar(file, &lines)?))
+    Ok(write_sidecar(file, &lines)?)
 }
 
 /// A name for the episode of each record, in their order: that of its path, and where a path has several texts also the

@@ -220,7 +220,7 @@ fn splits_of(
 }
 
 fn tell_overwriting(file: &Path, output: &CommandOutput) {
-    if file.exists() {
+    if file.is_file() {
         output.say(format_args!("overwriting the old file {}", file.display()));
     }
 }

@@ -276,8 +276,12 @@ pub fn fresh_id(kind: &str) -> String {
     format!("{kind}-{:x}-{:x}", since.as_micros(), std::process::id())
 }
 
-/// Writes a small file so that it is whole or absent, whenever the process is killed.
+/// Writes a small file so that it is whole or absent, whenever the process is killed. A pipe or a device is written to directly.
 pub fn write_whole(path: &Path, text: &str) -> Result<(), CommandError> {
+    if wayword_formats::is_stream(path) {
+        let stream = File::options().write(true).open(path);
+        return stream.and_then(|mut file| file.write_all(text.as_bytes())).map_err(CommandError::io(path, "write"));
+    }
     let mut temporary = path.as_os_str().to_owned();
     temporary.push(".new");
     let temporary = PathBuf::from(temporary);
