@@ -8,7 +8,7 @@
 //! same keys the words that people would use instead, several of them between slashes, or `REMOVE`. Other fields are
 //! not read.
 
-use crate::{DatasetItem, Episode, FormatError, ItemPlace, input, strict_json::StrictJson};
+use crate::{DatasetItem, Episode, FormatError, ItemPlace, input, json_fault::JsonFault, strict_json::StrictJson};
 use serde::de::DeserializeSeed;
 use serde_json::{Map, Value};
 use std::{cell::RefCell, path::Path};
@@ -62,13 +62,13 @@ fn read_object(file: &Path) -> Result<Map<String, Value>, FormatError> {
     let value = value.map_err(|error| {
         let within = Some(field.take()).filter(|field| !field.is_empty());
         let within = within.map_or_else(String::new, |field| format!("field \"{field}\": "));
-        let problem =
-            format!("{within}{} (line {}, column {})", input::bare_message(&error), error.line(), error.column());
-        FormatError::for_document(file, problem, input::NOT_JSON)
+        let JsonFault { problem, hint } = JsonFault::new(&error);
+        let problem = format!("{within}{problem} (line {}, column {})", error.line(), error.column());
+        FormatError::for_document(file, problem, hint)
     })?;
     match value {
         Value::Object(map) => Ok(map),
-        _ => Err(FormatError::for_document(file, "it is not a JSON object", input::NOT_JSON)),
+        _ => Err(FormatError::for_document(file, "it is not a JSON object", "give a file of HEAR's annotations")),
     }
 }
 

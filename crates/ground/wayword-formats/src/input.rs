@@ -2,7 +2,8 @@
 //! unpacked under the same bounds.
 
 use crate::{
-    DatasetItem, FormatError, ItemPlace, WrongItem, bounded_tokens::BoundedTokenReader, limits, strict_json::StrictJson,
+    DatasetItem, FormatError, ItemPlace, WrongItem, bounded_tokens::BoundedTokenReader, file_kind,
+    json_fault::JsonFault, limits, strict_json::StrictJson,
 };
 use flate2::bufread::MultiGzDecoder;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
@@ -17,7 +18,6 @@ use std::{
 };
 
 const TOO_LARGE: &str = "it is larger than 1 GiB";
-pub(crate) const NOT_JSON: &str = "fetch the file again, or correct it at that place";
 const SPLIT_HINT: &str = "split it into parts";
 
 /// Most bytes of a file that are read at a time.
@@ -45,28 +45,32 @@ pub(crate) fn open_input(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
     // The file may grow while it is read, and gzip may expand to a thousand times its size.
     let input: Box<dyn Read> = if is_gzip { Box::new(MultiGzDecoder::new(plain)) } else { Box::new(plain) };
     let input = BufReader::with_capacity(BUFFER_BYTES, BoundedReader { inner: input, left: limits::MAX_FILE_BYTES });
-    without_byte_order_mark(file, input)
+    checked_beginning(file, input)
 }
 
-/// The input without the byte order mark of UTF-8, its first three bytes where it has one. UTF-16 is refused.
-fn without_byte_order_mark(file: &Path, mut input: impl BufRead + 'static) -> Result<Box<dyn BufRead>, FormatError> {
+/// The input without the byte order mark of UTF-8, its first three bytes where it has one. A file of another kind than
+/// JSON is refused.
+fn checked_beginning(file: &Path, mut input: impl BufRead + 'static) -> Result<Box<dyn BufRead>, FormatError> {
     let mut start = Vec::new();
-    input.by_ref().take(3).read_to_end(&mut start).map_err(|source| FormatError::from_io(file, "read", source))?;
-    match start.as_slice() {
-        [0xef, 0xbb, 0xbf] => Ok(Box::new(input)),
-        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => {
-            Err(FormatError::for_document(file, "it is text in UTF-16", "save it as UTF-8"))
-        }
-        _ => Ok(Box::new(Cursor::new(start).chain(input))),
+    let read = input.by_ref().take(file_kind::LOOKED_AT_BYTES as u64).read_to_end(&mut start);
+    read.map_err(|source| FormatError::from_io(file, "read", source))?;
+    file_kind::refuse_other_kinds(file, &start)?;
+    if start.starts_with(&[0xef, 0xbb, 0xbf]) {
+        start.drain(..3);
     }
+    Ok(Box::new(Cursor::new(start).chain(input)))
 }
 
 type BoundedJsonParser = serde_json::Deserializer<IoRead<BufReader<BoundedTokenReader<Box<dyn BufRead>>>>>;
 
 /// A parser for a file that is one JSON value.
 pub(crate) fn json_parser(file: &Path) -> Result<BoundedJsonParser, FormatError> {
-    let tokens = BoundedTokenReader::new(open_input(file)?);
-    Ok(serde_json::Deserializer::from_reader(BufReader::with_capacity(BUFFER_BYTES, tokens)))
+    Ok(parser_over(open_input(file)?))
+}
+
+fn parser_over(input: Box<dyn BufRead>) -> BoundedJsonParser {
+    let tokens = BoundedTokenReader::new(input);
+    serde_json::Deserializer::from_reader(BufReader::with_capacity(BUFFER_BYTES, tokens))
 }
 
 /// A reader that fails, rather than ends, at a limit of bytes.
@@ -84,7 +88,8 @@ impl<R: Read> Read for BoundedReader<R> {
     }
 }
 
-/// Reads a file that is one JSON list of objects, and passes each to `take`.
+/// Reads a file of objects, one JSON list or one object per line, and passes each to `take`. A file without objects
+/// counts as a list.
 pub(crate) fn each_item(
     file: &Path,
     mut take: impl FnMut(DatasetItem<'_>) -> Result<(), FormatError>,
@@ -92,13 +97,37 @@ pub(crate) fn each_item(
     each_value(file, |place, value| take(DatasetItem::new(file, place, value)?))
 }
 
-/// Reads a file that is one JSON list of any values, and passes each to `take` with its place.
+/// As [`each_item`], for a format of lines: a file without objects counts as lines.
+pub(crate) fn each_line_or_item(
+    file: &Path,
+    mut take: impl FnMut(DatasetItem<'_>) -> Result<(), FormatError>,
+) -> Result<(), FormatError> {
+    let mut take = |place, value| take(DatasetItem::new(file, place, value)?);
+    let (input, first) = first_byte(file)?;
+    if first == Some(b'[') { each_list_value(file, input, &mut take) } else { each_line_value(file, input, take) }
+}
+
+/// Reads a file of any values, one JSON list or one object per line, and passes each to `take` with its place.
 pub(crate) fn each_value(
     file: &Path,
     mut take: impl FnMut(ItemPlace, Value) -> Result<(), FormatError>,
 ) -> Result<(), FormatError> {
-    let mut parser = json_parser(file)?;
-    let items = ItemList::new(file, &mut take);
+    let (input, first) = first_byte(file)?;
+    if first == Some(b'{') { each_line_value(file, input, take) } else { each_list_value(file, input, &mut take) }
+}
+
+/// Opens a file, and looks at its first byte that is no space.
+fn first_byte(file: &Path) -> Result<(Box<dyn BufRead>, Option<u8>), FormatError> {
+    let mut input = open_input(file)?;
+    let start = input.fill_buf().map_err(|source| FormatError::from_io(file, "read", source))?;
+    let first = start.trim_ascii_start().first().copied();
+    Ok((input, first))
+}
+
+/// Passes each value of a JSON list to `take`, with its place.
+fn each_list_value(file: &Path, input: Box<dyn BufRead>, take: ItemCallback<'_>) -> Result<(), FormatError> {
+    let mut parser = parser_over(input);
+    let items = ItemList::new(file, take);
     let read = (&items).deserialize(&mut parser).and_then(|()| parser.end());
     read.map_err(|error| items.explain_failure(&error))
 }
@@ -141,7 +170,15 @@ pub(crate) fn each_line(
     file: &Path,
     mut take: impl FnMut(DatasetItem<'_>) -> Result<(), FormatError>,
 ) -> Result<(), FormatError> {
-    let mut input = open_input(file)?;
+    each_line_value(file, open_input(file)?, |place, value| take(DatasetItem::new(file, place, value)?))
+}
+
+/// Passes the value of each line to `take`, with its place.
+fn each_line_value(
+    file: &Path,
+    mut input: Box<dyn BufRead>,
+    mut take: impl FnMut(ItemPlace, Value) -> Result<(), FormatError>,
+) -> Result<(), FormatError> {
     let mut line = Vec::new();
     for number in 1.. {
         line.clear();
@@ -159,36 +196,31 @@ pub(crate) fn each_line(
             return Err(FormatError::for_document(file, problem, "write one JSON object per line"));
         }
         if !line.trim_ascii().is_empty() {
-            take(line_item(file, number, &line)?)?;
+            take(ItemPlace::Line(number), line_value(file, number, &line)?)?;
         }
     }
     Ok(())
 }
 
-/// The item of a line of JSON Lines.
-fn line_item<'a>(file: &'a Path, number: usize, line: &[u8]) -> Result<DatasetItem<'a>, FormatError> {
+/// The value of a line of JSON Lines.
+fn line_value(file: &Path, number: usize, line: &[u8]) -> Result<Value, FormatError> {
     let field = RefCell::default();
     let mut parser = serde_json::Deserializer::from_slice(line);
     let value = StrictJson(&field).deserialize(&mut parser).and_then(|value| parser.end().map(|()| value));
-    let value = value.map_err(|error| {
-        let problem = format!("{} (column {})", bare_message(&error), error.column());
-        broken_json(file, ItemPlace::Line(number), field.take(), problem)
-    })?;
-    DatasetItem::new(file, ItemPlace::Line(number), value)
-}
-
-/// `serde_json`'s message without the line and column at its end.
-pub(crate) fn bare_message(error: &serde_json::Error) -> String {
-    let text = error.to_string();
-    text.rsplit_once(" at line ").map_or(text.as_str(), |(message, _)| message).to_owned()
+    value.map_err(|error| {
+        let mut fault = JsonFault::in_line(&error, line);
+        fault.problem += &format!(" (column {})", error.column());
+        broken_json(file, ItemPlace::Line(number), field.take(), fault)
+    })
 }
 
 /// The error for wrong JSON in an item; `field` is empty where the mistake is not within a field.
-fn broken_json(file: &Path, place: ItemPlace, field: String, problem: String) -> FormatError {
+fn broken_json(file: &Path, place: ItemPlace, field: String, fault: JsonFault) -> FormatError {
+    let JsonFault { problem, hint } = fault;
     if field.is_empty() {
-        return FormatError::for_document(file, format!("{place}: {problem}"), NOT_JSON);
+        return FormatError::for_document(file, format!("{place}: {problem}"), hint);
     }
-    Box::new(WrongItem { file: file.to_owned(), place, id: None, field, problem, hint: NOT_JSON }).into()
+    Box::new(WrongItem { file: file.to_owned(), place, id: None, field, problem, hint }).into()
 }
 
 type ItemCallback<'a> = &'a mut dyn FnMut(ItemPlace, Value) -> Result<(), FormatError>;
@@ -225,12 +257,14 @@ impl<'a> ItemList<'a> {
             return refused;
         }
         // `serde_json` does not know the place where the file system or a bound ended the reading.
-        let place = || format!(" (line {}, column {})", error.line(), error.column());
-        let problem = bare_message(error) + &if error.is_io() { String::new() } else { place() };
+        let mut fault = JsonFault::new(error);
+        if !error.is_io() {
+            fault.problem += &format!(" (line {}, column {})", error.line(), error.column());
+        }
         if progress.inside {
-            broken_json(self.file, ItemPlace::Item(progress.index), self.field.take(), problem)
+            broken_json(self.file, ItemPlace::Item(progress.index), self.field.take(), fault)
         } else {
-            FormatError::for_document(self.file, problem, NOT_JSON)
+            FormatError::for_document(self.file, fault.problem, fault.hint)
         }
     }
 

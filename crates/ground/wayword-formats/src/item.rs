@@ -48,6 +48,11 @@ impl<'a> DatasetItem<'a> {
         self.fields.get(field)
     }
 
+    /// The names of the fields that were not taken.
+    pub(crate) fn field_names(&self) -> impl Iterator<Item = &String> {
+        self.fields.keys()
+    }
+
     /// Takes a field that may be missing.
     pub(crate) fn take_optional(&mut self, field: &str) -> Option<Value> {
         self.fields.shift_remove(field)
@@ -134,7 +139,12 @@ impl<'a> DatasetItem<'a> {
         value: &'v Value,
         max_entries: usize,
     ) -> Result<&'v [Value], FormatError> {
-        let list = value.as_array().ok_or_else(|| self.expected_kind(field, "a list", value, "put it in brackets"))?;
+        let hint = || match value {
+            Value::String(text) if text.starts_with('[') => "write it as JSON, without the quotes",
+            Value::Object(_) => "write the list itself",
+            _ => "put it in brackets",
+        };
+        let list = value.as_array().ok_or_else(|| self.expected_kind(field, "a list", value, hint()))?;
         if list.len() > max_entries {
             let problem = format!("it has {} entries, more than {max_entries}", list.len());
             return Err(self.wrong_field(field, problem, "split it: no known dataset has that many"));

@@ -7,8 +7,10 @@
 //! Architecture invariant: this crate depends on no platform, model or network.
 //!
 //! # Where things are
-//! - `format`: the list of formats, from which `export`, `check` and `--episodes` take them. Each has a file of its own, as [`r2r`];
+//! - `dataset_format`: the list of formats, from which `export`, `check` and `--episodes` take them; `format` tells which one a
+//!   file has. Each has a file of its own, as [`r2r`];
 //!   `matterport` has the fields that R2R, REVERIE and RxR share.
+//! - `beginning`: what a file holds, by its first item; `file_kind`: by its first bytes, where it is no JSON.
 //! - `limits`: all limits on a file. `input`, `bounded_tokens` and `strict_json` keep to them.
 //! - [`jsonl`]: Wayword's own records, with their version.
 //! - [`trajectories`]: walks in single actions, and their shards. [`vlnce_actions`] has VLN-CE's files of them.
@@ -26,14 +28,19 @@
     )
 )]
 
+mod beginning;
 mod bounded_tokens;
+mod dataset_format;
 mod episode;
 mod error;
+mod file_kind;
 mod format;
 pub mod habitat;
+mod heading_units;
 pub mod hear_annotations;
 mod input;
 mod item;
+mod json_fault;
 pub mod jsonl;
 mod limits;
 mod matterport;
@@ -53,9 +60,10 @@ pub mod vlnce;
 pub mod vlnce_actions;
 mod vocabulary;
 
+pub use dataset_format::{DatasetFormat, UnknownFormat};
 pub use episode::{Episode, InHabitat};
 pub use error::{FormatError, ItemPlace, WrongItem};
-pub use format::{DatasetFormat, UnknownFormat, detect_format, read_any_format};
+pub use format::{detect_format, read_any_format};
 pub(crate) use item::DatasetItem;
 pub use official::OfficialSplit;
 pub use output::{is_stream, write_sidecar};

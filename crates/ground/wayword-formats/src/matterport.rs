@@ -26,6 +26,35 @@ pub(crate) fn take_path(item: &mut DatasetItem<'_>, id: &str) -> Result<Episode,
     Ok(episode)
 }
 
+/// The field that names an instruction in files of loaders, which have an item for each.
+pub(crate) const INSTRUCTION_NAME: &str = "instr_id";
+
+/// The field that names an item: `id`, or else `instr_id` where the item is a single instruction, as loaders of agents
+/// split them (`instruction` in place of `instructions`). Then `path_id` and `id` are repeated.
+pub(crate) fn name_field<'f>(item: &DatasetItem<'_>, id: &'f str) -> &'f str {
+    let is_single = item.peek_field("instructions").is_none() && item.peek_field("instruction").is_some();
+    if is_single && item.peek_field(INSTRUCTION_NAME).is_some() { INSTRUCTION_NAME } else { id }
+}
+
+/// Takes the texts of an item: a list, or a single one as loaders of agents split them. The ids of the tokens of a single
+/// one are left, because items with a list have them in another field.
+pub(crate) fn take_instructions(item: &mut DatasetItem<'_>) -> Result<Vec<String>, FormatError> {
+    if item.peek_field("instructions").is_some() {
+        let instructions = item.take_field("instructions")?;
+        return item.checked_instructions("instructions", &instructions);
+    }
+    let encoding = item.take_optional(ENCODING_FIELD);
+    match item.take_optional("instruction") {
+        Some(text) => Ok(vec![item.checked_instruction("instruction", &text)?]),
+        None if encoding.is_some() => Err(item.wrong_field(
+            "instructions",
+            "it is missing: the item has the ids of the tokens alone, as files for pre-training do",
+            "give the file with the texts",
+        )),
+        None => item.take_field("instructions").map(|_| Vec::new()),
+    }
+}
+
 /// The nodes of a path, as they are written.
 pub(crate) fn path_field(file: &Path, episode: &Episode) -> Result<Value, FormatError> {
     if episode.viewpoints.is_empty() {
@@ -34,6 +63,9 @@ pub(crate) fn path_field(file: &Path, episode: &Episode) -> Result<Value, Format
     }
     Ok(episode.viewpoints.iter().map(wayword_core::ViewpointId::as_str).collect())
 }
+
+/// The field with the ids of a single instruction's tokens, for agents that load them.
+pub(crate) const ENCODING_FIELD: &str = "instr_encoding";
 
 /// The field with the ids of each instruction's tokens.
 pub(crate) const ENCODINGS_FIELD: &str = "instr_encodings";

@@ -1,13 +1,14 @@
 //! R2R: a path and usually three instructions.
 //!
 //! Fields: `distance`, `scan`, `path_id`, `path`, `heading`, `instructions`. `distance` is kept as unknown fields are.
+//! Loaders of agents write an item for each instruction, with `instr_id` and `instruction`; these are read too.
 
 use crate::{Episode, FormatError, input, matterport, output, read_tally::ReadTally};
 use matterport::PathNumbers;
 use serde_json::{Map, Value};
 use std::{collections::BTreeMap, path::Path};
 
-/// Reads an R2R file, plain or gzip.
+/// Reads an R2R file, a list or JSON Lines, plain or gzip.
 ///
 /// # Errors
 /// When the file cannot be read or is not JSON, a field of an item is missing or wrong, or a `path_id` is given twice.
@@ -15,14 +16,14 @@ pub fn read_r2r_file(file: &Path) -> Result<Vec<Episode>, FormatError> {
     let mut episodes = Vec::new();
     let mut tally = ReadTally::default();
     input::each_item(file, |mut item| {
-        let mut episode = matterport::take_path(&mut item, "path_id")?;
-        tally.claim_name(&item, "path_id", &episode)?;
-        let instructions = item.take_field("instructions")?;
-        episode.instructions = item.checked_instructions("instructions", &instructions)?;
+        let name = matterport::name_field(&item, "path_id");
+        let mut episode = matterport::take_path(&mut item, name)?;
+        tally.claim_name(&item, name, &episode)?;
+        episode.instructions = matterport::take_instructions(&mut item)?;
         episodes.push(tally.finish_episode(episode, item)?);
         Ok(())
     })?;
-    Ok(episodes)
+    tally.finish_file(episodes)
 }
 
 /// Writes an R2R file.

@@ -1,7 +1,7 @@
-//! Keeps two rules while a file is read: no two items have the same name, and the values that stay in memory are no more
-//! than [`limits::MAX_VALUES_IN_MEMORY`].
+//! Keeps three rules while a file is read: no two items have the same name, the values that stay in memory are no more
+//! than [`limits::MAX_VALUES_IN_MEMORY`], and headings are radians.
 
-use crate::{DatasetItem, Episode, FormatError, limits};
+use crate::{DatasetItem, Episode, FormatError, heading_units::HeadingUnits, limits};
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
@@ -10,6 +10,7 @@ use std::collections::BTreeSet;
 pub(crate) struct ReadTally {
     names: BTreeSet<String>,
     values: usize,
+    headings: HeadingUnits,
 }
 
 impl ReadTally {
@@ -33,9 +34,18 @@ impl ReadTally {
         mut episode: Episode,
         item: DatasetItem<'_>,
     ) -> Result<Episode, FormatError> {
+        if let Some(heading) = episode.as_read.get("heading").and_then(Value::as_f64) {
+            self.headings.note_heading(&item, heading);
+        }
         let lists = episode.viewpoints.len() + episode.floor_positions.len() + episode.instructions.len();
         episode.extra = self.take_rest(item, lists + values_in(&episode.as_read))?;
         Ok(episode)
+    }
+
+    /// The episodes of a file that was read to its end.
+    pub(crate) fn finish_file(self, episodes: Vec<Episode>) -> Result<Vec<Episode>, FormatError> {
+        self.headings.refuse_degrees()?;
+        Ok(episodes)
     }
 
     /// The fields that were not taken; `kept` is the number of values that were taken and are kept in memory. Values are

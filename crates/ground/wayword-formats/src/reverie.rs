@@ -8,7 +8,7 @@ use matterport::PathNumbers;
 use serde_json::{Map, Value};
 use std::path::Path;
 
-/// Reads a REVERIE file of either release, plain or gzip.
+/// Reads a REVERIE file of either release, a list or JSON Lines, plain or gzip.
 ///
 /// # Errors
 /// When the file cannot be read or is not JSON, a field of an item is missing or wrong, or an id is given twice.
@@ -16,19 +16,19 @@ pub fn read_reverie_file(file: &Path) -> Result<Vec<Episode>, FormatError> {
     let mut episodes = Vec::new();
     let mut tally = ReadTally::default();
     input::each_item(file, |mut item| {
-        let mut episode = matterport::take_path(&mut item, "id")?;
-        tally.claim_name(&item, "id", &episode)?;
+        let name = matterport::name_field(&item, "id");
+        let mut episode = matterport::take_path(&mut item, name)?;
+        tally.claim_name(&item, name, &episode)?;
         // Items of test splits, and those with a free target, have no object.
-        if let Some(object) = item.take_optional("objId") {
+        if let Some(object) = item.take_optional("objId").filter(|object| !object.is_null()) {
             episode.target_object = Some(item.checked_object("objId", &object)?);
             episode.remember_spelling("objId", object);
         }
-        let instructions = item.take_field("instructions")?;
-        episode.instructions = item.checked_instructions("instructions", &instructions)?;
+        episode.instructions = matterport::take_instructions(&mut item)?;
         episodes.push(tally.finish_episode(episode, item)?);
         Ok(())
     })?;
-    Ok(episodes)
+    tally.finish_file(episodes)
 }
 
 /// Writes a REVERIE file (2022 release; fields of the first release are kept where an item has them).

@@ -1,4 +1,4 @@
-//! RxR guide annotations: JSON Lines, one instruction each, plain or gzip.
+//! RxR guide annotations: JSON Lines, one instruction each, plain or gzip. A list of the same items is read too.
 //!
 //! Fields: `split`, `instruction_id`, `annotator_id`, `language`, `path_id`, `scan`, `path`, `heading`, `instruction`,
 //! `timed_instruction` (`word`, and where known `start_time`, `end_time`), `edit_distance`.
@@ -11,9 +11,6 @@ use std::{collections::BTreeSet, path::Path};
 /// Fields that describe the text: they are written back only while the text is unchanged.
 const TEXT_FIELDS: [&str; 4] = ["annotator_id", "language", "timed_instruction", "edit_distance"];
 
-/// The field with the ids of the instruction's tokens, for agents that load them.
-const ENCODING_FIELD: &str = "instr_encoding";
-
 /// Reads a file of guide annotations.
 ///
 /// # Errors
@@ -22,7 +19,7 @@ const ENCODING_FIELD: &str = "instr_encoding";
 pub fn read_rxr_file(file: &Path) -> Result<Vec<Episode>, FormatError> {
     let mut episodes = Vec::new();
     let mut tally = ReadTally::default();
-    input::each_line(file, |mut item| {
+    input::each_line_or_item(file, |mut item| {
         let mut episode = matterport::take_path(&mut item, "instruction_id")?;
         tally.claim_name(&item, "instruction_id", &episode)?;
         let instruction = item.take_field("instruction")?;
@@ -35,7 +32,7 @@ pub fn read_rxr_file(file: &Path) -> Result<Vec<Episode>, FormatError> {
         episodes.push(tally.finish_episode(episode, item)?);
         Ok(())
     })?;
-    Ok(episodes)
+    tally.finish_file(episodes)
 }
 
 /// Takes the fields that annotations by a model may lack.
@@ -89,7 +86,7 @@ pub fn write_rxr_file(file: &Path, episodes: &[Episode]) -> Result<(), FormatErr
                 if keeps_id { episode.name_field("instruction_id", &episode.id) } else { fresh.next_free().into() };
             let mut line = line_fields(file, episode, text, id, &mut paths)?;
             if let Some(ids) = episode.encodings.get(number) {
-                line.insert(ENCODING_FIELD.to_owned(), ids.clone().into());
+                line.insert(matterport::ENCODING_FIELD.to_owned(), ids.clone().into());
             }
             lines.push(line);
         }

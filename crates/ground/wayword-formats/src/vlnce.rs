@@ -1,6 +1,6 @@
 //! VLN-CE: episodes in Habitat's frame, with a vocabulary.
 //!
-//! `{episodes, instruction_vocab: {word_list}}`; an episode has `episode_id`, `trajectory_id`, `scene_id`
+//! `{episodes, instruction_vocab: {word_list}}`; RxR's files have no vocabulary. An episode has `episode_id`, `trajectory_id`, `scene_id`
 //! ("mp3d/SCAN/SCAN.glb"), `start_position`, `start_rotation` (x, y, z, w), `goals` (`position`, `radius`),
 //! `reference_path`, `instruction` (`instruction_text`, `instruction_tokens`) and `info`. Its loader builds an episode
 //! from exactly these keys and crashes on any other. So no other key is written, and unknown fields of a file that was
@@ -45,7 +45,7 @@ impl VlnceDataset {
     }
 }
 
-/// Reads a VLN-CE file, plain or gzip.
+/// Reads a VLN-CE file of R2R or RxR, plain or gzip. Where it has no vocabulary, a new one is made from its words.
 ///
 /// # Errors
 /// When the file cannot be read or is not JSON, a field of an episode is missing or wrong, or an `episode_id` is given
@@ -62,18 +62,21 @@ pub fn read_vlnce_file(file: &Path) -> Result<VlnceDataset, FormatError> {
         episodes.push(Episode { extra: Map::new(), ..episode });
         Ok(())
     })?;
-    let mut vocabulary = TokenVocabulary::new(word_list(file, rest.remove("instruction_vocab"))?);
+    let Some(words) = word_list(file, rest.remove("instruction_vocab"))? else {
+        // Tokens mean nothing without the list that numbers them: RxR's are those of language models.
+        return Ok(VlnceDataset::from_episodes(episodes));
+    };
+    let mut vocabulary = TokenVocabulary::new(words);
     vocabulary.remember_tokens(tokens);
     Ok(VlnceDataset { episodes, vocabulary })
 }
 
-/// The vocabulary's list of words.
-fn word_list(file: &Path, vocabulary: Option<Value>) -> Result<Vec<String>, FormatError> {
-    let words = vocabulary.and_then(|vocabulary| vocabulary.get("word_list").cloned());
-    let words = words.and_then(|words| serde_json::from_value::<Vec<String>>(words).ok());
-    words.ok_or_else(|| {
+/// The vocabulary's list of words. RxR's files have none.
+fn word_list(file: &Path, vocabulary: Option<Value>) -> Result<Option<Vec<String>>, FormatError> {
+    let Some(words) = vocabulary.and_then(|vocabulary| vocabulary.get("word_list").cloned()) else { return Ok(None) };
+    serde_json::from_value(words).map(Some).map_err(|_| {
         let problem = "field \"instruction_vocab.word_list\": expected a list of words";
-        FormatError::for_document(file, problem, "give a VLN-CE file of R2R; VLN-CE files of RxR cannot be read")
+        FormatError::for_document(file, problem, "leave it out, and Wayword makes a new one")
     })
 }
 
@@ -81,7 +84,8 @@ fn take_episode(item: &mut DatasetItem<'_>, tokens: &mut BTreeMap<String, Vec<u6
     let id = item.take_field("episode_id")?;
     let id_text = item.checked_name("episode_id", &id)?;
     item.set_id(&id_text);
-    let trajectory = item.take_field("trajectory_id")?;
+    // VLN-CE's loader fills in what may be missing: the names of paths here, the goals below.
+    let trajectory = item.take_optional("trajectory_id").filter(|name| !name.is_null()).unwrap_or_else(|| id.clone());
     let scene_file = item.take_field("scene_id")?;
     let mut episode =
         Episode::new(id_text, item.checked_name("trajectory_id", &trajectory)?, scene_from_mesh(item, &scene_file)?);
@@ -127,7 +131,7 @@ fn take_positions(item: &mut DatasetItem<'_>, episode: &mut Episode) -> Result<(
     episode.start_heading = Some(heading.ok_or_else(|| {
         item.wrong_field("start_rotation", "it gives no heading", "write a quaternion of length 1 as x, y, z, w")
     })?);
-    let goals = item.take_field("goals")?;
+    let goals = item.take_optional("goals").unwrap_or_default();
     let goal_floors = goal_positions(item, &goals)?;
     let path = item.take_optional("reference_path").unwrap_or_default();
     let floors = if path.is_null() {
@@ -177,6 +181,8 @@ fn take_instruction(
     let text = item.checked_instruction("instruction.instruction_text", text)?;
     match instruction.get("instruction_tokens") {
         None | Some(Value::Null) => {}
+        // RxR's files have them as words.
+        Some(Value::Array(words)) if words.iter().all(Value::is_string) => {}
         Some(numbers) => {
             let field = "instruction.instruction_tokens";
             let numbers = item.checked_list(field, numbers, limits::MAX_INSTRUCTION_BYTES)?.iter().map(Value::as_u64);

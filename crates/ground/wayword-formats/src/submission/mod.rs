@@ -2,12 +2,15 @@
 //!
 //! A JSON list of `{instr_id, trajectory: [[viewpoint, heading, elevation], ...], predObjId}`, as `tasks/R2R/eval.py`
 //! of Matterport3DSimulator and `tasks/REVERIE/eval_release.py` of REVERIE read it. `predObjId` is REVERIE's, and may
-//! be null or absent. Entries without directions are read too: a bare viewpoint, or a list of consecutive viewpoints,
+//! be null or absent; VLN-DUET's `pred_objid` is the same. Entries without directions are read too: a bare viewpoint, or a list of consecutive viewpoints,
 //! as VLN-DUET writes them.
 
+mod naming;
+mod object_name;
 mod problems;
 mod reading;
 
+pub use naming::{InstructionNaming, name_as_episodes};
 pub use problems::SubmissionProblems;
 pub use reading::{SubmissionReading, read_submission};
 

@@ -1,7 +1,11 @@
 //! Reads a submission item by item, and does not stop at the first problem.
 
-use super::{SubmissionProblems, SubmittedTrajectory, TrajectoryPose};
-use crate::{DatasetItem, FormatError, input, item, limits};
+use super::{SubmissionProblems, SubmittedTrajectory, TrajectoryPose, object_name::ObjectNames};
+use crate::{
+    DatasetItem, FormatError,
+    beginning::{FileContents, look_at_beginning},
+    input, item, limits,
+};
 use serde_json::Value;
 use std::{collections::BTreeSet, path::Path};
 use wayword_core::{Heading, ViewpointId};
@@ -24,19 +28,41 @@ pub struct SubmissionReading {
     pub is_whole: bool,
 }
 
-/// Reads a submission, plain or gzip, with all its problems.
+/// Reads a submission, a list or JSON Lines, plain or gzip, with all its problems.
 #[must_use]
 pub fn read_submission(file: &Path) -> SubmissionReading {
     let mut reader = SubmissionReader::default();
-    let read = input::each_value(file, |place, value| {
-        match DatasetItem::new(file, place, value) {
-            Ok(item) => reader.take_item(item)?,
-            Err(problem) => reader.problems.add_problem(problem),
-        }
-        Ok(())
+    let read = refuse_other_contents(file).and_then(|()| {
+        input::each_value(file, |place, value| {
+            match DatasetItem::new(file, place, value) {
+                Ok(item) => reader.take_item(item)?,
+                Err(problem) => reader.problems.add_problem(problem),
+            }
+            Ok(())
+        })
     });
     let is_whole = reader.problems.value_or_problem(read).is_some();
     SubmissionReading { submitted: reader.submitted, flawed: reader.flawed, problems: reader.problems, is_whole }
+}
+
+/// Refuses a file that holds something other than a list of trajectories, with what it holds.
+fn refuse_other_contents(file: &Path) -> Result<(), FormatError> {
+    const LIST: &str = "write a list of {\"instr_id\": ..., \"trajectory\": [...]}, one for each instruction";
+    let refused = |problem: String, hint| Err(FormatError::for_document(file, problem, hint));
+    match look_at_beginning(file)?.0 {
+        FileContents::TrajectoriesByName => {
+            refused("it is an object from names of instructions to trajectories, and no list".to_owned(), LIST)
+        }
+        FileContents::OtherPredictions => refused(
+            "it holds predictions for VLN-CE's or RxR's leaderboard, and not trajectories of R2R or REVERIE".to_owned(),
+            "positions cannot be scored here; where the path is of viewpoints, write a list of {\"instr_id\": ..., \
+             \"trajectory\": [...]}",
+        ),
+        FileContents::WrappedList(fields) => refused(format!("it is an object with {fields}"), "write that list alone"),
+        FileContents::ItemsByName => refused("it is an object with an item for each name".to_owned(), LIST),
+        FileContents::Other(what) => refused(format!("it is {what}, and no submission"), LIST),
+        FileContents::Dataset(_) | FileContents::Submission | FileContents::EmptyList | FileContents::Unknown => Ok(()),
+    }
 }
 
 /// The items and problems of a file so far.
@@ -49,6 +75,7 @@ struct SubmissionReader {
     names: BTreeSet<String>,
     /// The number of entries of all trajectories so far.
     poses: usize,
+    objects: ObjectNames,
 }
 
 impl SubmissionReader {
@@ -56,10 +83,8 @@ impl SubmissionReader {
     fn take_item(&mut self, mut item: DatasetItem<'_>) -> Result<(), FormatError> {
         let name = self.take_name(&mut item);
         let before = self.problems.count();
-        let trajectory = self.take_trajectory(&mut item);
-        let object = item.take_optional("predObjId").filter(|object| !object.is_null());
-        let object = object.map(|object| item.checked_object("predObjId", &object)).transpose();
-        let object = self.problems.value_or_problem(object);
+        let trajectory = self.take_trajectory(&mut item)?;
+        let object = self.problems.value_or_problem(self.objects.take_object(&mut item));
         let is_flawed = self.problems.count() > before;
         match (name, trajectory, object) {
             (Some(instr_id), Some(trajectory), Some(object)) if !is_flawed => {
@@ -96,21 +121,41 @@ impl SubmissionReader {
         None
     }
 
-    fn take_trajectory(&mut self, item: &mut DatasetItem<'_>) -> Option<Vec<TrajectoryPose>> {
+    /// Takes the trajectory. An error ends the reading: the form of the whole file is another.
+    fn take_trajectory(&mut self, item: &mut DatasetItem<'_>) -> Result<Option<Vec<TrajectoryPose>>, FormatError> {
         let field = "trajectory";
-        let value = self.problems.value_or_problem(item.take_field(field))?;
-        let entries = self.problems.value_or_problem(item.checked_list(field, &value, limits::MAX_TRAJECTORY_POSES))?;
+        let Some(value) = self.problems.value_or_problem(item.take_field(field)) else { return Ok(None) };
+        refuse_other_form(item, field, &value)?;
+        let entries = item.checked_list(field, &value, limits::MAX_TRAJECTORY_POSES);
+        let Some(entries) = self.problems.value_or_problem(entries) else { return Ok(None) };
         if entries.is_empty() {
             self.problems.add_problem(item.wrong_field(field, "it is empty", "a trajectory has at least its start"));
-            return None;
+            return Ok(None);
         }
         let mut trajectory = Vec::with_capacity(entries.len());
         for (index, entry) in entries.iter().enumerate() {
             let poses = entry_poses(item, &format!("{field}[{index}]"), entry);
             trajectory.extend(self.problems.value_or_problem(poses).into_iter().flatten());
         }
-        Some(trajectory)
+        Ok(Some(trajectory))
     }
+}
+
+/// Refuses trajectories of other benchmarks, whose form is the same in all items of a file.
+fn refuse_other_form(item: &DatasetItem<'_>, field: &str, value: &Value) -> Result<(), FormatError> {
+    const POSITIONS: &str = "positions, as VLN-CE has them, are not scored here; give the viewpoints of the walk";
+    if value.get("path").is_some() {
+        let problem = "it is an object with \"path\", as VLN-DUET writes it for SOON, and no list";
+        let hint = "write the list in its \"path\" as the trajectory, in all items; SOON's direction of the object \
+                    (\"obj_heading\", \"obj_elevation\") is not scored here";
+        return Err(item.wrong_field(field, problem, hint));
+    }
+    let first = value.get(0);
+    let is_position = |entry: &Value| entry.get("position").is_some() || entry.get(0).is_some_and(Value::is_number);
+    if first.is_some_and(is_position) {
+        return Err(item.wrong_field(&format!("{field}[0]"), "it is a position, and no viewpoint", POSITIONS));
+    }
+    Ok(())
 }
 
 /// The places that an entry of a trajectory gives: one, with or without directions, or several.

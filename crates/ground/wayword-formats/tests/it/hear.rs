@@ -131,7 +131,7 @@ fn read_refuses_a_file_that_is_not_an_object_of_items() {
         ("{\"a\": 1}", "item 0: expected an object, found 1"),
         ("{\"a\": {}, \"a\": {}}", "field \"a\": it is given twice"),
         ("{\"a\": {\"id2label\": {\"1\": 1, \"1\": 0}}}", "field \"a.id2label.1\": it is given twice"),
-        ("{\"a\": ", "EOF while parsing a value (line 1, column 6)"),
+        ("{\"a\": ", "the file is cut off (line 1, column 6)"),
         ("{\"a/b\": {}}", "field \"its name\""),
     ] {
         let error = read(text).unwrap_err().to_string();

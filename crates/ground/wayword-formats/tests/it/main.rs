@@ -4,6 +4,7 @@
 
 mod common;
 mod exports;
+mod found_files;
 mod hear;
 mod languages;
 mod mutations;

@@ -158,7 +158,8 @@ fn damaged(format: DatasetFormat, damage: Damage, dice: &mut Dice) -> (Vec<u8>, 
         Damage::FieldGone => {
             let field = dice.pick(needed(format)).trim_start_matches('/');
             items[index].as_object_mut().unwrap().shift_remove(field);
-            (render(&items, ""), false)
+            // VLN-CE's loader fills these in.
+            (render(&items, ""), format == DatasetFormat::Vlnce && ["trajectory_id", "goals"].contains(&field))
         }
         Damage::ItemTwice => {
             items.push(items[index].clone());

@@ -54,8 +54,8 @@ fn broken_json_is_refused_at_the_place_where_it_breaks() {
     assert_eq!(
         refusal(DatasetFormat::R2r, "data.json", &text.as_bytes()[..at]),
         format!(
-            "data.json: item 2: field \"heading\": EOF while parsing a value (line 1, column {at}); fetch the file again, \
-             or correct it at that place"
+            "data.json: item 2: field \"heading\": the file is cut off (line 1, column {at}); fetch or write it again, to \
+             its end"
         )
     );
     let twice = text.replacen("\"scan\":", "\"scan\":\"x\",\"scan\":", 1);
@@ -63,10 +63,11 @@ fn broken_json_is_refused_at_the_place_where_it_breaks() {
         refusal(DatasetFormat::R2r, "data.json", twice.as_bytes())
             .starts_with("data.json: item 0: field \"scan\": it is given twice")
     );
-    assert!(refusal(DatasetFormat::R2r, "data.json", b"{}").contains("expected a list of items"));
+    assert!(refusal(DatasetFormat::R2r, "data.json", b"{}").contains("line 1: field \"path_id\": it is missing"));
     assert!(refusal(DatasetFormat::Vlnce, "data.json", b"{}").contains("field \"episodes\" is missing"));
-    assert!(refusal(DatasetFormat::Vlnce, "data.json", b"{\"episodes\": []}").contains("instruction_vocab.word_list"));
-    assert!(refusal(DatasetFormat::R2r, "data.json", b"[] []").contains("trailing characters"));
+    let words = b"{\"episodes\": [], \"instruction_vocab\": {\"word_list\": [1]}}";
+    assert!(refusal(DatasetFormat::Vlnce, "data.json", words).contains("instruction_vocab.word_list"));
+    assert!(refusal(DatasetFormat::R2r, "data.json", b"[] []").contains("something follows the end of the JSON"));
 }
 
 #[test]
@@ -183,7 +184,10 @@ fn detect_explains_why_a_file_is_no_dataset() {
     for (text, place) in [("{\"a\": 1", "line 1, column 7"), ("[\n{\"scan\": ", "line 2, column 9")] {
         std::fs::write(&file, text).unwrap();
         let error = detect_format(&file).unwrap_err().to_string();
-        assert!(error.ends_with(&format!("notes.txt: the file is cut off at {place}; fetch it again")), "{error}");
+        assert!(
+            error.ends_with(&format!("notes.txt: the file is cut off at {place}; fetch or write it again, to its end")),
+            "{error}"
+        );
     }
     assert!(detect_format(folder.path()).unwrap_err().to_string().contains("is not a file but a folder"));
     let none = detect_format(&folder.path().join("none")).unwrap_err().to_string();

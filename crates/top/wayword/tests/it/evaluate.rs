@@ -341,7 +341,7 @@ fn evaluate_reports_problems_of_form_and_way_together() {
     let whole = Value::from(submitted).to_string();
     building.write("cut.json", &whole[..whole.len() - 2]);
     let found = problems(&evaluate_file(&building, "cut.json", R2R, &["--json"]));
-    assert!(found.iter().any(|(_, problem)| problem.contains("EOF")), "{found:#?}");
+    assert!(found.iter().any(|(_, problem)| problem.contains("the file is cut off")), "{found:#?}");
     assert!(found.iter().any(|(id, problem)| *id == names[2] && problem.contains("starts at")), "{found:#?}");
     assert!(!found.iter().any(|(_, problem)| problem.contains("has no trajectory")), "{found:#?}");
 }

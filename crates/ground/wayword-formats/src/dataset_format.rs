@@ -1,0 +1,54 @@
+//! The names of the dataset formats.
+
+use std::{fmt, str::FromStr};
+
+/// A format that can be read and written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum DatasetFormat {
+    /// Room-to-Room.
+    R2r,
+    /// REVERIE, either release.
+    Reverie,
+    /// RxR guide annotations.
+    Rxr,
+    /// VLN-CE episodes.
+    Vlnce,
+    /// Wayword's own records.
+    Wayword,
+}
+
+/// There is no format of that name.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("there is no format {0:?}; choose one of r2r, reverie, rxr, vlnce, wayword")]
+pub struct UnknownFormat(String);
+
+impl DatasetFormat {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::R2r, Self::Reverie, Self::Rxr, Self::Vlnce, Self::Wayword];
+
+    /// Its name, as `--format` takes it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::R2r => "r2r",
+            Self::Reverie => "reverie",
+            Self::Rxr => "rxr",
+            Self::Vlnce => "vlnce",
+            Self::Wayword => "wayword",
+        }
+    }
+}
+
+impl FromStr for DatasetFormat {
+    type Err = UnknownFormat;
+
+    fn from_str(name: &str) -> Result<Self, UnknownFormat> {
+        Self::ALL.into_iter().find(|format| format.name() == name).ok_or_else(|| UnknownFormat(name.to_owned()))
+    }
+}
+
+impl fmt::Display for DatasetFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
