@@ -14,7 +14,7 @@ use refusal::{SubmissionRefusal, wrong_file_error};
 use std::{collections::BTreeSet, fs, path::Path};
 use wayword_formats::{
     Episode,
-    submission::{self, instr_id},
+    submission::{self, InstructionNaming, instr_id, name_as_episodes},
 };
 use wayword_metrics::TrajectorySuccessRule;
 use wayword_run::{
@@ -46,23 +46,26 @@ pub fn run_evaluate(args: &Args, output: &CommandOutput) -> Result<Exit, Command
     let platform = platforms::open_at(args.platform.name(), (&args.platform).into())?;
     let mut split = episodes::read_split(&args.episodes, platform.as_ref())?;
     let hidden = if args.partial && !split.known.is_empty() { std::mem::take(&mut split.hidden) } else { Vec::new() };
+    let hidden_items = hidden.len();
     let hint =
         "only the leaderboard of a test split can score it; with --partial, the items whose way is known are scored";
-    let episodes = split.refuse_hidden(&args.episodes, hint)?;
-    let limit = args.limit.map_or(usize::MAX, |limit| limit as usize).min(episodes.len());
-    let (episodes, later_episodes) = episodes.split_at(limit);
-    let reading = submission::read_submission(&args.submission);
+    let mut all_episodes = split.refuse_hidden(&args.episodes, hint)?;
+    let limit = args.limit.map_or(usize::MAX, |limit| limit as usize).min(all_episodes.len());
+    all_episodes.extend(hidden);
+    let (episodes, ignored_episodes) = all_episodes.split_at(limit);
+    let mut reading = submission::read_submission(&args.submission);
     if let Some(error) = wrong_file_error(&args.submission, &reading) {
         return Err(error);
+    }
+    let naming = name_as_episodes(&mut reading, &all_episodes);
+    if naming != InstructionNaming::ItemAndPlace {
+        output.say(format_args!("{} names an instruction by {}", args.submission.display(), naming.words()));
     }
     let judge = TrajectoryJudge::new(episodes, platform.as_ref())?;
     let instruction_names =
         |episode: &Episode| (0..episode.instructions.len()).map(|place| instr_id(episode, place)).collect();
-    let ignored_instructions: BTreeSet<String> = later_episodes
-        .iter()
-        .chain(&hidden)
-        .flat_map(|episode| -> Vec<String> { instruction_names(episode) })
-        .collect();
+    let ignored_instructions: BTreeSet<String> =
+        ignored_episodes.iter().flat_map(|episode| -> Vec<String> { instruction_names(episode) }).collect();
     let (scores, left_out) = match judge.score_all(&reading, &ignored_instructions, args.partial) {
         Ok(scored) => scored,
         Err(problems) => {
@@ -83,7 +86,7 @@ pub fn run_evaluate(args: &Args, output: &CommandOutput) -> Result<Exit, Command
     let covered = SubmissionCoverage {
         instructions: judge.instruction_count(),
         items: judge.item_count(),
-        hidden: hidden.len(),
+        hidden: hidden_items,
         left_out,
     };
     let report = SubmissionReport::new(args, &scores, covered, &rules, drawn);

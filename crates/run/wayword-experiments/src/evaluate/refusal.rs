@@ -38,7 +38,8 @@ impl SubmissionRefusal {
                 _ if missing > 0 => {
                     format!("fix the problems listed above; --partial skips {without} without a trajectory")
                 }
-                _ => "fix the problems listed above; --json lists more of them".to_owned(),
+                _ if all > MAX_SHOWN_PROBLEMS => "fix the problems listed above; --json lists more of them".to_owned(),
+                _ => "fix what is listed above".to_owned(),
             },
         )
     }
@@ -53,8 +54,13 @@ pub(super) fn wrong_file_error(file: &Path, reading: &SubmissionReading) -> Opti
         let hint = if folder.is_dir() { format!("name one of the files in {}", folder.display()) } else { HINT.into() };
         return Some(CommandError::usage(format!("{}: it is a folder, not a submission", file.display()), hint));
     }
-    if !reading.submitted.is_empty() || !reading.flawed.is_empty() {
+    if !reading.submitted.is_empty() {
         return None;
+    }
+    if reading.is_whole && reading.flawed.is_empty() && reading.problems.count() == 0 {
+        let problem =
+            format!("{}: it is an empty list: no instruction has a trajectory; nothing was scored", file.display());
+        return Some(CommandError::usage(problem, HINT));
     }
     let format = wayword_formats::detect_format(file).ok()?;
     format.read_file(file).ok()?;

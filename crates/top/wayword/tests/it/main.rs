@@ -22,6 +22,7 @@ mod export_agents;
 mod export_tables;
 mod failures;
 mod follow;
+mod found_files;
 mod generate;
 mod graphs;
 mod habitat;
