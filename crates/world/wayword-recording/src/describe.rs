@@ -14,6 +14,16 @@ const MAX_FILE_BYTES: u64 = 1 << 20;
 pub(crate) const FOLDER_FILE: &str = "recording.toml";
 pub(crate) const DESCRIPTION_HINT: &str = "docs/RECORDINGS.md lists what a recording.toml can say";
 
+/// A clock by which the messages of a recording can be placed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum RecordingClock {
+    /// The stamps in the messages.
+    Stamps,
+    /// The times at which the recorder received them.
+    Recorder,
+}
+
 /// A user's description of a recording. Everything has a default.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -30,6 +40,10 @@ pub(crate) struct RecordingDescription {
     pub(crate) orientation: Option<PoseBody>,
     /// Angle from the direction ahead of `orientation` to the camera's view direction, clockwise, degrees.
     pub(crate) mount_deg: Option<f64>,
+    /// The clock by which pictures and poses are placed, where a recording has two.
+    pub(crate) clock: Option<RecordingClock>,
+    /// The part of a recording that is used, from 1, where its stamps begin again.
+    pub(crate) part: Option<usize>,
     /// Pictures per second, for pictures without times.
     pub(crate) pictures_per_s: Option<f64>,
     /// Distance between frames, metres, where there are poses.

@@ -116,6 +116,9 @@ fn open_one(path: &Path) -> Result<Option<Box<dyn RecordingSource>>, PlatformErr
         if path.join("meta").join("info.json").is_file() {
             return open_lerobot(path).map(Some);
         }
+        if let Some(bag) = open_bag(path)? {
+            return Ok(Some(bag));
+        }
         let Some(folder) = PictureFolder::open(path)? else { return Ok(None) };
         // A picture may be among videos by chance, so the program does not guess which of them the user wants.
         if let Some((file, _)) = folder.find_beside_pictures(is_recording_file)? {
@@ -178,6 +181,22 @@ fn open_video(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
 #[cfg(feature = "mcap")]
 fn open_mcap(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
     Ok(Box::new(crate::mcap::McapFile::open(path, RecordingDescription::read_beside(path)?)?))
+}
+
+/// The recording of a rosbag2 folder. A single file keeps its own name.
+#[cfg(feature = "mcap")]
+fn open_bag(folder: &Path) -> Result<Option<Box<dyn RecordingSource>>, PlatformError> {
+    let Some(files) = crate::mcap::find_bag_files(folder)? else { return Ok(None) };
+    if let [file] = files.as_slice() {
+        return open_mcap(file).map(Some);
+    }
+    let described = RecordingDescription::read(&folder.join(crate::describe::FOLDER_FILE))?;
+    Ok(Some(Box::new(crate::mcap::McapFile::open_bag(folder, files, described)?)))
+}
+
+#[cfg(not(feature = "mcap"))]
+fn open_bag(_: &Path) -> Result<Option<Box<dyn RecordingSource>>, PlatformError> {
+    Ok(None)
 }
 
 #[cfg(not(feature = "mcap"))]

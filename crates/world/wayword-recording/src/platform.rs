@@ -92,6 +92,7 @@ impl RecordingPlatform {
                 }
             })?;
             (self.hear)(&describe_choice(scene, &recording, &choice));
+            recording.reel.remarks().iter().for_each(|remark| (self.hear)(remark));
             if let Some(doubt) = recording.track.as_ref().and_then(CameraTrack::doubt) {
                 (self.hear)(doubt);
             }

@@ -52,6 +52,11 @@ pub(crate) trait PictureReel: Send + Sync {
     /// When one cannot be read, or `take` fails.
     fn hand_out_pictures(&self, wanted: &[usize], take: &mut TakePicture<'_>) -> Result<(), PlatformError>;
 
+    /// What the user has to be told about the recording, one line each.
+    fn remarks(&self) -> &[String] {
+        &[]
+    }
+
     /// Checks whether the wanted files are pictures, if that is cheap.
     ///
     /// # Errors

@@ -191,9 +191,11 @@ pub(crate) struct StampedTransform {
     /// The frame that is placed; `None` for a pose, which does not name it.
     pub(crate) child_frame: Option<String>,
     pub(crate) placing: RigidTransform,
+    /// Whether the rotation is known. A quaternion of zeros says that it is not.
+    pub(crate) has_rotation: bool,
 }
 
-/// The poses or transforms in a message; invalid ones are left out.
+/// The poses or transforms in a message. Invalid ones are left out, but positions with a quaternion of zeros are not.
 pub(crate) fn read_transforms(kind: MessageKind, message: &[u8]) -> Result<Vec<StampedTransform>, String> {
     /// A header of 12 bytes at least, a text of 4, and 7 numbers.
     const LEAST_BYTES: usize = 12 + 4 + 7 * 8;
@@ -204,10 +206,13 @@ pub(crate) fn read_transforms(kind: MessageKind, message: &[u8]) -> Result<Vec<S
         let head = read_head(&mut cdr)?;
         let child_frame = if kind == MessageKind::Pose { None } else { Some(read_frame(&mut cdr)?) };
         let (position, rotation) = (cdr.read_f64s()?, cdr.read_f64s()?);
+        let has_rotation = rotation != [0.0; 4];
+        let rotation = if has_rotation { rotation } else { DQuat::IDENTITY.to_array() };
         all.extend(RigidTransform::new(position, rotation).map(|placing| StampedTransform {
             head,
             child_frame,
             placing,
+            has_rotation,
         }));
     }
     Ok(all)

@@ -2,14 +2,17 @@
 //! of poses.
 
 use super::{
+    message_times::{MessageTimes, StreamTiming},
     messages::{MessageHead, MessageKind, RigidTransform, StampedTransform},
     topics::{UnclearReason, list_names},
-    transform_tree::{MessageClock, MessageTimes, TransformEdge, TransformTree, placings_along},
+    transform_tree::{TransformEdge, TransformTree, placings_along},
 };
 use std::collections::BTreeMap;
 
 /// Words in the names of topics with poses that are goals, and not the robot's own.
 const GOAL_WORDS: [&str; 4] = ["goal", "initialpose", "target", "plan"];
+/// Most topics and transforms without rotations that are told.
+const MAX_TOLD_TOPICS: usize = 4;
 const NAME_POSES_HINT: &str =
     "write `poses = \"TOPIC\"` into a file NAME.toml beside NAME.mcap, or into recording.toml";
 
@@ -21,6 +24,8 @@ pub(crate) struct RecordedPoses {
     tree: TransformTree,
     /// Odometry and poses, by topic.
     topics: BTreeMap<String, TopicPoses>,
+    /// The transforms that were left out because their quaternion is 0,0,0,0, counted by their names.
+    unturned: BTreeMap<String, usize>,
 }
 
 /// Poses of one topic.
@@ -31,6 +36,8 @@ struct TopicPoses {
     child_frame: Option<String>,
     /// Its poses over time, as one edge of the tree.
     edge: TransformEdge,
+    /// Its poses with the quaternion 0,0,0,0. Their rotation means nothing.
+    unturned: TransformEdge,
 }
 
 /// The edges from the camera's own frame, or from that of the robot that carries it, up to a fixed frame.
@@ -39,27 +46,41 @@ pub(crate) struct TransformChain<'a> {
     edges: Vec<&'a TransformEdge>,
     /// Whether the chain begins at the camera's own frame.
     pub(crate) starts_at_camera: bool,
+    /// Whether the rotations mean something.
+    pub(crate) has_rotations: bool,
 }
 
 impl RecordedPoses {
     pub(crate) fn new(camera: &str) -> Self {
-        Self { camera: camera.to_owned(), tree: TransformTree::new(camera), topics: BTreeMap::new() }
+        Self {
+            camera: camera.to_owned(),
+            tree: TransformTree::new(camera),
+            topics: BTreeMap::new(),
+            unturned: BTreeMap::new(),
+        }
     }
 
     /// Takes in a message.
     pub(crate) fn add_message(&mut self, topic: &str, kind: MessageKind, logged_ns: i64, all: Vec<StampedTransform>) {
         for placed in all {
+            if kind == MessageKind::Transforms && !placed.has_rotation {
+                let frame = placed.child_frame.as_deref().unwrap_or_default();
+                *self.unturned.entry(format!("{frame} in {}", placed.head.frame)).or_default() += 1;
+                continue;
+            }
             if kind == MessageKind::Transforms {
                 self.tree.add_placed(logged_ns, placed, topic.ends_with("tf_static"));
                 continue;
             }
-            let StampedTransform { head: MessageHead { stamp_ns, frame }, child_frame, placing } = placed;
+            let StampedTransform { head: MessageHead { stamp_ns, frame }, child_frame, placing, has_rotation } = placed;
             if !self.topics.contains_key(topic) {
-                let edge = TransformEdge { parent: frame, ..TransformEdge::default() };
-                self.topics.insert(topic.to_owned(), TopicPoses { kind, child_frame, edge });
+                let edge = TransformEdge { name: topic.to_owned(), parent: frame, ..TransformEdge::default() };
+                let unturned = edge.clone();
+                self.topics.insert(topic.to_owned(), TopicPoses { kind, child_frame, edge, unturned });
             }
             if let Some(poses) = self.topics.get_mut(topic) {
-                poses.edge.samples.push((MessageTimes { stamp_ns, logged_ns }, placing));
+                let edge = if has_rotation { &mut poses.edge } else { &mut poses.unturned };
+                edge.samples.push((MessageTimes { stamp_ns, logged_ns }, placing));
             }
         }
     }
@@ -74,7 +95,7 @@ impl RecordedPoses {
                 let chain = self
                     .tree
                     .edges_to_fixed_frame(true)
-                    .map(|edges| Some(TransformChain { edges, starts_at_camera: true }));
+                    .map(|edges| Some(TransformChain { edges, starts_at_camera: true, has_rotations: true }));
                 chain.ok_or_else(|| (self.describe_incomplete(topic), "name another topic as `poses`, or leave it out"))
             }
             Some((topic, _)) => Ok(self.topics.get(topic).map(|poses| self.chain_for_topic(poses))),
@@ -92,7 +113,7 @@ impl RecordedPoses {
     /// with poses.
     fn obvious_chain(&self) -> Result<Option<TransformChain<'_>>, UnclearReason> {
         if let Some(edges) = self.tree.edges_to_fixed_frame(false) {
-            return Ok(Some(TransformChain { edges, starts_at_camera: true }));
+            return Ok(Some(TransformChain { edges, starts_at_camera: true, has_rotations: true }));
         }
         for kind in [MessageKind::Odometry, MessageKind::Pose] {
             let is_goal = |name: &str| {
@@ -114,25 +135,70 @@ impl RecordedPoses {
 
     /// The chain that a topic gives. It begins at the camera's frame if the mounting of the camera on the robot is known.
     fn chain_for_topic<'a>(&'a self, poses: &'a TopicPoses) -> TransformChain<'a> {
+        if poses.lacks_rotations() {
+            return TransformChain { edges: vec![&poses.unturned], starts_at_camera: false, has_rotations: false };
+        }
         let mounted = poses.child_frame.as_ref().and_then(|what| self.tree.edges_up_to(what));
         let is_mounting_known = mounted.is_some();
         let mut edges = mounted.unwrap_or_default();
         edges.push(&poses.edge);
-        TransformChain { edges, starts_at_camera: is_mounting_known }
+        TransformChain { edges, starts_at_camera: is_mounting_known, has_rotations: true }
+    }
+
+    /// A line for each topic or transform with the quaternion 0,0,0,0: those of the chain, or all if there is no chain.
+    pub(crate) fn describe_unturned(&self, chain: Option<&TransformChain<'_>>) -> Vec<String> {
+        let is_used = |name: &String| chain.is_none_or(|chain| chain.edges.iter().any(|edge| edge.name == *name));
+        let unturned = self.topics.iter().filter(|(name, poses)| is_used(name) && !poses.unturned.samples.is_empty());
+        let topics = unturned.map(|(name, poses)| {
+            let (unturned, turned) = (poses.unturned.samples.len(), poses.edge.samples.len());
+            let use_of_them = if poses.lacks_rotations() {
+                "only the positions are used, and the camera counts as looking along the path"
+            } else {
+                "these are left out"
+            };
+            format!(
+                "{unturned} of {} poses of {name} have the quaternion 0,0,0,0, which is no rotation: {use_of_them}",
+                unturned + turned
+            )
+        });
+        let transforms = self.unturned.iter().filter(|(name, _)| is_used(name)).map(|(name, count)| {
+            format!(
+                "{count} transforms of {name} have the quaternion 0,0,0,0, which is no rotation: these are left out"
+            )
+        });
+        topics.chain(transforms).take(MAX_TOLD_TOPICS).collect()
     }
 }
 
-impl TransformChain<'_> {
-    /// The placings of the chain's first frame in its last one, in the order of their times (nanoseconds) on a clock.
-    pub(crate) fn chain_placings(&self, clock: MessageClock) -> Vec<(i64, RigidTransform)> {
-        placings_along(&self.edges, clock)
+impl TopicPoses {
+    /// Whether most of its poses have no rotation.
+    fn lacks_rotations(&self) -> bool {
+        self.unturned.samples.len() > self.edge.samples.len()
+    }
+}
+
+impl<'a> TransformChain<'a> {
+    /// The edges from the camera, or the robot, upwards.
+    pub(crate) fn edges(&self) -> &[&'a TransformEdge] {
+        &self.edges
+    }
+
+    /// The placings of the chain's first frame in its last one, in the order of their times (nanoseconds). Each edge has a
+    /// timing.
+    pub(crate) fn chain_placings(&self, timings: &[StreamTiming]) -> Vec<(i64, RigidTransform)> {
+        placings_along(&self.edges, timings)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mcap::message_times::MessageClock;
     use glam::{DQuat, DVec3};
+
+    fn placings_on(clock: MessageClock, chain: &TransformChain<'_>) -> Vec<(i64, RigidTransform)> {
+        chain.chain_placings(&vec![StreamTiming::whole(clock); chain.edges.len()])
+    }
 
     fn placed(frame: &str, what: Option<&str>, stamp_ns: i64, position: DVec3) -> StampedTransform {
         let placing = RigidTransform { position, rotation: DQuat::IDENTITY };
@@ -140,6 +206,7 @@ mod tests {
             head: MessageHead { stamp_ns, frame: frame.to_owned() },
             child_frame: what.map(str::to_owned),
             placing,
+            has_rotation: true,
         }
     }
 
@@ -170,7 +237,7 @@ mod tests {
         );
         let way = poses.choose_chain(None).unwrap().unwrap();
         assert!(way.starts_at_camera);
-        assert_eq!(way.chain_placings(MessageClock::Log)[1].1.position, DVec3::new(2.0, 0.0, 0.5));
+        assert_eq!(placings_on(MessageClock::Log, &way)[1].1.position, DVec3::new(2.0, 0.0, 0.5));
     }
 
     #[test]
@@ -181,7 +248,7 @@ mod tests {
         assert!(poses.choose_chain(None).unwrap().is_none());
         add_two_poses(&mut poses, "/pose", MessageKind::Pose, "map", None, 1.0);
         let x = |poses: &RecordedPoses, named| {
-            poses.choose_chain(named).unwrap().unwrap().chain_placings(MessageClock::Stamp)[0].1.position.x
+            placings_on(MessageClock::Stamp, &poses.choose_chain(named).unwrap().unwrap())[0].1.position.x
         };
         assert_eq!(x(&poses, None), 1.0);
         add_two_poses(&mut poses, "/odom", MessageKind::Odometry, "odom", Some("base"), 2.0);

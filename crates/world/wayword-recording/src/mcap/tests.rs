@@ -1,9 +1,14 @@
 //! Tests with recordings that other programs wrote (`fixtures/make_mcap.py`), and with broken and odd ones that are
 //! made here.
 
-use super::*;
-use crate::reel::Recording;
+use super::{contents::McapContents, record::RecordPlace, *};
+use ::mcap::MAGIC;
 use proptest::prelude::*;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs::File,
+    ops::ControlFlow,
+};
 use tempfile::TempDir;
 use wayword_core::{Heading, Image};
 
@@ -11,12 +16,12 @@ fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/mcap").join(name)
 }
 
-fn read(path: &Path, described: RecordingDescription) -> Result<Recording, String> {
+pub(super) fn read(path: &Path, described: RecordingDescription) -> Result<Recording, String> {
     let file = McapFile::open(path, described).map_err(|error| error.to_string())?;
     file.open(&file.scenes()[0]).map_err(|error| error.to_string())
 }
 
-fn bytes_read(bytes: &[u8], described: RecordingDescription) -> (TempDir, Result<Recording, String>) {
+pub(super) fn bytes_read(bytes: &[u8], described: RecordingDescription) -> (TempDir, Result<Recording, String>) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("made.mcap");
     std::fs::write(&path, bytes).unwrap();
@@ -24,7 +29,7 @@ fn bytes_read(bytes: &[u8], described: RecordingDescription) -> (TempDir, Result
     (folder, recording)
 }
 
-fn pictures(recording: &Recording, wanted: &[usize]) -> Result<Vec<Image>, String> {
+pub(super) fn pictures(recording: &Recording, wanted: &[usize]) -> Result<Vec<Image>, String> {
     let mut images = Vec::new();
     let taken = recording.reel.hand_out_pictures(wanted, &mut |number, image| {
         assert_eq!(wanted[images.len()], number);
@@ -206,7 +211,7 @@ fn open_refuses_files_that_are_no_mcap_at_once() {
 }
 
 /// A file that the Rust library writes, of messages: topic, schema, encoding, log time, bytes.
-fn made(messages: &[(&str, &str, &str, u64, Vec<u8>)]) -> Vec<u8> {
+pub(super) fn made(messages: &[(&str, &str, &str, u64, Vec<u8>)]) -> Vec<u8> {
     let options = ::mcap::WriteOptions::new().compression(None).chunk_size(Some(1024));
     let mut writer = options.create(std::io::Cursor::new(Vec::new())).unwrap();
     for (topic, schema, encoding, log_time, bytes) in messages {
@@ -221,14 +226,20 @@ fn made(messages: &[(&str, &str, &str, u64, Vec<u8>)]) -> Vec<u8> {
 }
 
 /// Writes CDR, most significant byte first.
-struct Out(Vec<u8>);
+pub(super) struct Out(pub(super) Vec<u8>);
 
 impl Out {
-    fn message(seconds: i32, frame: &str) -> Self {
-        Self(vec![0, 0, 0, 0]).number(seconds.to_be_bytes()).number([0; 4]).text(frame)
+    pub(super) fn message(seconds: i32, frame: &str) -> Self {
+        Self::message_at(i64::from(seconds) * 1_000_000_000, frame)
     }
 
-    fn number<const BYTES: usize>(mut self, bytes: [u8; BYTES]) -> Self {
+    /// The header of a message with a stamp in nanoseconds.
+    pub(super) fn message_at(stamp_ns: i64, frame: &str) -> Self {
+        let (seconds, rest) = (stamp_ns.div_euclid(1_000_000_000) as i32, stamp_ns.rem_euclid(1_000_000_000) as u32);
+        Self(vec![0, 0, 0, 0]).number(seconds.to_be_bytes()).number(rest.to_be_bytes()).text(frame)
+    }
+
+    pub(super) fn number<const BYTES: usize>(mut self, bytes: [u8; BYTES]) -> Self {
         while !(self.0.len() - 4).is_multiple_of(BYTES) {
             self.0.push(0);
         }
@@ -236,7 +247,7 @@ impl Out {
         self
     }
 
-    fn text(self, text: &str) -> Self {
+    pub(super) fn text(self, text: &str) -> Self {
         let mut out = self.number((text.len() as u32 + 1).to_be_bytes());
         out.0.extend(text.as_bytes());
         out.0.push(0);
@@ -245,7 +256,12 @@ impl Out {
 }
 
 fn grey(seconds: i32, grey: u8) -> Vec<u8> {
-    let out = Out::message(seconds, "cam").number(1_u32.to_be_bytes()).number(1_u32.to_be_bytes()).text("mono8");
+    grey_at(i64::from(seconds) * 1_000_000_000, grey)
+}
+
+/// A picture of one pixel, with a stamp in nanoseconds.
+pub(super) fn grey_at(stamp_ns: i64, grey: u8) -> Vec<u8> {
+    let out = Out::message_at(stamp_ns, "cam").number(1_u32.to_be_bytes()).number(1_u32.to_be_bytes()).text("mono8");
     out.number([1]).number(1_u32.to_be_bytes()).number(1_u32.to_be_bytes()).number([grey]).0
 }
 
@@ -254,8 +270,8 @@ fn pose(seconds: i32, x: f64) -> Vec<u8> {
     numbers.iter().fold(Out::message(seconds, "map"), |out, number| out.number(number.to_be_bytes())).0
 }
 
-const IMAGE: &str = "sensor_msgs/msg/Image";
-const POSE: &str = "geometry_msgs/msg/PoseStamped";
+pub(super) const IMAGE: &str = "sensor_msgs/msg/Image";
+pub(super) const POSE: &str = "geometry_msgs/msg/PoseStamped";
 const S: u64 = 1_000_000_000;
 
 #[test]

@@ -1,7 +1,6 @@
 //! Chooses the topic with the camera's pictures, and the topic that describes the camera's lens.
 
 use super::{
-    contents::McapContents,
     contents::McapTopic,
     messages::{CameraLens, PictureHead},
     pixels,
@@ -19,6 +18,9 @@ const COLOUR_WORDS: [&str; 3] = ["color", "colour", "rgb"];
 /// The head of the first message of each camera, by topic.
 pub(crate) type PictureHeads = BTreeMap<String, PictureHead>;
 
+/// Topics by name.
+pub(crate) type TopicsByName = BTreeMap<String, McapTopic>;
+
 /// The reason why a topic cannot be chosen, and a way out.
 pub(crate) type UnclearReason = (String, &'static str);
 
@@ -31,12 +33,11 @@ const ROS1_HINT: &str = "convert the ROS 1 bag with `rosbags-convert --src NAME.
 
 /// The camera's topic: the named one, or the obvious one.
 pub(crate) fn choose_camera<'a>(
-    contents: &'a McapContents,
+    topics: &'a TopicsByName,
     heads: &PictureHeads,
     named: Option<&str>,
 ) -> Result<&'a str, UnclearReason> {
-    let cameras: Vec<(&str, Option<String>)> = contents
-        .topics
+    let cameras: Vec<(&str, Option<String>)> = topics
         .iter()
         .filter_map(|(name, topic)| {
             let kind = topic.kind.filter(|kind| kind.is_picture())?;
@@ -51,41 +52,40 @@ pub(crate) fn choose_camera<'a>(
                 format!("the pictures of {named} have the encoding {why}"),
                 "name another camera, or leave `camera` out",
             )),
-            None => Err((describe_missing_camera(contents, named), "name one of these, or leave `camera` out")),
+            None => Err((describe_missing_camera(topics, named), "name one of these, or leave `camera` out")),
         };
     }
     let readable: Vec<&str> = cameras.iter().filter(|(_, why)| why.is_none()).map(|(name, _)| *name).collect();
     match obvious_camera(&readable) {
         Some(camera) => Ok(camera),
-        None if readable.is_empty() => Err(no_camera(contents, &cameras)),
+        None if readable.is_empty() => Err(no_camera(topics, &cameras)),
         None => Err((format!("holds several cameras: {}", list_names(readable.into_iter())), NAME_CAMERA_HINT)),
     }
 }
 
 /// The reason why a topic that the user named is no camera.
-fn describe_missing_camera(contents: &McapContents, named: &str) -> String {
-    match contents.topics.get(named) {
+fn describe_missing_camera(topics: &TopicsByName, named: &str) -> String {
+    match topics.get(named) {
         Some(topic) => format!("{named} has no pictures, but {}", describe_topic(topic)),
         None => {
-            format!("has no camera {named}; its topics: {}", list_names(contents.topics.keys().map(String::as_str)))
+            format!("has no camera {named}; its topics: {}", list_names(topics.keys().map(String::as_str)))
         }
     }
 }
 
 /// The error for a file without a camera that can be read.
-fn no_camera(contents: &McapContents, cameras: &[(&str, Option<String>)]) -> UnclearReason {
+fn no_camera(topics: &TopicsByName, cameras: &[(&str, Option<String>)]) -> UnclearReason {
     if !cameras.is_empty() {
         let why = cameras.iter().map(|(name, why)| format!("{name}: {}", why.as_deref().unwrap_or_default()));
         let why: Vec<String> = why.take(MAX_NAMES).collect();
         return (format!("has no pictures that can be read ({})", why.join("; ")), FOREIGN_HINT);
     }
-    let topics =
-        contents.topics.iter().take(MAX_NAMES).map(|(name, topic)| format!("{name} ({})", describe_topic(topic)));
-    let topics: Vec<String> = topics.collect();
-    let hint = if contents.topics.values().any(|topic| topic.encoding == "ros1") { ROS1_HINT } else { FOREIGN_HINT };
-    match topics.is_empty() {
+    let described = topics.iter().take(MAX_NAMES).map(|(name, topic)| format!("{name} ({})", describe_topic(topic)));
+    let described: Vec<String> = described.collect();
+    let hint = if topics.values().any(|topic| topic.encoding == "ros1") { ROS1_HINT } else { FOREIGN_HINT };
+    match described.is_empty() {
         true => ("has no messages".to_owned(), "record it again, with a camera's topic"),
-        false => (format!("has no pictures that can be read; its topics: {}", topics.join(", ")), hint),
+        false => (format!("has no pictures that can be read; its topics: {}", described.join(", ")), hint),
     }
 }
 

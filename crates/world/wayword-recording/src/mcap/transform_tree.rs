@@ -1,6 +1,9 @@
 //! The tree of coordinate frames that ROS publishes (`tf2`): each frame is placed in its parent, at many times.
 
-use super::messages::{RigidTransform, StampedTransform};
+use super::{
+    message_times::{MessageTimes, StreamTiming},
+    messages::{RigidTransform, StampedTransform},
+};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Names of fixed frames, the best first (REP 105).
@@ -8,35 +11,13 @@ const FIXED_FRAMES: [&str; 3] = ["map", "odom", "world"];
 /// Most frames of a file; further ones are ignored. No robot has so many.
 const MAX_FRAMES: usize = 100_000;
 
-/// The clock by which times are read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum MessageClock {
-    /// The stamps in the messages' headers.
-    Stamp,
-    /// The times at which the recorder received the messages.
-    Log,
-}
-
-/// The two times of a message, nanoseconds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct MessageTimes {
-    pub(crate) stamp_ns: i64,
-    pub(crate) logged_ns: i64,
-}
-
-impl MessageTimes {
-    /// The time on a clock; `None` if that is the stamp and it is 0.
-    pub(crate) fn time_on(self, clock: MessageClock) -> Option<i64> {
-        match clock {
-            MessageClock::Stamp => Some(self.stamp_ns).filter(|stamp_ns| *stamp_ns != 0),
-            MessageClock::Log => Some(self.logged_ns),
-        }
-    }
-}
-
 /// The placings of one frame in another, over time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct TransformEdge {
+    /// Its name for the user: a topic, or the two frames.
+    pub(crate) name: String,
+    /// The frame that is placed; empty if messages do not name it.
+    pub(crate) frame: String,
     /// The frame in which it is placed.
     pub(crate) parent: String,
     /// Whether it never moves.
@@ -47,19 +28,29 @@ pub(crate) struct TransformEdge {
 
 impl TransformEdge {
     /// Whether the frame moves in its parent.
-    fn is_moving(&self) -> bool {
+    pub(crate) fn is_moving(&self) -> bool {
         !self.fixed && self.samples.len() > 1
     }
 
-    /// The edge in the order of one clock; a single placing is valid at all times.
-    pub(crate) fn timed_on(&self, clock: MessageClock) -> TimedEdge {
+    /// Whether a frame of the ground is placed, such as `odom` in `map`, and not a robot.
+    pub(crate) fn places_ground(&self) -> bool {
+        fixed_frame_rank(&self.frame).is_some()
+    }
+
+    /// The times of its placings in the order of the file.
+    pub(crate) fn message_times(&self) -> Vec<MessageTimes> {
+        self.samples.iter().map(|(times, _)| *times).collect()
+    }
+
+    /// The edge in the order of its times; a single placing is valid at all times.
+    fn timed_by(&self, timing: &StreamTiming) -> TimedEdge {
         if !self.is_moving() {
             return TimedEdge {
                 samples: self.samples.last().map(|(_, placing)| (0, *placing)).into_iter().collect(),
                 moves: false,
             };
         }
-        let timed = self.samples.iter().filter_map(|(times, placing)| Some((times.time_on(clock)?, *placing)));
+        let timed = self.samples.iter().filter_map(|(times, placing)| Some((timing.time_of(*times)?, *placing)));
         let mut samples: Vec<(i64, RigidTransform)> = timed.collect();
         samples.sort_by_key(|(time_ns, _)| *time_ns);
         samples.dedup_by_key(|(time_ns, _)| *time_ns);
@@ -72,7 +63,7 @@ impl TransformEdge {
 const MAX_GAP_NS: i64 = 10_000_000_000;
 
 /// An edge on one clock.
-pub(crate) struct TimedEdge {
+struct TimedEdge {
     /// Placings with their times, nanoseconds, ascending; a single one if the frame does not move.
     samples: Vec<(i64, RigidTransform)>,
     moves: bool,
@@ -99,9 +90,10 @@ impl TimedEdge {
     }
 }
 
-/// The placing of the first frame of a chain in the last one, at each time at which a frame of the chain moved.
-pub(crate) fn placings_along(chain: &[&TransformEdge], clock: MessageClock) -> Vec<(i64, RigidTransform)> {
-    let chain: Vec<TimedEdge> = chain.iter().map(|edge| edge.timed_on(clock)).collect();
+/// The placing of the first frame of a chain in the last one, at each time at which a frame of the chain moved. Each edge has a
+/// timing.
+pub(crate) fn placings_along(chain: &[&TransformEdge], timings: &[StreamTiming]) -> Vec<(i64, RigidTransform)> {
+    let chain: Vec<TimedEdge> = chain.iter().zip(timings).map(|(edge, timing)| edge.timed_by(timing)).collect();
     let moving = chain.iter().filter(|edge| edge.moves);
     let mut times: Vec<i64> = moving.flat_map(|edge| edge.samples.iter().map(|(time_ns, _)| *time_ns)).collect();
     times.sort_unstable();
@@ -138,7 +130,9 @@ impl TransformTree {
         {
             return;
         }
-        let edge = self.edges.entry(frame).or_insert_with(|| TransformEdge {
+        let edge = self.edges.entry(frame).or_insert_with_key(|frame| TransformEdge {
+            name: format!("{frame} in {}", placed.head.frame),
+            frame: frame.clone(),
             parent: placed.head.frame.clone(),
             fixed,
             ..TransformEdge::default()
@@ -206,7 +200,7 @@ fn fixed_frame_rank(frame: &str) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mcap::messages::MessageHead;
+    use crate::mcap::{message_times::MessageClock, messages::MessageHead};
     use glam::{DQuat, DVec3};
 
     fn placed(frame: &str, what: &str, stamp_ns: i64, x: f64) -> StampedTransform {
@@ -215,7 +209,12 @@ mod tests {
             head: MessageHead { stamp_ns, frame: frame.to_owned() },
             child_frame: Some(what.to_owned()),
             placing,
+            has_rotation: true,
         }
+    }
+
+    fn on_stamps(way: &[&TransformEdge]) -> Vec<(i64, RigidTransform)> {
+        placings_along(way, &vec![StreamTiming::whole(MessageClock::Stamp); way.len()])
     }
 
     fn tree(all: &[(&str, &str, i64, f64, bool)]) -> TransformTree {
@@ -238,8 +237,7 @@ mod tests {
             ("base", "arm", 40, 7.0, false),
         ]);
         let way = tree.edges_to_fixed_frame(false).unwrap();
-        let found: Vec<_> =
-            placings_along(&way, MessageClock::Stamp).iter().map(|(at, placing)| (*at, placing.position.x)).collect();
+        let found: Vec<_> = on_stamps(&way).iter().map(|(at, placing)| (*at, placing.position.x)).collect();
         let third = 100.0 + 100.0 / 3.0;
         assert_eq!(found.len(), 3);
         for ((at, x), (expected_at, expected)) in found.iter().zip([(10, third + 1.25), (20, 202.25), (30, 203.25)]) {
@@ -254,10 +252,7 @@ mod tests {
         let tree =
             tree(&[("odom", "cam", 1, 1.0, false), ("odom", "cam", 3, 1.0, false), ("map", "odom", 2, 10.0, true)]);
         assert_eq!(tree.edges_to_fixed_frame(false).unwrap().len(), 2);
-        assert_eq!(
-            placings_along(&tree.edges_to_fixed_frame(false).unwrap(), MessageClock::Stamp)[1].1.position.x,
-            11.0
-        );
+        assert_eq!(on_stamps(&tree.edges_to_fixed_frame(false).unwrap())[1].1.position.x, 11.0);
     }
 
     #[test]
