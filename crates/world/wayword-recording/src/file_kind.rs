@@ -7,9 +7,10 @@ use wayword_core::PlatformError;
 use wayword_world::files;
 
 /// The advice for a video: a command that converts any video that ffmpeg reads. It encodes the pictures again, because only
-/// H.264 and AV1 could be copied, and few videos hold these.
-pub(crate) const ENCODE_HINT: &str =
-    "if a video player shows it, convert it: ffmpeg -i IN -c:v libx264 -pix_fmt yuv420p -an OUT.mp4";
+/// H.264 and AV1 could be copied, and few videos hold these. An odd width or height loses its last pixels, because yuv420p has
+/// none; an even one stays.
+pub(crate) const ENCODE_HINT: &str = "if a video player shows it, convert it: ffmpeg -i IN -c:v libx264 -pix_fmt yuv420p -vf \
+                                      \"crop=trunc(iw/2)*2:trunc(ih/2)*2\" -an OUT.mp4";
 const CONVERT_PICTURE_HINT: &str = "convert it: ffmpeg -i IN -frames:v 1 OUT.png";
 const CONVERT_HEIC_HINT: &str = "convert it: heif-convert IN OUT.jpg (package libheif-examples), \
                             or on macOS: sips -s format jpeg IN --out OUT.jpg";

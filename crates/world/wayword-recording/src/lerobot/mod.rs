@@ -11,6 +11,7 @@ mod parquet;
 mod pictures;
 mod pose_feature;
 mod template;
+mod yaw_unit;
 
 use crate::{
     axes::{PoseAxes, PoseBody},
@@ -25,7 +26,7 @@ use episodes::DatasetEpisode;
 use info::{DatasetInfo, DatasetLayout};
 use parquet::ParquetTable;
 use pictures::{RowReel, VideoStretch};
-use pose_feature::PoseFeature;
+use pose_feature::{PoseFeature, YAW_UNIT_HINT};
 use std::{
     ops::Range,
     path::{Path, PathBuf},
@@ -45,6 +46,8 @@ pub(crate) struct LeRobotDataset {
     info: DatasetInfo,
     camera: DatasetCamera,
     pose_feature: Option<PoseFeature>,
+    /// What the user has to be told about the dataset.
+    remark: Option<String>,
     /// Sorted by name, which is also the order of their numbers.
     episodes: Vec<(SceneId, DatasetEpisode)>,
 }
@@ -58,6 +61,9 @@ impl LeRobotDataset {
         let info = DatasetInfo::read(root)?;
         let camera = camera::choose_camera(root, &info, described.camera.as_deref())?;
         let pose_feature = PoseFeature::find_feature(root, &info, &described)?;
+        let is_unclear = pose_feature.is_none() && described.poses.is_none();
+        let remark = PoseFeature::describe_candidates(&info).filter(|_| is_unclear);
+        let remark = remark.map(|remark| format!("{}: {remark}", root.display()));
         let name = scene_id_for_path(root)?;
         let named = |episode: DatasetEpisode| {
             let scene = SceneId::new(format!("{name}_{:06}", episode.number));
@@ -72,7 +78,7 @@ impl LeRobotDataset {
         if episodes.is_empty() {
             return Err(files::file_error(&root.join("meta"), "lists no episodes", DATASET_HINT));
         }
-        Ok(Self { root: root.to_owned(), described, info, camera, pose_feature, episodes })
+        Ok(Self { root: root.to_owned(), described, info, camera, pose_feature, remark, episodes })
     }
 
     fn find_episode(&self, scene: &SceneId) -> Result<&DatasetEpisode, PlatformError> {
@@ -80,16 +86,21 @@ impl LeRobotDataset {
         known.map(|(_, episode)| episode).ok_or_else(|| unknown_scene(scene, &self.scenes()))
     }
 
-    /// The poses of the robot in each row; `None` if the dataset has no feature with poses.
+    /// The poses of the robot in each row; adds what the user has to be told. `None` if the dataset has no feature with poses.
     fn read_track(
         &self,
         table: &ParquetTable,
         rows: Range<u64>,
         times_s: &[f64],
+        remarks: &mut Vec<String>,
     ) -> Result<Option<CameraTrack>, PlatformError> {
         let Some(feature) = &self.pose_feature else { return Ok(None) };
         let elements = feature.elements();
         let numbers = table.read_lists(&feature.feature, rows, feature.width, &elements)?;
+        let (feature, remark) = feature.with_yaw_unit(&numbers).map_err(|reason| {
+            files::file_error(table.path(), format!("column {:?}: its yaw {reason}", feature.feature), YAW_UNIT_HINT)
+        })?;
+        remarks.extend(remark.map(|remark| format!("{}: {remark}", table.path().display())));
         let fixes = times_s.iter().zip(numbers.chunks_exact(elements.len()));
         let fixes: Vec<TrackFix> =
             fixes.filter_map(|(time_s, numbers)| feature.fix_from_numbers(*time_s, numbers, &self.described)).collect();
@@ -123,11 +134,33 @@ impl RecordingSource for LeRobotDataset {
         let episode = self.find_episode(scene)?;
         let table = ParquetTable::open(&episode.data)?;
         let rows = find_episode_rows(&table, episode, self.info.layout())?;
-        let times_s = read_times_s(&table, rows.clone())?;
-        let track = self.read_track(&table, rows.clone(), &times_s)?;
-        let reel: Box<dyn PictureReel> = match &episode.clip {
-            Some(clip) => Box::new(VideoStretch::open(clip, times_s, self.info.step_s())?),
-            None => Box::new(RowReel::new(table, self.camera.key.clone(), rows.start, times_s)),
+        let mut times_s = read_times_s(&table, rows.clone())?;
+        let mut remarks: Vec<String> = self.remark.iter().cloned().collect();
+        let mut video = None;
+        if let Some(clip) = &episode.clip {
+            let step_s = self.info.step_s();
+            let first_s = times_s.first().copied().unwrap_or(0.0);
+            let opened = VideoStretch::open(clip, &times_s, step_s).or_else(|error| {
+                // Some programs write the time of day.
+                let from_first: Vec<f64> = times_s.iter().map(|time_s| time_s - first_s).collect();
+                let opened = VideoStretch::open(clip, &from_first, step_s).map_err(|_| error)?;
+                remarks.push(format!(
+                    "{}: the column \"timestamp\" begins with {first_s:.1} s, where the video has no picture, so times are \
+                     counted from the first row",
+                    table.path().display()
+                ));
+                times_s = from_first;
+                Ok::<_, PlatformError>(opened)
+            })?;
+            video = Some(opened);
+        }
+        let track = self.read_track(&table, rows.clone(), &times_s, &mut remarks)?;
+        let reel: Box<dyn PictureReel> = match video {
+            Some(mut video) => {
+                video.remarks = remarks;
+                Box::new(video)
+            }
+            None => Box::new(RowReel::new(table, self.camera.key.clone(), rows.start, times_s, remarks)),
         };
         Ok(Recording { reel, track, horizontal_fov_rad: None, described: self.described.clone() })
     }

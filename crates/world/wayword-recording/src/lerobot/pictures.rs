@@ -2,6 +2,7 @@
 
 use super::{episodes::VideoClip, parquet::ParquetTable};
 use crate::{
+    file_kind::ENCODE_HINT,
     reel::{PictureReel, TakePicture},
     video::Mp4Film,
 };
@@ -9,6 +10,13 @@ use wayword_core::PlatformError;
 use wayword_world::files;
 
 const DATASET_HINT: &str = "download the dataset again, or write it again with LeRobot's library";
+const TIMES_HINT: &str = "the column `timestamp` and the video do not fit together: write the dataset again with LeRobot's library, \
+                          or leave this episode out with --scan";
+/// The advice for a video in another codec. The dataset's other files name its videos, so each is replaced.
+const ENCODE_VIDEOS_HINT: &str = "write the dataset's videos again in place, as H.264 (keep a copy); in the dataset's folder: find \
+                                  videos -name \"*.mp4\" | while read -r f; do ffmpeg -nostdin -i \"$f\" -c:v libx264 -pix_fmt \
+                                  yuv420p -vf \"crop=trunc(iw/2)*2:trunc(ih/2)*2\" -an \"$f.new.mp4\" && mv \"$f.new.mp4\" \"$f\"; \
+                                  done";
 
 /// The pictures of an episode that are stored in its rows.
 pub(super) struct RowReel {
@@ -18,11 +26,18 @@ pub(super) struct RowReel {
     /// The row of the first picture.
     first: u64,
     times_s: Vec<f64>,
+    remarks: Vec<String>,
 }
 
 impl RowReel {
-    pub(super) fn new(table: ParquetTable, column: String, first: u64, times_s: Vec<f64>) -> Self {
-        Self { table, column, first, times_s }
+    pub(super) fn new(
+        table: ParquetTable,
+        column: String,
+        first: u64,
+        times_s: Vec<f64>,
+        remarks: Vec<String>,
+    ) -> Self {
+        Self { table, column, first, times_s, remarks }
     }
 }
 
@@ -33,6 +48,10 @@ impl PictureReel for RowReel {
 
     fn picture_name(&self, number: usize) -> String {
         format!("{number:06}")
+    }
+
+    fn remarks(&self) -> &[String] {
+        &self.remarks
     }
 
     fn hand_out_pictures(&self, wanted: &[usize], take: &mut TakePicture<'_>) -> Result<(), PlatformError> {
@@ -55,6 +74,8 @@ pub(super) struct VideoStretch {
     /// For each picture of the episode, its number in the video; ascending.
     numbers: Vec<usize>,
     times_s: Vec<f64>,
+    /// What the user has to be told about the episode.
+    pub(super) remarks: Vec<String>,
 }
 
 impl VideoStretch {
@@ -63,16 +84,16 @@ impl VideoStretch {
     ///
     /// # Errors
     /// When the video cannot be read, or has no picture for one of them.
-    pub(super) fn open(clip: &VideoClip, times_s: Vec<f64>, step_s: f64) -> Result<Self, PlatformError> {
-        let film = Mp4Film::open(&clip.file, None)?;
-        let mut stretch = Self { film, numbers: Vec::new(), times_s: Vec::new() };
-        for (row, time_s) in times_s.into_iter().enumerate() {
+    pub(super) fn open(clip: &VideoClip, times_s: &[f64], step_s: f64) -> Result<Self, PlatformError> {
+        let film = Mp4Film::open(&clip.file, None).map_err(advise_in_place)?;
+        let mut stretch = Self { film, numbers: Vec::new(), times_s: Vec::new(), remarks: Vec::new() };
+        for (row, time_s) in times_s.iter().copied().enumerate() {
             let wanted_s = clip.from_s + time_s;
             let number = nearest_time(stretch.film.times_s(), wanted_s, step_s / 2.0);
             let number = number.ok_or_else(|| {
                 let reason =
                     format!("row {row} of the episode needs a picture at {wanted_s:.3} s, but the video has none near");
-                files::file_error(&clip.file, reason, DATASET_HINT)
+                files::file_error(&clip.file, reason, TIMES_HINT)
             })?;
             // Two rows may share a picture; the second of them is left out.
             if stretch.numbers.last().is_none_or(|last| *last < number) {
@@ -81,6 +102,16 @@ impl VideoStretch {
             }
         }
         Ok(stretch)
+    }
+}
+
+/// An error of a single video, with the advice for a video of a dataset.
+fn advise_in_place(error: PlatformError) -> PlatformError {
+    match error {
+        PlatformError::File { file, reason, hint: ENCODE_HINT } => {
+            PlatformError::File { file, reason, hint: ENCODE_VIDEOS_HINT }
+        }
+        other => other,
     }
 }
 
@@ -102,12 +133,18 @@ impl PictureReel for VideoStretch {
         format!("{number:06}")
     }
 
+    fn remarks(&self) -> &[String] {
+        &self.remarks
+    }
+
     fn hand_out_pictures(&self, wanted: &[usize], take: &mut TakePicture<'_>) -> Result<(), PlatformError> {
         let numbers: Vec<usize> = wanted.iter().filter_map(|number| self.numbers.get(*number).copied()).collect();
-        self.film.decode_pictures(&numbers, &mut |number, image| match self.numbers.binary_search(&number) {
-            Ok(index) => take(index, image),
-            Err(_) => Ok(()),
-        })
+        let decoded =
+            self.film.decode_pictures(&numbers, &mut |number, image| match self.numbers.binary_search(&number) {
+                Ok(index) => take(index, image),
+                Err(_) => Ok(()),
+            });
+        decoded.map_err(advise_in_place)
     }
 }
 

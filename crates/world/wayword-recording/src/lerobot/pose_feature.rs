@@ -1,6 +1,9 @@
 //! Finds the numbers in a dataset's rows that are the robot's pose, by the names of features and their elements.
 
-use super::info::{DatasetFeature, DatasetInfo};
+use super::{
+    info::{DatasetFeature, DatasetInfo},
+    yaw_unit::{AngleUnit, judge_yaw_unit},
+};
 use crate::{
     axes::{PoseAxes, PoseBody, WorldUpAxis, rotation_columns},
     describe::RecordingDescription,
@@ -11,6 +14,8 @@ use std::path::Path;
 use wayword_core::{DVec3, PlatformError};
 use wayword_world::files;
 
+/// Most features that a line to the user names.
+const MAX_CANDIDATES: usize = 3;
 const POSE_NAMES_HINT: &str = "docs/RECORDINGS.md lists the names in meta/info.json that elements of a pose need";
 /// Words in the name of an element that exclude it as a position in the world.
 const NOT_A_POSITION_WORDS: [&str; 18] = [
@@ -20,6 +25,13 @@ const NOT_A_POSITION_WORDS: [&str; 18] = [
 /// Words in the name of a feature that does not count as the robot's pose unless the user names it.
 const NOT_THE_ROBOT_WORDS: [&str; 12] =
     ["action", "actions", "eef", "ee", "effector", "tcp", "tool", "hand", "gripper", "wrist", "arm", "object"];
+
+/// Words in the name of an element that is a speed. Speeds may stand beside the numbers of a pose.
+const SPEED_WORDS: [&str; 12] =
+    ["vel", "velocity", "speed", "linear", "angular", "vx", "vy", "vz", "wx", "wy", "wz", "omega"];
+/// The advice where the unit of an angle is not known.
+pub(super) const YAW_UNIT_HINT: &str =
+    "add the unit to the element's name in meta/info.json: theta_deg or theta_rad, yaw_deg or yaw_rad";
 
 /// The feature with the robot's pose, and the indices of the elements that form it.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,8 +49,8 @@ pub(super) struct PoseFeature {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum FeatureFacing {
     Unknown,
-    /// Index of an angle counter-clockwise from +x, and the factor that turns it into radians.
-    Yaw(usize, f64),
+    /// Index of an angle counter-clockwise from +x, and its unit if that is known.
+    Yaw(usize, Option<AngleUnit>),
     /// Indices of x, y, z, w.
     Quaternion([usize; 4]),
 }
@@ -49,10 +61,8 @@ enum ElementRole {
     X,
     Y,
     Z,
-    /// An angle counter-clockwise from +x, radians.
-    Yaw,
-    /// The same angle in degrees.
-    YawDeg,
+    /// An angle counter-clockwise from +x, with its unit if the name has it.
+    Yaw(Option<AngleUnit>),
     /// A component of a quaternion: 0 to 3 for x, y, z, w.
     Q(usize),
 }
@@ -92,22 +102,62 @@ impl PoseFeature {
         Ok(Some(pose))
     }
 
-    /// The pose of a feature that the user did not name. `None` unless its elements are x, y, perhaps z, and a yaw, and
-    /// its name is not that of a command or of a part of the robot.
+    /// The pose of a feature that the user did not name. `None` unless its elements are x, y, perhaps z, a yaw, and perhaps
+    /// speeds, and its name is not that of a command or of a part of the robot.
     fn unnamed_pose(key: &str, feature: &DatasetFeature) -> Option<Self> {
         let pose = Self::pose_in_feature(key, feature).ok()?;
         let elements = 3 + usize::from(pose.z.is_some());
-        let is_robot = !name_words(key)
-            .any(|word| NOT_THE_ROBOT_WORDS.contains(&word.as_str()) || NOT_A_POSITION_WORDS.contains(&word.as_str()));
-        (is_robot && matches!(pose.facing, FeatureFacing::Yaw(..)) && pose.width == elements).then_some(pose)
+        let is_speed = |name: &&str| name_words(name).any(|word| SPEED_WORDS.contains(&word.as_str()));
+        let speeds = feature.element_names()?.iter().filter(|name| is_speed(name)).count();
+        let is_pose = matches!(pose.facing, FeatureFacing::Yaw(..)) && pose.width == elements + speeds;
+        (is_pose && may_be_robot(key)).then_some(pose)
+    }
+
+    /// A line for the user about the features that could hold the robot's poses, where none is taken; `None` if there are none.
+    pub(super) fn describe_candidates(info: &DatasetInfo) -> Option<String> {
+        let candidates = info.features.iter().filter_map(|(key, feature)| {
+            let pose = Self::pose_in_feature(key, feature).ok().filter(|_| may_be_robot(key))?;
+            let place = if pose.z.is_some() { "x, y, z" } else { "x, y" };
+            let facing = match pose.facing {
+                FeatureFacing::Unknown => "",
+                FeatureFacing::Yaw(..) => " and a yaw",
+                FeatureFacing::Quaternion(_) => " and a quaternion",
+            };
+            Some(format!("{key:?} has {place}{facing}: if these are the poses of the robot, write `poses = {key:?}`"))
+        });
+        let candidates: Vec<String> = candidates.take(MAX_CANDIDATES).collect();
+        (!candidates.is_empty())
+            .then(|| format!("{} into a recording.toml in the dataset's folder", candidates.join("; ")))
+    }
+
+    /// The same feature with the unit of its yaw, if that was not known: by the path of an episode, whose numbers are those of
+    /// [`PoseFeature::elements`] for each row. A line tells the user if it is degrees.
+    ///
+    /// # Errors
+    /// When the path does not show the unit.
+    pub(super) fn with_yaw_unit(&self, rows: &[f64]) -> Result<(Self, Option<String>), String> {
+        let FeatureFacing::Yaw(at, None) = self.facing else { return Ok((self.clone(), None)) };
+        let poses = rows.chunks_exact(self.elements().len()).filter_map(|numbers| {
+            let (position, facing) = self.split_numbers(numbers)?;
+            Some((position, *facing.first()?))
+        });
+        let unit = judge_yaw_unit(&poses.collect::<Vec<_>>())?;
+        let remark = (unit == AngleUnit::Degrees).then(|| {
+            format!(
+                "{:?}: its yaw is read in degrees, because the path follows it only so; if it is in radians, add `_rad` to the \
+                 element's name in meta/info.json",
+                self.feature
+            )
+        });
+        Ok((Self { facing: FeatureFacing::Yaw(at, Some(unit)), ..self.clone() }, remark))
     }
 
     /// The elements of a feature that form a pose. The error gives the reason why they form none.
     fn pose_in_feature(key: &str, feature: &DatasetFeature) -> Result<Self, String> {
         let names = feature.element_names().ok_or("its elements have no names")?;
         let roles: Vec<Option<ElementRole>> = names.iter().map(|name| element_role(name)).collect();
-        let at = |wanted: ElementRole| {
-            let mut found = roles.iter().zip(&names).enumerate().filter(|(_, (role, _))| **role == Some(wanted));
+        let at_where = |is_wanted: &dyn Fn(ElementRole) -> bool| {
+            let mut found = roles.iter().zip(&names).enumerate().filter(|(_, (role, _))| role.is_some_and(is_wanted));
             match (found.next(), found.next()) {
                 (Some((_, (_, first))), Some((_, (_, second)))) => {
                     Err(format!("both {first:?} and {second:?} may be the one"))
@@ -115,16 +165,21 @@ impl PoseFeature {
                 (first, _) => Ok(first.map(|(at, _)| at)),
             }
         };
+        let at = |wanted: ElementRole| at_where(&|role| role == wanted);
         let (Some(x), Some(y)) = (at(ElementRole::X)?, at(ElementRole::Y)?) else {
             return Err(format!("has no elements x and y; its elements: {}", names.join(", ")));
         };
         let quaternion =
             [at(ElementRole::Q(0))?, at(ElementRole::Q(1))?, at(ElementRole::Q(2))?, at(ElementRole::Q(3))?];
-        let facing = match (at(ElementRole::Yaw)?, at(ElementRole::YawDeg)?, quaternion) {
-            (None, None, [Some(x), Some(y), Some(z), Some(w)]) => FeatureFacing::Quaternion([x, y, z, w]),
-            (Some(yaw), None, [None, None, None, None]) => FeatureFacing::Yaw(yaw, 1.0),
-            (None, Some(yaw), [None, None, None, None]) => FeatureFacing::Yaw(yaw, 1_f64.to_radians()),
-            (None, None, [None, None, None, None]) => FeatureFacing::Unknown,
+        let yaw = at_where(&|role| matches!(role, ElementRole::Yaw(_)))?;
+        let unit = yaw.and_then(|at| match roles.get(at) {
+            Some(Some(ElementRole::Yaw(unit))) => *unit,
+            _ => None,
+        });
+        let facing = match (yaw, quaternion) {
+            (None, [Some(x), Some(y), Some(z), Some(w)]) => FeatureFacing::Quaternion([x, y, z, w]),
+            (Some(yaw), [None, None, None, None]) => FeatureFacing::Yaw(yaw, unit),
+            (None, [None, None, None, None]) => FeatureFacing::Unknown,
             _ => return Err(format!("the direction is given twice, or only in part: {}", names.join(", "))),
         };
         Ok(Self { feature: key.to_owned(), width: names.len(), x, y, z: at(ElementRole::Z)?, facing })
@@ -151,7 +206,9 @@ impl PoseFeature {
         let axes = described.axes_or_usual(PoseAxes::for_body(PoseBody::Robot));
         let (recorded, facing) = self.split_numbers(numbers)?;
         let heading = match (self.facing, facing) {
-            (FeatureFacing::Yaw(_, rad), [yaw]) => axes.heading_by_yaw(yaw * rad),
+            (FeatureFacing::Yaw(_, unit), [yaw]) => {
+                axes.heading_by_yaw(unit.unwrap_or(AngleUnit::Radians).to_rad(*yaw))
+            }
             (FeatureFacing::Quaternion(_), [x, y, z, w]) => axes.heading_by_quaternion([*x, *y, *z, *w]),
             _ => None,
         };
@@ -173,6 +230,12 @@ impl PoseFeature {
         let (place, facing) = numbers.split_at_checked(2 + usize::from(self.z.is_some()))?;
         Some((DVec3::new(*place.first()?, *place.get(1)?, place.get(2).copied().unwrap_or(0.0)), facing))
     }
+}
+
+/// Whether a feature's name is not that of a command or of a part of the robot.
+fn may_be_robot(key: &str) -> bool {
+    !name_words(key)
+        .any(|word| NOT_THE_ROBOT_WORDS.contains(&word.as_str()) || NOT_A_POSITION_WORDS.contains(&word.as_str()))
 }
 
 /// The words of a name: `observation.base_x` has three, `robotYaw` one.
@@ -197,8 +260,9 @@ fn element_role(name: &str) -> Option<ElementRole> {
             ("qy", _) | ("y", true) => ElementRole::Q(1),
             ("qz", _) | ("z", true) => ElementRole::Q(2),
             ("qw", _) | ("w", true) => ElementRole::Q(3),
-            ("yaw" | "theta", _) if has(&["deg", "degree", "degrees"]) => ElementRole::YawDeg,
-            ("yaw" | "theta", _) => ElementRole::Yaw,
+            ("yaw" | "theta", _) if has(&["deg", "degree", "degrees"]) => ElementRole::Yaw(Some(AngleUnit::Degrees)),
+            ("yaw" | "theta", _) if has(&["rad", "radian", "radians"]) => ElementRole::Yaw(Some(AngleUnit::Radians)),
+            ("yaw" | "theta", _) => ElementRole::Yaw(None),
             _ => return None,
         })
     });
@@ -210,75 +274,4 @@ fn element_role(name: &str) -> Option<ElementRole> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::collections::BTreeMap;
-
-    fn info(features: &[(&str, &[&str])]) -> DatasetInfo {
-        let features: BTreeMap<_, _> = features
-            .iter()
-            .map(|(key, names)| (*key, serde_json::json!({"dtype": "float32", "shape": [names.len()], "names": names})))
-            .collect();
-        let info = serde_json::json!({"codebase_version": "v3.0", "fps": 5, "data_path": "x", "features": features});
-        serde_json::from_value(info).unwrap()
-    }
-
-    fn find(features: &[(&str, &[&str])], poses: Option<&str>) -> Result<Option<PoseFeature>, String> {
-        let described = RecordingDescription { poses: poses.map(str::to_owned), ..RecordingDescription::default() };
-        PoseFeature::find_feature(Path::new("d"), &info(features), &described).map_err(|error| error.to_string())
-    }
-
-    #[test]
-    fn find_takes_unnamed_features_only_if_they_are_certain() {
-        let found = |key, names| find(&[(key, names)], None).unwrap().map(|place| place.feature);
-        assert_eq!(found("observation.state", &["x", "y", "theta"]).as_deref(), Some("observation.state"));
-        assert_eq!(found("odometry", &["base.x", "base.y", "base.z", "base.yaw"]).as_deref(), Some("odometry"));
-        // A command, speeds, an arm's hand, positions without a direction, other joints: in doubt there is no pose.
-        assert_eq!(found("action", &["x", "y", "theta"]), None);
-        assert_eq!(found("observation.state", &["x.vel", "y.vel", "theta.vel"]), None);
-        assert_eq!(found("observation.state.end_effector", &["x", "y", "yaw"]), None);
-        assert_eq!(found("observation.ee_pose", &["x", "y", "z", "yaw"]), None);
-        assert_eq!(found("observation.state", &["x", "y", "z", "roll", "pitch", "yaw"]), None);
-        assert_eq!(found("observation.state", &["x", "y"]), None);
-        assert_eq!(found("observation.state", &["x", "y", "theta", "gripper"]), None);
-        assert_eq!(find(&[("a", &["x", "y", "yaw"]), ("b", &["x", "y", "yaw"])], None), Ok(None));
-    }
-
-    #[test]
-    fn find_takes_or_refuses_the_named_feature() {
-        let state = |names| find(&[("state", names)], Some("state"));
-        let place = state(&["gripper", "x", "y", "z", "qx", "qy", "qz", "qw"]).unwrap().unwrap();
-        assert_eq!(place.elements(), [1, 2, 3, 4, 5, 6, 7]);
-        let turned = state(&["quat.x", "quat.y", "quat.z", "quat.w", "pos.x", "pos.y"]).unwrap().unwrap();
-        assert_eq!(turned.elements(), [4, 5, 0, 1, 2, 3]);
-        assert_eq!(state(&["x", "y"]).unwrap().unwrap().facing, FeatureFacing::Unknown);
-        assert!(state(&["left_x", "right_x", "y"]).unwrap_err().contains("left_x"));
-        assert!(state(&["x", "y", "yaw", "qx"]).unwrap_err().contains("twice, or only in part"));
-        assert!(state(&["a", "b"]).unwrap_err().contains("no elements x and y; its elements: a, b"));
-        assert!(find(&[("state", &["x"])], Some("pose")).unwrap_err().contains("such lists: state"));
-    }
-
-    #[test]
-    fn yaw_is_counter_clockwise_from_x_which_is_east() {
-        let deg = |names: &[&str], yaw: f64| {
-            let place = find(&[("state", names)], Some("state")).unwrap().unwrap();
-            let fix = place.fix_from_numbers(0.0, &[3.0, 4.0, yaw], &RecordingDescription::default()).unwrap();
-            assert_eq!(fix.position, DVec3::new(3.0, 4.0, 0.0));
-            fix.heading.unwrap().deg().round()
-        };
-        assert_eq!(deg(&["x", "y", "theta"], 0.0), 90.0);
-        assert_eq!(deg(&["x", "y", "yaw"], std::f64::consts::FRAC_PI_2) % 360.0, 0.0);
-        assert_eq!(deg(&["x", "y", "yaw_deg"], -90.0), 180.0);
-    }
-
-    #[test]
-    fn a_yaw_needs_a_world_with_z_up() {
-        let described = RecordingDescription {
-            poses: Some("state".to_owned()),
-            world: Some(WorldUpAxis::YUp),
-            ..RecordingDescription::default()
-        };
-        let info = info(&[("state", &["x", "y", "yaw"])]);
-        assert!(PoseFeature::find_feature(Path::new("d"), &info, &described).unwrap_err().to_string().contains("z-up"));
-    }
-}
+mod tests;

@@ -254,3 +254,26 @@ fn files_below(folder: &Path, into: &mut Vec<PathBuf>) {
         }
     }
 }
+
+#[test]
+fn a_video_in_another_codec_is_written_again_in_its_place() {
+    let (_folder, root) = dataset("v21_videos");
+    let video = root.join("videos/chunk-000").join(CAMERA).join("episode_000000.mp4");
+    fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/video/hevc.mp4"), video).unwrap();
+    let error = recording(&root, 0).err().unwrap();
+    for told in ["HEVC (H.265)", "find videos -name \"*.mp4\"", "mv \"$f.new.mp4\" \"$f\""] {
+        assert!(error.contains(told), "{error}");
+    }
+    assert!(!error.contains("OUT.mp4"), "{error}");
+}
+
+#[test]
+fn a_state_that_could_be_poses_is_named() {
+    let (_folder, root) = dataset("v30_videos");
+    edit(&root, "\"theta\"", "\"shoulder\"");
+    let told = recording(&root, 0).unwrap().reel.remarks().join("\n");
+    assert!(told.contains("poses = \"observation.state\"") && told.contains("recording.toml"), "{told}");
+    // Where the user named poses, or the program took some, there is nothing to tell.
+    let (_folder, root) = dataset("v30_images");
+    assert_eq!(recording(&root, 0).unwrap().reel.remarks(), [""; 0]);
+}

@@ -1,0 +1,125 @@
+//! Finds out whether a yaw without a unit is in radians or in degrees: a robot mostly moves where it looks.
+
+use wayword_core::DVec3;
+
+/// A yaw beyond this is more than a full turn in radians. Robots that add up their turns get there, and degrees do.
+const FULL_TURN_RAD: f64 = std::f64::consts::TAU + 0.1;
+/// Least length of a step, metres: shorter ones are noise.
+const MIN_STEP_M: f64 = 0.1;
+/// Fewest steps from which a unit is judged.
+const MIN_STEPS: usize = 4;
+/// The path follows a yaw if the cosine between them is this on average, or its opposite: a robot may drive backwards.
+const FOLLOWS: f64 = 0.7;
+/// The cosine of 10 degrees.
+const SURELY_FOLLOWS: f64 = 0.985;
+const DOES_NOT_FOLLOW: f64 = 0.5;
+
+/// A unit of angles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum AngleUnit {
+    Radians,
+    Degrees,
+}
+
+impl AngleUnit {
+    /// An angle in this unit, in radians.
+    pub(super) fn to_rad(self, angle: f64) -> f64 {
+        match self {
+            Self::Radians => angle,
+            Self::Degrees => angle.to_radians(),
+        }
+    }
+}
+
+/// The unit of yaws, counter-clockwise from +x, by the positions at which they were recorded. The error gives the reason why it
+/// cannot be known.
+pub(super) fn judge_yaw_unit(poses: &[(DVec3, f64)]) -> Result<AngleUnit, String> {
+    let most = poses.iter().map(|(_, yaw)| yaw.abs()).filter(|yaw| yaw.is_finite()).fold(0.0, f64::max);
+    let (steps, by_rad) = follow_path(poses, AngleUnit::Radians);
+    let (_, by_deg) = follow_path(poses, AngleUnit::Degrees);
+    let is_large = most > FULL_TURN_RAD;
+    if steps < MIN_STEPS {
+        return if is_large {
+            Err(describe_doubt(most, "the path is too short to show"))
+        } else {
+            Ok(AngleUnit::Radians)
+        };
+    }
+    if is_large {
+        return match (by_rad.abs(), by_deg.abs()) {
+            (FOLLOWS.., ..DOES_NOT_FOLLOW) => Ok(AngleUnit::Radians),
+            (..DOES_NOT_FOLLOW, FOLLOWS..) => Ok(AngleUnit::Degrees),
+            _ => Err(describe_doubt(most, "the path does not show")),
+        };
+    }
+    // Small numbers of degrees are a path that leads nearly along x.
+    if by_deg >= SURELY_FOLLOWS && by_rad < DOES_NOT_FOLLOW {
+        return Err("the path follows it only if it is in degrees".to_owned());
+    }
+    Ok(AngleUnit::Radians)
+}
+
+fn describe_doubt(most: f64, path: &str) -> String {
+    format!("goes up to {most:.1}, which is more than a full turn in radians, and {path} whether it is in degrees")
+}
+
+/// The number of steps of the path, and how well it follows the yaws: 1 where the robot moves as it looks, and -1 backwards.
+fn follow_path(poses: &[(DVec3, f64)], unit: AngleUnit) -> (usize, f64) {
+    let mut poses = poses.iter().filter(|(position, yaw)| position.is_finite() && yaw.is_finite());
+    let Some(mut from) = poses.next() else { return (0, 0.0) };
+    let (mut steps, mut sum) = (0, 0.0);
+    for to in poses {
+        let step = to.0 - from.0;
+        if libm::hypot(step.x, step.y) < MIN_STEP_M {
+            continue;
+        }
+        sum += libm::cos(libm::atan2(step.y, step.x) - unit.to_rad(from.1));
+        steps += 1;
+        from = to;
+    }
+    (steps, sum / steps.max(1) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Poses on a path that turns by `turn_deg` at each of 40 steps. `yaw` makes the recorded number from the true degrees.
+    fn walk(first_deg: f64, turn_deg: f64, yaw: impl Fn(f64) -> f64) -> Vec<(DVec3, f64)> {
+        let mut position = DVec3::ZERO;
+        let pose = |at: usize| {
+            let deg = first_deg + turn_deg * at as f64;
+            let here = position;
+            position += DVec3::new(deg.to_radians().cos(), deg.to_radians().sin(), 0.0) * 0.25;
+            (here, yaw(deg))
+        };
+        (0..40).map(pose).collect()
+    }
+
+    #[test]
+    fn the_path_tells_degrees_from_radians() {
+        for (first, turn) in [(0.0, 4.0), (90.0, -6.0), (-120.0, 9.0), (45.0, 20.0)] {
+            assert_eq!(judge_yaw_unit(&walk(first, turn, |deg| deg)), Ok(AngleUnit::Degrees), "{first} {turn}");
+            // Turns that add up beyond a full turn, and those that do not.
+            assert_eq!(judge_yaw_unit(&walk(first, turn, f64::to_radians)), Ok(AngleUnit::Radians), "{first} {turn}");
+            let wrapped = |deg: f64| (deg + 180.0).rem_euclid(360.0) - 180.0;
+            let in_rad = walk(first, turn, |deg| wrapped(deg).to_radians());
+            assert_eq!(judge_yaw_unit(&in_rad), Ok(AngleUnit::Radians), "{first} {turn}");
+            let backwards = walk(first, turn, |deg| wrapped(deg + 180.0));
+            assert_eq!(judge_yaw_unit(&backwards), Ok(AngleUnit::Degrees), "{first} {turn}");
+        }
+    }
+
+    #[test]
+    fn what_the_path_does_not_show_is_asked_about() {
+        // A robot that moves sideways, one that stands, and one whose few degrees could be radians.
+        let sideways = judge_yaw_unit(&walk(0.0, 4.0, |deg| deg + 90.0)).unwrap_err();
+        assert!(sideways.contains("goes up to 246.0"), "{sideways}");
+        assert!(judge_yaw_unit(&[(DVec3::ZERO, 200.0); 30]).unwrap_err().contains("too short"));
+        let little = judge_yaw_unit(&walk(2.0, 0.05, |deg| deg)).unwrap_err();
+        assert!(little.contains("only if it is in degrees"), "{little}");
+        // Sideways within a full turn is read as before.
+        assert_eq!(judge_yaw_unit(&walk(0.0, 1.0, |deg| (deg + 90.0).to_radians())), Ok(AngleUnit::Radians));
+        assert_eq!(judge_yaw_unit(&[]), Ok(AngleUnit::Radians));
+    }
+}
