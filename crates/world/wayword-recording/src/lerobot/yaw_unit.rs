@@ -8,11 +8,13 @@ const FULL_TURN_RAD: f64 = std::f64::consts::TAU + 0.1;
 const MIN_STEP_M: f64 = 0.1;
 /// Fewest steps from which a unit is judged.
 const MIN_STEPS: usize = 4;
-/// The path follows a yaw if the cosine between them is this on average, or its opposite: a robot may drive backwards.
-const FOLLOWS: f64 = 0.7;
-/// The cosine of 10 degrees.
-const SURELY_FOLLOWS: f64 = 0.985;
-const DOES_NOT_FOLLOW: f64 = 0.5;
+/// The path follows a yaw if the cosine between them is this on average (that of 10 degrees), or its opposite: a robot may drive
+/// backwards.
+const FOLLOWS: f64 = 0.985;
+/// It does not if the cosine is less than this (that of 16 degrees). Two corridors can fit a wrong unit nearly.
+const FITS_NEARLY: f64 = 0.96;
+/// Within a full turn, radians are doubted only if the path leads elsewhere, by 60 degrees (this is the cosine).
+const LEADS_ELSEWHERE: f64 = 0.5;
 
 /// A unit of angles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,13 +49,13 @@ pub(super) fn judge_yaw_unit(poses: &[(DVec3, f64)]) -> Result<AngleUnit, String
     }
     if is_large {
         return match (by_rad.abs(), by_deg.abs()) {
-            (FOLLOWS.., ..DOES_NOT_FOLLOW) => Ok(AngleUnit::Radians),
-            (..DOES_NOT_FOLLOW, FOLLOWS..) => Ok(AngleUnit::Degrees),
+            (FOLLOWS.., ..FITS_NEARLY) => Ok(AngleUnit::Radians),
+            (..FITS_NEARLY, FOLLOWS..) => Ok(AngleUnit::Degrees),
             _ => Err(describe_doubt(most, "the path does not show")),
         };
     }
     // Small numbers of degrees are a path that leads nearly along x.
-    if by_deg >= SURELY_FOLLOWS && by_rad < DOES_NOT_FOLLOW {
+    if by_deg >= FOLLOWS && by_rad < LEADS_ELSEWHERE {
         return Err("the path follows it only if it is in degrees".to_owned());
     }
     Ok(AngleUnit::Radians)
@@ -108,6 +110,26 @@ mod tests {
             let backwards = walk(first, turn, |deg| wrapped(deg + 180.0));
             assert_eq!(judge_yaw_unit(&backwards), Ok(AngleUnit::Degrees), "{first} {turn}");
         }
+    }
+
+    /// Poses along two corridors at a right angle.
+    fn corridors(yaw: impl Fn(f64) -> f64) -> Vec<(DVec3, f64)> {
+        let pose = |at: u32| {
+            let (x, y) = if at < 20 { (f64::from(at), 0.0) } else { (20.0, f64::from(at) - 20.0) };
+            (DVec3::new(x, y, 0.0) * 0.25, yaw(if at < 20 { 0.0 } else { 90.0 }))
+        };
+        (0..40).map(pose).collect()
+    }
+
+    #[test]
+    fn two_corridors_do_not_fit_a_wrong_unit_by_chance() {
+        assert_eq!(judge_yaw_unit(&corridors(|deg| deg)), Ok(AngleUnit::Degrees));
+        assert_eq!(
+            judge_yaw_unit(&corridors(|deg| deg.to_radians() + std::f64::consts::TAU * 3.0)),
+            Ok(AngleUnit::Radians)
+        );
+        // 270 and 360 radians are nearly the directions of the corridors.
+        assert!(judge_yaw_unit(&corridors(|deg| deg + 270.0)).is_err());
     }
 
     #[test]

@@ -312,6 +312,17 @@ fn a_clock_that_was_set_in_the_middle_is_asked_about() {
 }
 
 #[test]
+fn simulated_time_beside_that_of_the_day_is_read_by_the_recorder() {
+    // The simulator runs at half speed, and the camera's driver stamps by the time of the day.
+    let sent = change(walk(), |message| {
+        if !is_picture(message) {
+            message.stamp_ns = 100 * S + (message.stamp_ns - START_NS) / 2;
+        }
+    });
+    assert!(remarks_of_whole("two times", &sent, 1e-3).contains("are of another time than those of the pictures"));
+}
+
+#[test]
 fn a_setting_keeps_the_stamps() {
     let sent = change(walk(), |message| message.stamp_ns -= if is_picture(message) { 0 } else { 2 * S });
     let stamps = RecordingDescription { clock: Some(RecordingClock::Stamps), ..RecordingDescription::default() };

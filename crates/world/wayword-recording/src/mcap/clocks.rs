@@ -100,8 +100,10 @@ impl ClockPlan {
     /// Moves the stamps of each edge to the clock of the pictures, if the recorder's times show that it is another one.
     fn shift_edges(&mut self, shots: &[MessageTimes], chain: &[&TransformEdge]) -> Result<(), UnclearReason> {
         let shots = self.camera.counting(shots);
+        let mut is_by_recorder = false;
         for (edge, timing) in chain.iter().zip(&mut self.edges).filter(|(edge, _)| edge.is_moving()) {
-            let gap = measure_gap(&shots, &timing.counting(&edge.message_times()));
+            let times = timing.counting(&edge.message_times());
+            let gap = measure_gap(&shots, &times);
             match gap {
                 ClockGap::None => {}
                 _ if edge.places_ground() && gap.most_ns() <= MAX_GROUND_GAP_NS => {}
@@ -116,6 +118,15 @@ impl ClockPlan {
                         if ahead_ns < 0 { "behind" } else { "ahead of" },
                     ));
                 }
+                // Simulated time and that of the day cannot be meant to fit.
+                ClockGap::Unsteady(..) if !stamps_overlap(&shots, &times) => {
+                    self.remarks.push(format!(
+                        "the stamps of {} are of another time than those of the pictures, so both are placed by the times at \
+                         which they were recorded",
+                        edge.name
+                    ));
+                    is_by_recorder = true;
+                }
                 ClockGap::Unsteady(least_ns, most_ns) => {
                     let reason = format!(
                         "by the recorder's clock, the stamps of {} are between {:.1} and {:.1} s ahead of those of the pictures, \
@@ -127,6 +138,9 @@ impl ClockPlan {
                     return Err((reason, CLOCK_HINT));
                 }
             }
+        }
+        if is_by_recorder {
+            *self = self.on_recorder_clock();
         }
         Ok(())
     }
@@ -159,7 +173,7 @@ fn choose_part(
         let more = if counts.len() - 1 > cuts.len() { ", and again later" } else { "" };
         remarks.push(format!(
             "the stamps go back {}{more}, while the recorder's time goes on, as when a simulator or a driver starts again. So \
-             it is cut there into {} parts, and only part {} is used, with {} of {} pictures; `part = N` in a NAME.toml \
+             the recording is cut there into {} parts, and only part {} is used, with {} of {} pictures; `part = N` in a NAME.toml \
              beside the recording, or in recording.toml, chooses another",
             cuts.join(", "),
             counts.len(),
@@ -182,6 +196,16 @@ fn stamps_stand_still(times: &[MessageTimes]) -> bool {
     stamped.len() > 2
         && logged_ns >= MIN_STANDING_NS
         && span(|times| times.stamp_ns).saturating_mul(STANDING_SHARE) < logged_ns
+}
+
+/// Whether the stamps of two streams have times in common.
+fn stamps_overlap(some: &[MessageTimes], others: &[MessageTimes]) -> bool {
+    let span = |times: &[MessageTimes]| {
+        let stamps = || times.iter().map(|times| times.stamp_ns).filter(|stamp_ns| *stamp_ns != 0);
+        Some((stamps().min()?, stamps().max()?))
+    };
+    let (Some(some), Some(others)) = (span(some), span(others)) else { return false };
+    some.0 <= others.1 && others.0 <= some.1
 }
 
 fn seconds(time_ns: i64) -> f64 {
