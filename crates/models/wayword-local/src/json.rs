@@ -1,8 +1,8 @@
 //! Reads the small JSON files of a model's folder, with errors that name the file and the field.
 
 use crate::{LocalError, error::FETCH_AGAIN};
-use serde::de::DeserializeOwned;
-use std::path::Path;
+use serde::{Deserialize, de::DeserializeOwned};
+use std::path::{Path, PathBuf};
 
 /// The longest file that is read, bytes. A longer one is refused.
 const MAX_JSON_BYTES: u64 = 4 << 20;
@@ -34,6 +34,30 @@ pub(crate) fn read_if_there<T: DeserializeOwned>(folder: &Path, name: &str) -> R
     let value = serde_path_to_error::deserialize(&mut parser).map_err(|error| wrong(error.to_string()))?;
     parser.end().map_err(|error| wrong(error.to_string()))?;
     Ok(Some(value))
+}
+
+/// Where transformers keeps the configuration of a model's pictures: alone until its version 4, and since then within that of the
+/// processor.
+const PICTURE_FILE: &str = "preprocessor_config.json";
+const PROCESSOR_FILE: &str = "processor_config.json";
+
+/// `processor_config.json`.
+#[derive(Deserialize)]
+#[serde(bound = "T: DeserializeOwned")]
+struct ProcessorParts<T> {
+    image_processor: Option<T>,
+}
+
+/// Reads the configuration of a model's pictures, from `preprocessor_config.json` or else from the part `image_processor` of
+/// `processor_config.json`. Also returns the file.
+pub(crate) fn read_picture_config<T: DeserializeOwned>(folder: &Path) -> Result<(T, PathBuf), LocalError> {
+    if !folder.join(PICTURE_FILE).exists() {
+        let parts: Option<ProcessorParts<T>> = read_if_there(folder, PROCESSOR_FILE)?;
+        if let Some(config) = parts.and_then(|parts| parts.image_processor) {
+            return Ok((config, folder.join(PROCESSOR_FILE)));
+        }
+    }
+    Ok((read_required(folder, PICTURE_FILE, "the configuration of the pictures")?, folder.join(PICTURE_FILE)))
 }
 
 /// The largest size that a configuration may have, such as a number of words or of channels. Larger ones could overflow

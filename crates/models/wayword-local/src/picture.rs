@@ -46,7 +46,7 @@ impl PictureProcessor {
     /// # Errors
     /// When it is missing, damaged, or for a processor that is not supported.
     pub(crate) fn load(folder: &Path) -> Result<Self, LocalError> {
-        PictureConfig::from_folder(folder)?.to_processor(folder)
+        PictureConfig::read_processor(folder)
     }
 
     /// Height and width of the output, pixels.

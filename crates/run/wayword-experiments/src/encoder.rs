@@ -16,10 +16,7 @@ pub fn open_encoder(name: &str) -> Result<Box<dyn TextEncoder>, CommandError> {
 #[cfg(feature = "local")]
 fn in_process(name: &str) -> Result<Box<dyn TextEncoder>, CommandError> {
     use wayword_local::{HubConfig, ModelDevice, ModelHub, ModelName, NeededFiles, SentenceEncoder, WeightPrecision};
-    let needs = NeededFiles::default()
-        .with_weights()
-        .with_required(&["config.json", "tokenizer.json"])
-        .with_optional(&["1_Pooling/config.json", "sentence_bert_config.json"]);
+    let needs = NeededFiles::for_sentence_encoder();
     let folder = ModelHub::new(HubConfig::from_env()?)?.model_folder(&ModelName::parse(name)?, &needs, &())?;
     Ok(Box::new(SentenceEncoder::load(name, &folder.path, &ModelDevice::cpu(), WeightPrecision::F32)?))
 }

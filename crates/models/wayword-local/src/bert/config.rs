@@ -59,28 +59,16 @@ impl BertSizes {
     }
 }
 
-/// `1_Pooling/config.json`: how sentence-transformers makes one vector of the vectors of a sentence's tokens.
-#[derive(Debug, Deserialize)]
-struct PoolingConfig {
-    #[serde(default)]
-    pooling_mode_cls_token: bool,
-    #[serde(default)]
-    pooling_mode_mean_tokens: bool,
-}
-
 /// `sentence_bert_config.json`: the limit that a sentence encoder sets below that of its BERT.
 #[derive(Debug, Deserialize)]
 struct LengthConfig {
     max_seq_length: Option<usize>,
 }
 
-/// How a sentence's vector is made from the vectors of its tokens.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum SentencePooling {
-    /// The mean of the vectors of all tokens.
-    Mean,
-    /// The vector of the first token.
-    First,
+/// `tokenizer_config.json`: newer encoders have their limit here.
+#[derive(Debug, Deserialize)]
+struct TokenizerLength {
+    model_max_length: Option<f64>,
 }
 
 fn default_type_vocab_size() -> usize {
@@ -144,27 +132,21 @@ impl BertConfig {
         self.max_position_embeddings
     }
 
-    /// The most tokens of a text: the model's limit, or the lower one that the sentence encoder sets.
+    /// The most tokens of a text: the model's limit, or the lower one that the sentence encoder sets, or else its tokenizer.
     pub(super) fn max_text_tokens(&self, folder: &Path) -> Result<usize, LocalError> {
         let config: Option<LengthConfig> = json::read_if_there(folder, "sentence_bert_config.json")?;
-        let limit = config.and_then(|config| config.max_seq_length).unwrap_or(usize::MAX);
-        Ok(limit.min(self.max_position_embeddings))
-    }
-}
-
-impl SentencePooling {
-    /// Reads the folder's pooling. Without a configuration it is the mean.
-    pub(super) fn from_folder(folder: &Path) -> Result<Self, LocalError> {
-        let config: Option<PoolingConfig> = json::read_if_there(folder, "1_Pooling/config.json")?;
-        match config {
-            None => Ok(Self::Mean),
-            Some(PoolingConfig { pooling_mode_mean_tokens: true, .. }) => Ok(Self::Mean),
-            Some(PoolingConfig { pooling_mode_cls_token: true, .. }) => Ok(Self::First),
-            Some(_) => Err(LocalError::File {
-                file: folder.join("1_Pooling/config.json"),
-                problem: "it pools neither the mean nor the first token".to_owned(),
-                hint: "choose another sentence encoder",
-            }),
+        let mut limit = config.and_then(|config| config.max_seq_length);
+        if limit.is_none() {
+            let config: Option<TokenizerLength> = json::read_if_there(folder, "tokenizer_config.json")?;
+            // A tokenizer without a limit has 1e30.
+            #[allow(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "too large ones become the largest"
+            )]
+            let length = |length: f64| (length >= 1.0).then_some(length as usize);
+            limit = config.and_then(|config| config.model_max_length).and_then(length);
         }
+        Ok(limit.unwrap_or(usize::MAX).min(self.max_position_embeddings))
     }
 }

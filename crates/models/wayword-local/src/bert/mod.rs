@@ -3,6 +3,7 @@
 
 mod config;
 mod encoder;
+mod modules;
 mod sentences;
 
 pub(crate) use config::{BertConfig, BertSizes};

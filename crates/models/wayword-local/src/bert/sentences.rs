@@ -1,8 +1,9 @@
 //! Turns sentences into vectors of length 1 that can be compared, as sentence-transformers does.
 
 use super::{
-    config::{BertConfig, SentencePooling},
+    config::BertConfig,
     encoder::BertEncoder,
+    modules::{SentenceModules, SentencePooling, unit_length},
 };
 use crate::{LocalError, ModelDevice, WeightPrecision, tokenizer::TextTokenizer, weights::CheckpointWeights};
 use candle_core::{DType, Tensor};
@@ -17,18 +18,19 @@ pub struct SentenceEncoder {
     name: String,
     tokenizer: TextTokenizer,
     encoder: BertEncoder,
-    pooling: SentencePooling,
+    modules: SentenceModules,
     /// The most tokens of a text. The rest is cut off.
     longest: usize,
     device: ModelDevice,
 }
 
 impl SentenceEncoder {
-    /// Reads `config.json`, `tokenizer.json`, `model.safetensors` and, if they exist, `1_Pooling/config.json` and
-    /// `sentence_bert_config.json` of a folder. `name` is the model's name: `hf/ORG/NAME`.
+    /// Reads `config.json`, `tokenizer.json`, `model.safetensors` and, if they exist, the other files of
+    /// [`crate::NeededFiles::for_sentence_encoder`] in a folder. `name` is the model's name: `hf/ORG/NAME`.
     ///
     /// # Errors
-    /// When a file is missing or damaged, or the checkpoint has another architecture.
+    /// When a file is missing or damaged, the checkpoint has another architecture, or the encoder does something to texts or
+    /// vectors that is not done here.
     pub fn load(
         name: &str,
         folder: &Path,
@@ -45,7 +47,7 @@ impl SentenceEncoder {
             name: name.to_owned(),
             tokenizer: TextTokenizer::load(folder)?,
             encoder: BertEncoder::from_weights(&encoder, &config)?,
-            pooling: SentencePooling::from_folder(folder)?,
+            modules: SentenceModules::from_folder(folder, config.hidden_size(), device, precision)?,
             longest: config.max_text_tokens(folder)?,
             device: device.clone(),
         })
@@ -56,7 +58,7 @@ impl SentenceEncoder {
     /// # Errors
     /// When the computation fails.
     pub fn unit_vectors(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, LocalError> {
-        let ids = texts.iter().map(|text| self.tokenizer.text_ids(text, self.longest));
+        let ids = texts.iter().map(|text| self.tokenizer.text_ids(&self.modules.prepare_text(text), self.longest));
         let ids: Vec<Vec<u32>> = ids.collect::<Result<_, _>>()?;
         let mut order: Vec<usize> = (0..texts.len()).collect();
         order.sort_by_key(|&at| ids[at].len());
@@ -90,17 +92,22 @@ impl SentenceEncoder {
         let padding_mask =
             if is_even { None } else { Some(per_token(0.0, f32::NEG_INFINITY)?.unsqueeze(1)?.unsqueeze(1)?) };
         let states = self.encoder.encode_tokens(&ids, padding_mask.as_ref())?.to_dtype(DType::F32)?;
-        let pooled = match self.pooling {
-            SentencePooling::First => states.narrow(1, 0, 1)?.squeeze(1)?,
-            SentencePooling::Mean if is_even => states.mean(1)?,
+        let pool = |pooling: &SentencePooling| match pooling {
+            SentencePooling::First => states.narrow(1, 0, 1)?.squeeze(1),
+            SentencePooling::Last => {
+                let last = texts.iter().enumerate().map(|(at, ids)| (at * longest + ids.len().max(1) - 1) as u32);
+                let last = Tensor::from_vec(last.collect(), texts.len(), device)?;
+                states.flatten(0, 1)?.index_select(&last, 0)
+            }
+            SentencePooling::Mean if is_even => states.mean(1),
             SentencePooling::Mean => {
                 let weights = per_token(1.0, 0.0)?.unsqueeze(2)?;
-                states.broadcast_mul(&weights)?.sum(1)?.broadcast_div(&weights.sum(1)?)?
+                states.broadcast_mul(&weights)?.sum(1)?.broadcast_div(&weights.sum(1)?)
             }
         };
-        // The minimum keeps a vector of zeros from a division by 0.
-        let length = pooled.sqr()?.sum_keepdim(1)?.sqrt()?;
-        pooled.broadcast_div(&length.maximum(1e-12)?)?.to_vec2()
+        let pooled: Vec<Tensor> = self.modules.poolings.iter().map(pool).collect::<candle_core::Result<_>>()?;
+        let vectors = self.modules.apply_layers(Tensor::cat(&pooled, 1)?)?;
+        unit_length(&vectors)?.to_dtype(DType::F32)?.to_vec2()
     }
 }
 

@@ -10,8 +10,6 @@ use serde::Deserialize;
 use std::path::Path;
 use wayword_core::Image;
 
-const PREPROCESSOR_FILE: &str = "preprocessor_config.json";
-
 /// The longest edge of a picture that a configuration may ask for, pixels. A longer one is refused.
 const MAX_EDGE_PX: usize = 2048;
 
@@ -57,10 +55,9 @@ pub(super) struct DinoPictureProcessor {
 
 impl DinoPictureProcessor {
     pub(super) fn load(folder: &Path) -> Result<Self, LocalError> {
-        let config: DinoPictureConfig =
-            json::read_required(folder, PREPROCESSOR_FILE, "the configuration of the pictures")?;
+        let (config, file): (DinoPictureConfig, _) = json::read_picture_config(folder)?;
         config.build_processor().map_err(|problem| LocalError::File {
-            file: folder.join(PREPROCESSOR_FILE),
+            file,
             problem,
             hint: "choose a model of Grounding DINO's architecture, such as hf/iSEE-Laboratory/llmdet_tiny; if this is one, its file is damaged: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`",
         })

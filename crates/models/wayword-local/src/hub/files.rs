@@ -16,7 +16,7 @@ const PICKLED_WEIGHTS_FILE: &str = "pytorch_model.bin";
 const TOKENIZER_FILE: &str = "tokenizer.json";
 
 /// Files that the models of this crate read if they exist.
-const OPTIONAL_MODEL_FILES: [&str; 8] = [
+const OPTIONAL_MODEL_FILES: [&str; 11] = [
     TOKENIZER_FILE,
     "tokenizer_config.json",
     "preprocessor_config.json",
@@ -25,6 +25,20 @@ const OPTIONAL_MODEL_FILES: [&str; 8] = [
     "sentence_bert_config.json",
     "1_Pooling/config.json",
     "modules.json",
+    "config_sentence_transformers.json",
+    "2_Dense/config.json",
+    "2_Dense/model.safetensors",
+];
+
+/// Files that say what a sentence encoder does besides its BERT.
+const SENTENCE_FILES: [&str; 7] = [
+    "modules.json",
+    "config_sentence_transformers.json",
+    "sentence_bert_config.json",
+    "tokenizer_config.json",
+    "1_Pooling/config.json",
+    "2_Dense/config.json",
+    "2_Dense/model.safetensors",
 ];
 
 /// Files up to this length, bytes, are hashed as a whole for a model's identity. Longer ones are sampled.
@@ -100,6 +114,12 @@ impl NeededFiles {
             return Self::default();
         }
         Self::default().with_weights().with_required(&["config.json"]).with_optional(&OPTIONAL_MODEL_FILES)
+    }
+
+    /// The files that a sentence encoder needs.
+    #[must_use]
+    pub fn for_sentence_encoder() -> Self {
+        Self::default().with_weights().with_required(&["config.json", TOKENIZER_FILE]).with_optional(&SENTENCE_FILES)
     }
 
     /// The tokenizer alone, without the model's weights.

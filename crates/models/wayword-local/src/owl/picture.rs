@@ -13,8 +13,6 @@ use serde::Deserialize;
 use std::path::Path;
 use wayword_core::Image;
 
-const PREPROCESSOR_FILE: &str = "preprocessor_config.json";
-
 /// CLIP's means and standard deviations of red, green and blue.
 const CLIP_MEANS_RGB: [f64; 3] = [0.48145466, 0.4578275, 0.40821073];
 const CLIP_DEVIATIONS_RGB: [f64; 3] = [0.26862954, 0.26130258, 0.27577711];
@@ -60,10 +58,9 @@ struct OwlPixelWindow {
 impl OwlPictureProcessor {
     /// Reads `preprocessor_config.json` of a model that takes squares of `edge` pixels.
     pub(super) fn load(folder: &Path, edge: usize) -> Result<Self, LocalError> {
-        let config: OwlPictureConfig =
-            json::read_required(folder, PREPROCESSOR_FILE, "the configuration of the pictures")?;
+        let (config, file): (OwlPictureConfig, _) = json::read_picture_config(folder)?;
         config.build_processor(edge).map_err(|problem| LocalError::File {
-            file: folder.join(PREPROCESSOR_FILE),
+            file,
             problem,
             hint: "choose an OWLv2 model, such as hf/google/owlv2-base-patch16-ensemble; if this is one, its file is damaged: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`",
         })
@@ -214,7 +211,7 @@ mod tests {
 
     fn processor(edge: usize, config: &serde_json::Value) -> Result<OwlPictureProcessor, LocalError> {
         let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join(PREPROCESSOR_FILE), config.to_string()).unwrap();
+        std::fs::write(folder.path().join("preprocessor_config.json"), config.to_string()).unwrap();
         OwlPictureProcessor::load(folder.path(), edge)
     }
 
@@ -263,7 +260,7 @@ mod tests {
         }
         for (config, told) in cases {
             let error = processor(16, &config).err().expect("it is refused").to_string();
-            assert!(error.contains(told) && error.contains(PREPROCESSOR_FILE), "{error}");
+            assert!(error.contains(told) && error.contains("preprocessor_config.json"), "{error}");
         }
         let empty = Image::new(0, 7, Vec::new()).unwrap();
         let error = processor(16, &sized(16)).unwrap().to_tensor(&empty, &ModelDevice::cpu()).unwrap_err().to_string();

@@ -15,8 +15,6 @@ use crate::{LocalError, json};
 use serde::Deserialize;
 use std::path::Path;
 
-const PREPROCESSOR_FILE: &str = "preprocessor_config.json";
-
 /// The longest edge of a picture that a configuration may ask for, pixels. A longer one is refused.
 const MAX_EDGE_PX: usize = 2048;
 
@@ -61,14 +59,11 @@ enum ProcessorFamily {
 }
 
 impl PictureConfig {
-    pub(super) fn from_folder(folder: &Path) -> Result<Self, LocalError> {
-        json::read_required(folder, PREPROCESSOR_FILE, "the configuration of the pictures")
-    }
-
-    pub(super) fn to_processor(&self, folder: &Path) -> Result<PictureProcessor, LocalError> {
-        let built = self.build_processor();
-        built.map_err(|problem| LocalError::File {
-            file: folder.join(PREPROCESSOR_FILE),
+    /// The processor that a model's folder describes.
+    pub(super) fn read_processor(folder: &Path) -> Result<PictureProcessor, LocalError> {
+        let (config, file): (Self, _) = json::read_picture_config(folder)?;
+        config.build_processor().map_err(|problem| LocalError::File {
+            file,
             problem,
             hint: "choose a CLIP, BLIP or BLIP-2 model; if this is one, its file is damaged: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`",
         })

@@ -108,3 +108,26 @@ fn the_same_pixels_in_another_shape_are_another_picture() {
     assert_ne!(shaped(3, 4), shaped(4, 3));
     assert_eq!(shaped(3, 4), shaped(3, 4));
 }
+
+#[test]
+fn the_processor_of_newer_releases_is_read() {
+    let config = serde_json::json!({
+        "image_processor_type": "CLIPImageProcessorFast", "size": {"shortest_edge": 8}, "crop_size": {"height": 8, "width": 8},
+        "resample": 3,
+    });
+    let load = |processor: serde_json::Value| {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("processor_config.json"), processor.to_string()).unwrap();
+        PictureProcessor::load(folder.path()).map_err(|error| error.to_string())
+    };
+    let image = drawn(20, 12);
+    let new = load(serde_json::json!({"image_processor": config, "processor_class": "CLIPProcessor"})).unwrap();
+    assert_eq!(numbers(&new, &[&image]), numbers(&processor(&config).unwrap(), &[&image]));
+    let mut other = config;
+    other["image_processor_type"] = "SiglipImageProcessor".into();
+    let error = load(serde_json::json!({"image_processor": other})).err().unwrap();
+    assert!(error.contains("processor_config.json") && error.contains("SiglipImageProcessor"), "{error}");
+    // A file for texts alone says nothing of pictures.
+    let error = load(serde_json::json!({"processor_class": "CLIPProcessor"})).err().unwrap();
+    assert!(error.contains("preprocessor_config.json"), "{error}");
+}
