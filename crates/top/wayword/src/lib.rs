@@ -8,6 +8,7 @@
 //! - [`cli`]: all commands. The flags of each are in `args.rs` beside its work, in the crate that does it.
 //! - [`commands`]: which function runs a command.
 //! - `doctor/scenes.rs`: what `doctor --scenes` lists of a scene.
+//! - `doctor/turning.rs`: whether things move to the left when one turns right, in a world of another program.
 //! - `house/`: the set of houses for Habitat, its episodes and habitat-lab's configuration.
 //! - `runs/`: `merge.rs` puts chunks together, `status.rs` and `prometheus.rs` show them.
 //! - `tests/it/documents.rs`: which commands of the documents are run, and what the others need.

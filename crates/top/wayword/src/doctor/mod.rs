@@ -3,6 +3,7 @@
 
 pub(crate) mod args;
 mod scenes;
+mod turning;
 
 use crate::doctor::args::DoctorArgs;
 use serde::Serialize;
@@ -67,7 +68,7 @@ pub(crate) fn run_doctor(args: &DoctorArgs, output: &CommandOutput) -> Result<Ex
         examined = scenes::examine_run_scenes(&mut job.settings, output);
         findings.extend(scenes::scene_findings(&examined));
     }
-    findings.push(world_finding(&job.settings));
+    findings.extend(world_findings(&job.settings));
     if job.settings.roles.prompts.is_some() {
         findings.push(match settings_prompts(&job.settings) {
             Ok(prompts) => {
@@ -117,24 +118,29 @@ fn problem_finding(about: &str, error: &CommandError) -> DoctorFinding {
     DoctorFinding { state: DoctorGrade::Problem, about: about.to_owned(), told: told.to_owned(), hint }
 }
 
-/// Opens the platform and takes one view.
-fn world_finding(settings: &RunSettings) -> DoctorFinding {
+/// Opens the platform and takes one view. In a world of another program, turns around there too.
+fn world_findings(settings: &RunSettings) -> Vec<DoctorFinding> {
     let about = format!("platform {}", settings.platform);
-    let look = || -> Result<PlatformExamination, CommandError> {
+    let look = || -> Result<(PlatformExamination, Option<DoctorFinding>), CommandError> {
         let platform = platforms::open_platform(settings)?;
         let first_only = RunSettings { limit: Some(1), ..settings.clone() };
         let items = run_items(&first_only, platform.as_ref())?;
         let path = items[0].find_path(settings, platform.as_ref())?;
-        let view =
-            platform.look_from(&path.scene, &path.frames[0], ViewGaze::quarter_view(path.frames[0].pose.heading))?;
+        let frame = &path.frames[0];
+        let view = platform.look_from(&path.scene, frame, ViewGaze::quarter_view(frame.pose.heading))?;
+        let turning = if settings.platform == "process" {
+            turning::turning_finding(platform.as_ref(), &path.scene, frame)?
+        } else {
+            None
+        };
         let picture = view.image.is_some();
-        let first_stop = Path { frames: vec![path.frames[0].clone()], ..path };
+        let first_stop = Path { frames: vec![frame.clone()], ..path.clone() };
         let labels = Evidence::from_labels(&first_stop, &[vec![view]]).is_some();
-        Ok(PlatformExamination { scenes: platform.list_scenes()?.len(), picture, labels })
+        Ok((PlatformExamination { scenes: platform.list_scenes()?.len(), picture, labels }, turning))
     };
     match look() {
-        Err(error) => problem_finding(&about, &error),
-        Ok(seen) => seen.to_finding(about, settings),
+        Err(error) => vec![problem_finding(&about, &error)],
+        Ok((seen, turning)) => std::iter::once(seen.to_finding(about, settings)).chain(turning).collect(),
     }
 }
 

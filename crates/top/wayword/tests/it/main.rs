@@ -45,6 +45,7 @@ mod similarity_pictures;
 mod spans;
 mod steps;
 mod study;
+mod turning_worlds;
 mod view;
 mod workers;
 mod writers;

@@ -42,8 +42,8 @@ pub(crate) struct ObservedObject {
     colour: Option<String>,
 }
 
-/// The labels of a view: those of objects that have their centre within its width.
-pub(crate) fn labels_in_view(
+/// The labels of a view, also of objects that have their centre outside its width.
+pub(crate) fn labels_of_answer(
     seen: Vec<ObservedObject>,
     eye: DVec3,
     gaze: ViewGaze,
@@ -52,9 +52,13 @@ pub(crate) fn labels_in_view(
     if seen.len() > MAX_LABELS {
         return Err(format!("{} labels, expected at most {MAX_LABELS}", seen.len()));
     }
-    let labels: Result<Vec<ObjectLabel>, String> =
-        seen.into_iter().map(|seen| seen.into_label(eye, gaze, size_px)).collect();
-    Ok(labels?.into_iter().filter(|label| gaze.holds_heading(label.heading)).collect())
+    seen.into_iter().map(|seen| seen.into_label(eye, gaze, size_px)).collect()
+}
+
+/// The labels of objects that have their centre within the width of a view.
+pub(crate) fn labels_in_view(mut labels: Vec<ObjectLabel>, gaze: ViewGaze) -> Vec<ObjectLabel> {
+    labels.retain(|label| gaze.holds_heading(label.heading));
+    labels
 }
 
 /// A position, if its coordinates are finite and at most [`MAX_COORDINATE_M`].
@@ -141,7 +145,8 @@ mod tests {
 
     fn labels(seen: Value) -> Result<Vec<ObjectLabel>, String> {
         let seen: Vec<ObservedObject> = serde_json::from_value(seen).map_err(|error| error.to_string())?;
-        labels_in_view(seen, DVec3::new(1.0, 2.0, 1.5), ViewGaze::quarter_view(Heading::NORTH), SIZE_PX)
+        let gaze = ViewGaze::quarter_view(Heading::NORTH);
+        Ok(labels_in_view(labels_of_answer(seen, DVec3::new(1.0, 2.0, 1.5), gaze, SIZE_PX)?, gaze))
     }
 
     #[test]

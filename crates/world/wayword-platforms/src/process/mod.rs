@@ -30,6 +30,7 @@ mod fault;
 mod graph;
 mod group;
 mod guard;
+mod label_places;
 mod labels;
 mod options;
 mod path;

@@ -3,6 +3,7 @@
 use super::{
     child_keeper::ChildKeeper,
     graph,
+    label_places::LabelPlaces,
     labels::{self, MAX_COORDINATE_M, ObserveAnswer},
     options::ProcessOptions,
     path, picture,
@@ -32,6 +33,7 @@ const MAX_SCENES: usize = 10_000;
 pub struct ProcessPlatform {
     keeper: ChildKeeper,
     known: Mutex<BTreeMap<SceneId, Arc<ProcessSceneFacts>>>,
+    label_places: Mutex<LabelPlaces>,
 }
 
 /// The answers of the child about a scene that are asked for only once.
@@ -80,7 +82,7 @@ impl ProcessPlatform {
     /// # Errors
     /// If the child cannot be started, or its greeting cannot be used.
     pub fn start(options: ProcessOptions, hear: OutputListener) -> Result<Self, PlatformError> {
-        Ok(Self { keeper: ChildKeeper::start(options, hear)?, known: Mutex::default() })
+        Ok(Self { keeper: ChildKeeper::start(options, hear)?, known: Mutex::default(), label_places: Mutex::default() })
     }
 
     /// What the child is and what it offers.
@@ -132,7 +134,7 @@ impl ProcessPlatform {
         }
         let image: Option<Image> =
             file.map(|file| picture::decode_child_picture(&file, size_px)).transpose().map_err(misfit)?;
-        let truth = self.labels_and_room(seen, &pose, gaze).map_err(misfit)?;
+        let truth = self.labels_and_room(scene, seen, &pose, gaze).map_err(misfit)?;
         Ok(View::new(pose, gaze.horizontal_fov_rad, image.map(Arc::new), truth))
     }
 
@@ -160,13 +162,24 @@ impl ProcessPlatform {
     }
 
     /// The ground truth in an answer; `None` if the child offers neither labels nor rooms.
-    fn labels_and_room(&self, seen: ObserveAnswer, pose: &Pose, gaze: ViewGaze) -> Result<Option<GroundTruth>, String> {
+    fn labels_and_room(
+        &self,
+        scene: &SceneId,
+        seen: ObserveAnswer,
+        pose: &Pose,
+        gaze: ViewGaze,
+    ) -> Result<Option<GroundTruth>, String> {
         let lists_objects = self.has_offer(WorldOffer::Labels);
         if !lists_objects && !self.has_offer(WorldOffer::Rooms) {
             return Ok(None);
         }
         let labels = match seen.labels {
-            Some(seen) if lists_objects => labels::labels_in_view(seen, pose.position, gaze, self.size_px())?,
+            Some(seen) if lists_objects => {
+                let all = labels::labels_of_answer(seen, pose.position, gaze, self.size_px())?;
+                let mut places = self.label_places.lock().unwrap_or_else(PoisonError::into_inner);
+                places.check_view(scene, pose.position, gaze, self.size_px().0, &all)?;
+                labels::labels_in_view(all, gaze)
+            }
             None if lists_objects => return Err("no `labels`, although it offers them (send [] for none)".into()),
             _ => Vec::new(),
         };
