@@ -179,7 +179,18 @@ impl RunItem {
             Self::Episode(episode) if !episode.goes_anywhere() => {
                 Err(PlatformError::OnePlace { episode: episode.id.clone() })
             }
-            Self::Episode(episode) => path_for_episode(platform, episode),
+            Self::Episode(episode) => {
+                let path = path_for_episode(platform, episode)?;
+                match &episode.target_object {
+                    // Where no object is listed, none can be missing.
+                    Some(object)
+                        if path.target.is_none() && !platform.catalogue().listed_objects(&path.scene)?.is_empty() =>
+                    {
+                        Err(PlatformError::UnknownObject { scene: path.scene, object: object.clone() })
+                    }
+                    _ => Ok(path),
+                }
+            }
             Self::Walk(path) => Ok((**path).clone()),
             Self::Random { id, scenes, first: start, seed } => {
                 let sample = |scene: &SceneId| platform.sample_path(scene, &settings.request, *seed);

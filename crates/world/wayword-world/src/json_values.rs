@@ -14,7 +14,7 @@ pub fn check_coordinate(number: f64) -> Result<f64, String> {
     if number.is_finite() && number.abs() <= MAX_COORDINATE_M {
         Ok(number)
     } else {
-        Err(format!("{number} is not a plausible coordinate"))
+        Err(format!("{number:e} is not a plausible coordinate"))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Why a platform cannot give what it was asked for.
 
-use crate::{FailureKind, Frame, SceneId, ViewpointId, graph::GraphError};
+use crate::{FailureKind, Frame, ObjectId, SceneId, ViewpointId, graph::GraphError};
 use std::{
     io,
     path::{Path as FilePath, PathBuf},
@@ -32,6 +32,16 @@ pub enum PlatformError {
         scene: SceneId,
         /// The viewpoint.
         viewpoint: ViewpointId,
+    },
+    /// A target that the scene does not have.
+    #[error(
+        "scene {scene} has no object {object}, which the path's task is about: correct the target, or leave the item out"
+    )]
+    UnknownObject {
+        /// The scene.
+        scene: SceneId,
+        /// The object.
+        object: ObjectId,
     },
     /// A frame that names no viewpoint, on a platform that offers views from viewpoints only.
     #[error(
@@ -104,6 +114,7 @@ impl PlatformError {
         match self {
             Self::UnknownScene { .. }
             | Self::UnknownViewpoint { .. }
+            | Self::UnknownObject { .. }
             | Self::NotAViewpoint { .. }
             | Self::OnePlace { .. }
             | Self::NoSuchPath { .. }

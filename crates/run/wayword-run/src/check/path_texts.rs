@@ -2,7 +2,7 @@
 
 use crate::{count::count_phrase, episode_paths::path_for_episode, error::CommandError};
 use std::{collections::BTreeMap, path::Path as FilePath};
-use wayword_core::{Path, Platform, SceneId, TextProvenance, ViewpointId};
+use wayword_core::{Path, Platform, PlatformError, SceneId, TextProvenance, ViewpointId};
 use wayword_formats::{
     DatasetFormat,
     jsonl::{self, InstructionRecord},
@@ -49,7 +49,8 @@ pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
     let mut walks = PathTextIndex::default();
     if wayword_formats::detect_format(file)? == DatasetFormat::Wayword {
         for InstructionRecord { path, instruction, platform: made_on, .. } in jsonl::read_records(file)? {
-            let path = with_platform_poses(platform, path)?;
+            let id = path.id.clone();
+            let path = with_platform_poses(platform, path).map_err(unusable_path(file, &id))?;
             let text = FileText {
                 at: 0,
                 path: path.id.clone(),
@@ -68,7 +69,7 @@ pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
     let mut items = 0;
     for episode in wayword_formats::read_any_format(file)? {
         // The check ends with an error at the first missing scene.
-        let path = path_for_episode(platform, &episode)?;
+        let path = path_for_episode(platform, &episode).map_err(unusable_path(file, &episode.id))?;
         items += 1;
         for (at, words) in episode.instructions.iter().enumerate() {
             let tag = episode.language_of(at).map(str::to_owned);
@@ -126,8 +127,19 @@ impl PathTextIndex {
     }
 }
 
+/// Names the file and the item of a path that does not fit its scene.
+fn unusable_path(file: &FilePath, item: &str) -> impl FnOnce(PlatformError) -> CommandError {
+    move |error| match error {
+        PlatformError::Graph { .. } | PlatformError::UnknownViewpoint { .. } => CommandError::usage(
+            format!("{}: item {item}: {error}", file.display()),
+            "correct the path of this item, or leave the item out; check that --data holds the scene that the file is about",
+        ),
+        error => error.into(),
+    }
+}
+
 /// A record's path, with the platform's own poses and storeys if its frames are viewpoints. Those in the file are not trusted.
-fn with_platform_poses(platform: &dyn Platform, path: Path) -> Result<Path, CommandError> {
+fn with_platform_poses(platform: &dyn Platform, path: Path) -> Result<Path, PlatformError> {
     let viewpoints: Option<Vec<_>> = path.frames.iter().map(|frame| frame.viewpoint.clone()).collect();
     let Some(viewpoints) = viewpoints else { return Ok(path) };
     // Names of pictures are not viewpoints. Whether the scene has viewpoints is decided by the platform, and not by the file.
@@ -136,7 +148,7 @@ fn with_platform_poses(platform: &dyn Platform, path: Path) -> Result<Path, Comm
     }
     let heading = path.frames.first().map(|frame| frame.pose.heading);
     let object = path.target.as_ref().map(|target| &target.object);
-    Ok(path_over_viewpoints(platform, &path.id, &path.scene, &viewpoints, heading, object)?)
+    path_over_viewpoints(platform, &path.id, &path.scene, &viewpoints, heading, object)
 }
 
 #[cfg(test)]

@@ -55,7 +55,7 @@ mod tests {
     fn errors_name_the_object() {
         assert_eq!(
             parse_object_positions(br#"{"s": {"4": [1e9, 2, 3]}}"#).unwrap_err(),
-            "scan s, object 4: 1000000000 is not a plausible coordinate"
+            "scan s, object 4: 1e9 is not a plausible coordinate"
         );
         assert!(parse_object_positions(br#"{"s": {"4": [1, 2]}}"#).unwrap_err().contains("is not {scan"));
     }
