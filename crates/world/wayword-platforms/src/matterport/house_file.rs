@@ -1,8 +1,8 @@
 //! Reads `SCAN.house`: levels, regions, panoramas and objects of a building.
 //!
 //! Format: Matterport3D's `data_organization.md`, "house_segmentations": ASCII, one record per line, and the first word
-//! is the kind of the record. Read here: `L` levels, `R` regions, `P` panoramas, `O` objects, `C` categories. The counts
-//! in `H` are not used.
+//! is the kind of the record. Read here: `L` levels, `R` regions, `P` panoramas, `O` objects, `C` categories, and how many there are of
+//! each by `H`: a file that was cut off has fewer.
 
 use super::file_reading;
 use glam::DVec3;
@@ -88,14 +88,18 @@ fn parse_house_file(text: &str) -> Result<MatterportHouseFile, String> {
     let mut house = MatterportHouseFile::default();
     let mut categories = BTreeMap::new();
     let mut objects = Vec::new();
+    let mut counts = HouseFileCounts::default();
     for (number, line) in text.lines().enumerate().skip(1) {
-        if !line.starts_with(['L', 'R', 'P', 'O', 'C']) {
+        if !line.starts_with(['H', 'L', 'R', 'P', 'O', 'C']) {
             continue;
         }
         let record = HouseFileEntry { words: line.split_whitespace().take(MAX_WORDS).collect() };
-        add_entry(&record, &mut house, &mut categories, &mut objects)
+        counts
+            .count_entry(&record)
+            .and_then(|()| add_entry(&record, &mut house, &mut categories, &mut objects))
             .map_err(|reason| format!("line {}: {reason}", number + 1))?;
     }
+    counts.compare()?;
     house.objects = objects
         .into_iter()
         .map(|(object, category)| HouseObject { name: categories.get(&category).cloned().flatten(), ..object })
@@ -136,6 +140,43 @@ fn add_entry(
     Ok(())
 }
 
+/// Kinds of records, each with its name and the column of `H` that holds their number.
+const COUNTED_KINDS: [(&str, &str, usize); 5] =
+    [("P", "panoramas", 4), ("O", "objects", 8), ("C", "categories", 9), ("R", "regions", 10), ("L", "levels", 12)];
+
+/// The records of each kind of [`COUNTED_KINDS`]: those in the file, and those that `H` announces.
+#[derive(Default)]
+struct HouseFileCounts {
+    found: [i64; COUNTED_KINDS.len()],
+    announced: Option<[i64; COUNTED_KINDS.len()]>,
+}
+
+impl HouseFileCounts {
+    fn count_entry(&mut self, record: &HouseFileEntry<'_>) -> Result<(), String> {
+        let kind = record.word_at(0)?;
+        if kind == "H" {
+            let mut announced = [0; COUNTED_KINDS.len()];
+            for (count, (_, _, column)) in announced.iter_mut().zip(COUNTED_KINDS) {
+                *count = record.index_at(column)?;
+            }
+            self.announced = Some(announced);
+        }
+        for (count, (counted, _, _)) in self.found.iter_mut().zip(COUNTED_KINDS) {
+            *count += i64::from(kind == counted);
+        }
+        Ok(())
+    }
+
+    fn compare(&self) -> Result<(), String> {
+        for ((announced, found), (_, name, _)) in self.announced.iter().flatten().zip(&self.found).zip(COUNTED_KINDS) {
+            if announced != found {
+                return Err(format!("it announces {announced} {name} and has {found}, so a part of it is lost"));
+            }
+        }
+        Ok(())
+    }
+}
+
 /// The words of a line.
 struct HouseFileEntry<'a> {
     words: Vec<&'a str>,
@@ -168,7 +209,7 @@ mod tests {
     use super::*;
 
     const TEXT: &str = "ASCII 1.1\n\
-        H - - 1 999999999 0 0 0 0 0 0 0 0\n\
+        H - - 1 2 0 0 0 1 1 2 0 2\n\
         L 0 1 - 0 0 3.0 0 0 0 1 1 1 0 0 0 0 0\n\
         L 1 1 - 0 0 0.0 0 0 0 1 1 1 0 0 0 0 0\n\
         R 0 0 0 0 b 0 0 0 0 0 0 1 1 1 2.5 0 0 0 0\n\
@@ -201,6 +242,16 @@ mod tests {
         assert_eq!(around.len(), 1);
         assert_eq!((around[0].id.as_str(), around[0].name.as_deref()), ("5", Some("coffee table")));
         assert_eq!(house.objects_around(&id("upper")).count(), 0);
+    }
+
+    #[test]
+    fn a_file_that_was_cut_off_is_refused() {
+        let cut =
+            TEXT.lines().filter(|line| !line.starts_with('O')).map(|line| format!("{line}\n")).collect::<String>();
+        let reason = parse_house_file(&cut).unwrap_err();
+        assert_eq!(reason, "it announces 1 objects and has 0, so a part of it is lost");
+        let half_a_line = TEXT.split_once("C 9").unwrap().0;
+        assert!(parse_house_file(half_a_line).unwrap_err().contains("1 categories"));
     }
 
     #[test]
