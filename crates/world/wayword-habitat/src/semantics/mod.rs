@@ -10,8 +10,6 @@
     )
 )]
 
-#[cfg(test)]
-mod genuine_tests;
 mod hm3d;
 mod house;
 mod labels;

@@ -1,5 +1,7 @@
 //! Tests with semantic meshes that are written here: two panels north of the eye, the left one in front of a third.
 
+mod genuine;
+
 use super::*;
 use crate::scene::{HabitatStage, tests::glb};
 use serde_json::json;

@@ -1,7 +1,7 @@
 //! Compares the objects in pictures of a generated house with those that habitat-sim saw. Needs the oracle data; without it the
 //! tests print that they are skipped.
 
-use super::*;
+use super::super::*;
 use crate::{
     axes::{EYE_M, forward_from_habitat_rotation, wayword_from_habitat},
     scene::{HabitatStage, SceneModel},
