@@ -1,10 +1,15 @@
 //! Adds the data to VLN-CE episodes that the simulator Habitat needs: the scene's file, the corners of the path, and the distance
 //! over the navmesh. A VLN-CE path consists of straight lines, but the way between two frames can bend around furniture: hence the
-//! corners.
+//! corners. In Habitat's scenes and in generated houses all positions have the navmesh's height, which is 0.1 to 0.2 m above the
+//! drawn floor, because Habitat's agents walk at that height.
 
+#[cfg(feature = "habitat")]
+use crate::walking::WalkingScenes;
 use std::path::{Path, PathBuf};
-use wayword_core::{DVec3, Path as Walk, Platform, PlatformError, SceneId};
+use wayword_core::{DVec3, GroundRoute, Path as Walk, Platform, PlatformError, SceneId};
 use wayword_formats::{Episode, InHabitat, jsonl::InstructionRecord};
+#[cfg(feature = "habitat")]
+use wayword_habitat::NavMeshGround;
 use wayword_house::seed_of;
 use wayword_run::{error::CommandError, platforms, run_folder::read_run_settings, stores};
 
@@ -12,13 +17,22 @@ use wayword_run::{error::CommandError, platforms, run_folder::read_run_settings,
 const SCENES_FOLDER: &str = "scene_datasets";
 /// Corners closer together than this count as one, metres.
 const SAME_CORNER_M: f64 = 1e-3;
+/// Greatest distance of a position from the navmesh, seen from above, metres.
+#[cfg(feature = "habitat")]
+const MAX_BESIDE_NAVMESH_M: f64 = 0.5;
+
+/// The generated houses, with their navmeshes where this build can bake them.
+#[cfg(feature = "habitat")]
+type HouseScenes = WalkingScenes;
+#[cfg(not(feature = "habitat"))]
+type HouseScenes = Box<dyn Platform>;
 
 /// Where the scenes of a run can be looked up: its Habitat scenes and its generated houses.
 pub(super) struct HabitatSceneSource {
     /// Habitat's own scenes, with the folder or file that they come from.
     scenes: Option<(Box<dyn Platform>, PathBuf)>,
     /// The generated houses, if the run has any.
-    houses: Option<Box<dyn Platform>>,
+    houses: Option<HouseScenes>,
     /// Why the first Habitat scene that failed could not be read.
     first_problem: Option<String>,
 }
@@ -27,7 +41,7 @@ impl HabitatSceneSource {
     /// Opens the platforms of a run's records. If its Habitat scenes cannot be opened, they stay closed, and `warning` reports it.
     pub(super) fn from_run(run: &Path, records: &[InstructionRecord]) -> Self {
         let has = |platform: &str| records.iter().any(|record| record.platform == platform);
-        let houses = has("house").then(|| platforms::open_named("house", None, None, None).ok()).flatten();
+        let houses = has("house").then(open_houses).flatten();
         match has("habitat").then(|| open_scenes(run)).transpose() {
             Ok(scenes) => Self { scenes, houses, first_problem: None },
             Err(error) => Self { scenes: None, houses, first_problem: Some(first_line(&error)) },
@@ -47,12 +61,10 @@ impl HabitatSceneSource {
             ("habitat", None) => episode.in_habitat = without_scene(scene),
             ("matterport", _) => {}
             ("house", _) => {
-                if let Some(houses) = &self.houses
-                    && let Ok(path) = path_with_corners(&**houses, &record.path, episode)
-                {
-                    episode.floor_positions = path;
-                }
                 episode.in_habitat = in_generated_house(scene);
+                if let Some(houses) = &self.houses {
+                    lay_in_house(houses, &record.path, episode);
+                }
             }
             (other, _) => episode.in_habitat = in_foreign_scene(other, scene),
         }
@@ -137,22 +149,78 @@ fn in_foreign_scene(platform: &str, scene: &SceneId) -> InHabitat {
     InHabitat { scene_id: Some(scene_id), scene_needs: Some(needs), geodesic_m: None }
 }
 
+/// The generated houses for the paths of a run.
+#[cfg(feature = "habitat")]
+fn open_houses() -> Option<HouseScenes> {
+    // No picture is taken.
+    Some(WalkingScenes::generated_houses([16, 16]))
+}
+
+#[cfg(not(feature = "habitat"))]
+fn open_houses() -> Option<HouseScenes> {
+    platforms::open_named("house", None, None, None).ok()
+}
+
+/// Lays an episode on the ground of its house, as far as that is known.
+#[cfg(feature = "habitat")]
+fn lay_in_house(houses: &HouseScenes, walk: &Walk, episode: &mut Episode) {
+    if let Ok(ground) = houses.ground(&walk.scene) {
+        lay_on_navmesh(&ground, episode);
+    }
+}
+
+#[cfg(not(feature = "habitat"))]
+fn lay_in_house(houses: &HouseScenes, walk: &Walk, episode: &mut Episode) {
+    if let Ok(path) = path_with_corners(&**houses, walk, episode) {
+        episode.floor_positions = path;
+    }
+}
+
+/// Lays an episode's path on a navmesh, where Habitat's agents walk: every position at its height, with the corners of the way
+/// between two positions, and the distance from start to goal over it. An episode with a position beside the navmesh stays as it
+/// is.
+#[cfg(feature = "habitat")]
+pub fn lay_on_navmesh(ground: &NavMeshGround, episode: &mut Episode) {
+    let on_navmesh = |floor: &DVec3| {
+        let place = ground.nearest_foothold(*floor)?.place;
+        ((place - *floor).truncate().length() <= MAX_BESIDE_NAVMESH_M).then_some(place)
+    };
+    let Some(places) = episode.floor_positions.iter().map(on_navmesh).collect::<Option<Vec<_>>>() else { return };
+    let (Some(start), Some(goal)) = (places.first(), places.last()) else { return };
+    let path = join_by_corners(&places, |hop| ground.geodesic(places[hop], places[hop + 1]).map(Some));
+    if let (Ok(path), Ok(way)) = (path, ground.geodesic(*start, *goal)) {
+        episode.floor_positions = path;
+        episode.in_habitat.geodesic_m = Some(way.length_m);
+    }
+}
+
 /// The path of an episode with every corner of the way between two frames, so that each hop is a straight walk. It is
 /// as before if the platform knows no ways.
 fn path_with_corners(platform: &dyn Platform, walk: &Walk, episode: &Episode) -> Result<Vec<DVec3>, PlatformError> {
-    let floors = &episode.floor_positions;
-    let mut path: Vec<DVec3> = floors.first().copied().into_iter().collect();
-    for (frames, floor) in walk.frames.windows(2).zip(floors.iter().skip(1)) {
-        let route = platform.ground().ground_route(&walk.scene, &frames[0], &frames[1])?;
+    let frames = &walk.frames;
+    join_by_corners(&episode.floor_positions, |hop| match (frames.get(hop), frames.get(hop + 1)) {
+        (Some(from), Some(to)) => platform.ground().ground_route(&walk.scene, from, to),
+        _ => Ok(None),
+    })
+}
+
+/// The places with the corners of the way from each to the next. `way` gives the way of a hop by its number, from 0.
+fn join_by_corners<E>(
+    places: &[DVec3],
+    way: impl Fn(usize) -> Result<Option<GroundRoute>, E>,
+) -> Result<Vec<DVec3>, E> {
+    let mut path: Vec<DVec3> = places.first().copied().into_iter().collect();
+    for (hop, place) in places.iter().skip(1).enumerate() {
+        let route = way(hop)?;
         let corners = route.as_ref().map_or(&[][..], |route| &route.corners);
-        // The first and the last corner are the two frames themselves.
+        // The first and the last corner are the two places themselves.
         for corner in corners.iter().skip(1).rev().skip(1).rev() {
             let is_new = path.last().is_none_or(|last| last.distance(*corner) > SAME_CORNER_M);
-            if is_new && corner.distance(*floor) > SAME_CORNER_M {
+            if is_new && corner.distance(*place) > SAME_CORNER_M {
                 path.push(*corner);
             }
         }
-        path.push(*floor);
+        path.push(*place);
     }
     Ok(path)
 }

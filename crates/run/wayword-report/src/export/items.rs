@@ -38,7 +38,10 @@ pub fn episodes_from_records(
         records.iter().map(|record| episode_from_record(record, bears_provenance(format))).collect();
     if let (DatasetFormat::Vlnce, [run]) = (format, runs) {
         let mut world = HabitatSceneSource::from_run(run, records);
-        for (record, episode) in records.iter().zip(&mut episodes) {
+        // Scene by scene, because a scene takes long to read, and only a few are kept.
+        let mut pairs: Vec<_> = records.iter().zip(&mut episodes).collect();
+        pairs.sort_by(|(a, _), (b, _)| a.path.scene.cmp(&b.path.scene));
+        for (record, episode) in pairs {
             world.describe_scene(record, episode);
         }
         if let Some(warning) = world.lack_warning() {

@@ -15,6 +15,8 @@ mod steps;
 mod steps;
 pub mod steps_args;
 #[cfg(feature = "habitat")]
+pub use habitat_scenes::lay_on_navmesh;
+#[cfg(feature = "habitat")]
 pub use steps::{TrajectoryReplay, replay_export};
 #[cfg(not(feature = "parquet"))]
 #[path = "no_table.rs"]

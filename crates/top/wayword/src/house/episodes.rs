@@ -11,7 +11,10 @@ use wayword_formats::{
 };
 use wayword_habitat::walk::{AgentGait, follow_places};
 use wayword_house::scene_name;
-use wayword_report::{export::items, walking::WalkingScenes};
+use wayword_report::{
+    export::{items, lay_on_navmesh},
+    walking::WalkingScenes,
+};
 use wayword_run::{
     error::{CommandError, Exit},
     generate::generate_into,
@@ -106,21 +109,17 @@ fn act_record(
     }))
 }
 
-/// Sets the scene of an episode relative to the folder of the set, and the distance over the house's navmesh.
+/// Sets the scene of an episode relative to the folder of the set, and lays its path on the house's navmesh.
 fn place_in_set(
     mut episode: Episode,
     record: &InstructionRecord,
     scenes: &WalkingScenes,
 ) -> Result<Episode, CommandError> {
     let scene = &record.path.scene;
+    episode.in_habitat =
+        InHabitat { scene_id: Some(format!("{scene}/{scene}.glb")), scene_needs: None, geodesic_m: None };
     let ground = scenes.ground(scene)?;
-    let ends = episode.floor_positions.first().zip(episode.floor_positions.last());
-    let way = ends.and_then(|(from, to)| ground.geodesic(*from, *to).ok());
-    episode.in_habitat = InHabitat {
-        scene_id: Some(format!("{scene}/{scene}.glb")),
-        scene_needs: None,
-        geodesic_m: way.map(|way| way.length_m),
-    };
+    lay_on_navmesh(&ground, &mut episode);
     Ok(episode)
 }
 

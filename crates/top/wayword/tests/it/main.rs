@@ -26,6 +26,7 @@ mod found_files;
 mod generate;
 mod graphs;
 mod habitat;
+mod house_episodes;
 mod invariants;
 mod known_paths;
 mod local_models;
