@@ -4,7 +4,7 @@ use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
 use wayword_core::{DVec3, Heading};
 
-/// The direction that is up in the world of a recording's poses.
+/// The axes of the world of a recording's poses: which of them points up, and whether the world is left-handed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum WorldUpAxis {
@@ -14,6 +14,10 @@ pub(crate) enum WorldUpAxis {
     YUp,
     /// y down, as in worlds that begin as the first camera's frame (ORB-SLAM, COLMAP).
     YDown,
+    /// Unity's: left-handed, x right, y up, z ahead.
+    Unity,
+    /// Unreal Engine's: left-handed, x ahead, y right, z up; usually in centimetres.
+    Unreal,
 }
 
 /// The body to which the orientation of a pose belongs.
@@ -26,6 +30,8 @@ pub(crate) enum PoseBody {
     Optical,
     /// An OpenGL camera: -z ahead, x right, y up (NeRF's `transforms.json`).
     OpenGl,
+    /// A camera of Unity: z ahead, x right, y up.
+    Unity,
 }
 
 /// The conventions by which the poses of a recording are read.
@@ -50,6 +56,9 @@ impl PoseAxes {
             WorldUpAxis::ZUp => recorded,
             WorldUpAxis::YUp => DVec3::new(x, -z, y),
             WorldUpAxis::YDown => DVec3::new(x, z, -y),
+            // These two are mirrored, because Wayword's frame is right-handed.
+            WorldUpAxis::Unity => DVec3::new(x, z, y),
+            WorldUpAxis::Unreal => DVec3::new(y, x, z),
         }
     }
 
@@ -66,9 +75,11 @@ impl PoseAxes {
         self.heading_along(x * ahead.x + y * ahead.y + z * ahead.z)
     }
 
-    /// As [`PoseAxes::heading_by_quaternion`], by a yaw: radians counter-clockwise from the recorded +x, as in ROS.
+    /// As [`PoseAxes::heading_by_quaternion`], by a yaw in radians: counter-clockwise from the recorded +x, as in ROS; in
+    /// left-handed worlds clockwise from the world's axis that points ahead.
     pub(crate) fn heading_by_yaw(self, yaw_rad: f64) -> Option<Heading> {
-        Heading::new(FRAC_PI_2 - yaw_rad + self.mount_rad).ok()
+        let clockwise_rad = if self.world.is_left_handed() { yaw_rad } else { FRAC_PI_2 - yaw_rad };
+        Heading::new(clockwise_rad + self.mount_rad).ok()
     }
 
     /// The body's up direction, in its own frame.
@@ -76,7 +87,7 @@ impl PoseAxes {
         match self.body {
             PoseBody::Robot => DVec3::Z,
             PoseBody::Optical => DVec3::NEG_Y,
-            PoseBody::OpenGl => DVec3::Y,
+            PoseBody::OpenGl | PoseBody::Unity => DVec3::Y,
         }
     }
 
@@ -84,7 +95,7 @@ impl PoseAxes {
     pub(crate) fn body_ahead(self) -> DVec3 {
         match self.body {
             PoseBody::Robot => DVec3::X,
-            PoseBody::Optical => DVec3::Z,
+            PoseBody::Optical | PoseBody::Unity => DVec3::Z,
             PoseBody::OpenGl => DVec3::NEG_Z,
         }
     }
@@ -104,6 +115,37 @@ impl WorldUpAxis {
             Self::ZUp => "z-up",
             Self::YUp => "y-up",
             Self::YDown => "y-down",
+            Self::Unity => "unity",
+            Self::Unreal => "unreal",
+        }
+    }
+
+    /// The direction that is up in it.
+    pub(crate) const fn up(self) -> DVec3 {
+        match self {
+            Self::ZUp | Self::Unreal => DVec3::Z,
+            Self::YUp | Self::Unity => DVec3::Y,
+            Self::YDown => DVec3::NEG_Y,
+        }
+    }
+
+    /// Whether it is the mirror image of a right-handed world.
+    pub(crate) const fn is_left_handed(self) -> bool {
+        matches!(self, Self::Unity | Self::Unreal)
+    }
+
+    /// Whether a turn about its vertical axis can be given as a yaw.
+    pub(crate) const fn has_yaw(self) -> bool {
+        matches!(self, Self::ZUp | Self::Unity | Self::Unreal)
+    }
+
+    /// The body that poses of such a world have, if the world decides it. Of a body only the directions ahead and up count, so a
+    /// robot's is also that of a camera of Unreal Engine.
+    pub(crate) const fn own_body(self) -> Option<PoseBody> {
+        match self {
+            Self::Unity => Some(PoseBody::Unity),
+            Self::Unreal => Some(PoseBody::Robot),
+            Self::ZUp | Self::YUp | Self::YDown => None,
         }
     }
 }
@@ -115,6 +157,7 @@ impl PoseBody {
             Self::Robot => "robot",
             Self::Optical => "optical",
             Self::OpenGl => "open-gl",
+            Self::Unity => "unity",
         }
     }
 }
@@ -174,6 +217,21 @@ mod tests {
         let axes = PoseAxes { world: WorldUpAxis::YDown, ..PoseAxes::for_body(PoseBody::Optical) };
         assert_eq!(deg(axes, [0.0, 0.0, 0.0, 1.0]) % 360.0, 0.0);
         assert_eq!(axes.wayword_from_recorded(DVec3::new(1.0, -2.0, 3.0)), DVec3::new(1.0, 3.0, 2.0));
+    }
+
+    #[test]
+    fn left_handed_worlds_are_mirrored() {
+        let unity = PoseAxes { world: WorldUpAxis::Unity, ..PoseAxes::for_body(PoseBody::Unity) };
+        // x right, y up, z ahead; a quarter about y turns to the right.
+        assert_eq!(unity.wayword_from_recorded(DVec3::new(1.0, 2.0, 3.0)), DVec3::new(1.0, 3.0, 2.0));
+        assert_eq!(deg(unity, [0.0, 0.0, 0.0, 1.0]) % 360.0, 0.0);
+        assert_eq!(deg(unity, [0.0, FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2]), 90.0);
+        assert_eq!(unity.heading_by_yaw(1.0).unwrap().rad(), 1.0);
+        let unreal = PoseAxes { world: WorldUpAxis::Unreal, ..PoseAxes::for_body(PoseBody::Robot) };
+        // x ahead, y right, z up; a quarter about z turns to the right.
+        assert_eq!(unreal.wayword_from_recorded(DVec3::new(1.0, 2.0, 3.0)), DVec3::new(2.0, 1.0, 3.0));
+        assert_eq!(deg(unreal, [0.0, 0.0, 0.0, 1.0]) % 360.0, 0.0);
+        assert_eq!(deg(unreal, [0.0, 0.0, FRAC_1_SQRT_2, FRAC_1_SQRT_2]), 90.0);
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! Reads the user's description of a recording: `recording.toml` in a folder, or `NAME.toml` for `NAME.mp4`.
 
-use crate::axes::{PoseAxes, PoseBody, WorldUpAxis};
+use crate::{
+    axes::{PoseAxes, PoseBody, WorldUpAxis},
+    pose_reading::{AngleUnit, NumberReading, PositionUnit, QuaternionOrder, TransformDirection},
+};
 use serde::Deserialize;
 use std::path::Path;
 #[cfg(any(feature = "mcap", feature = "video"))]
@@ -34,7 +37,7 @@ pub(crate) struct RecordingDescription {
     pub(crate) camera: Option<String>,
     /// The source of poses: a ROS topic, a feature of a LeRobot dataset, or a file in the pictures' folder.
     pub(crate) poses: Option<String>,
-    /// The direction that is up in the world of the poses.
+    /// The axes of the world of the poses.
     pub(crate) world: Option<WorldUpAxis>,
     /// The body to which the orientation of a pose belongs.
     pub(crate) orientation: Option<PoseBody>,
@@ -44,6 +47,16 @@ pub(crate) struct RecordingDescription {
     pub(crate) clock: Option<RecordingClock>,
     /// The part of a recording that is used, from 1, where its stamps begin again.
     pub(crate) part: Option<usize>,
+    /// The order of the numbers of a quaternion in a pose file that does not name its columns.
+    pub(crate) quaternion: Option<QuaternionOrder>,
+    /// Whether the poses of a file place the camera in the world, or are the inverse.
+    pub(crate) transform: Option<TransformDirection>,
+    /// The unit of the positions in a pose file.
+    pub(crate) unit: Option<PositionUnit>,
+    /// The unit of a yaw or a heading in a pose file whose column does not name it.
+    pub(crate) angle_unit: Option<AngleUnit>,
+    /// Added to the times in a pose file, to bring them onto the clock of the pictures, seconds.
+    pub(crate) pose_time_offset_s: Option<f64>,
     /// Pictures per second, for pictures without times.
     pub(crate) pictures_per_s: Option<f64>,
     /// Distance between frames, metres, where there are poses.
@@ -69,6 +82,7 @@ impl RecordingDescription {
             ("pictures_per_s", described.pictures_per_s, 1e-4..=1e4),
             ("interval_m", described.interval_m, 0.05..=100.0),
             ("interval_s", described.interval_s, 0.01..=3600.0),
+            ("pose_time_offset_s", described.pose_time_offset_s, -1e10..=1e10),
         ] {
             if let Some(number) = number.filter(|number| !bounds.contains(number)) {
                 let reason = format!("{name} = {number} is out of range ({} to {})", bounds.start(), bounds.end());
@@ -82,9 +96,31 @@ impl RecordingDescription {
     ///
     /// # Errors
     /// As [`RecordingDescription::read`].
-    #[cfg(any(feature = "mcap", feature = "video"))]
+    #[cfg(feature = "video")]
     pub(crate) fn read_beside(recording: &Path) -> Result<Self, PlatformError> {
         Self::read(&Self::file_beside(recording))
+    }
+
+    /// The same description, for a recording whose poses are not in a file of their own.
+    ///
+    /// # Errors
+    /// When it has a setting that only counts for pose files. `file` is its path.
+    #[cfg(any(feature = "mcap", feature = "lerobot"))]
+    pub(crate) fn refuse_pose_file_settings(self, file: &Path) -> Result<Self, PlatformError> {
+        let settings = [
+            ("quaternion", self.quaternion.is_some()),
+            ("transform", self.transform.is_some()),
+            ("unit", self.unit.is_some()),
+            ("angle_unit", self.angle_unit.is_some()),
+            ("pose_time_offset_s", self.pose_time_offset_s.is_some()),
+        ];
+        match settings.into_iter().find(|(_, is_set)| *is_set) {
+            Some((name, _)) => {
+                let reason = format!("{name} is for pose files, and this recording holds its poses itself");
+                Err(files::file_error(file, reason, DESCRIPTION_HINT))
+            }
+            None => Ok(self),
+        }
     }
 
     /// The path of a file's description: `NAME.toml` for `NAME.mp4` if it exists, else `recording.toml` in the same folder.
@@ -94,13 +130,30 @@ impl RecordingDescription {
         if same_stem_file.is_file() { same_stem_file } else { recording.with_file_name(FOLDER_FILE) }
     }
 
-    /// The axes of poses: the user's settings, and for the others `usual`, those of the format.
+    /// The axes of poses: the user's settings, and for the others `usual`, those of the format. A world that has a body of its own
+    /// sets the body too.
     pub(crate) fn axes_or_usual(&self, usual: PoseAxes) -> PoseAxes {
+        let own_body = self.world.and_then(WorldUpAxis::own_body);
         PoseAxes {
             world: self.world.unwrap_or(usual.world),
-            body: self.orientation.unwrap_or(usual.body),
+            body: self.orientation.or(own_body).unwrap_or(usual.body),
             mount_rad: self.mount_deg.map_or(usual.mount_rad, f64::to_radians),
         }
+    }
+
+    /// The order and direction of the numbers of poses: the user's settings, and for the others those of the format.
+    pub(crate) fn numbers_or_usual(&self, usual: NumberReading) -> NumberReading {
+        NumberReading {
+            order: self.quaternion.unwrap_or(usual.order),
+            direction: self.transform.unwrap_or(usual.direction),
+        }
+    }
+
+    /// The length of one unit of the positions, metres. Unreal Engine counts in centimetres.
+    pub(crate) fn metres_per_unit(&self) -> f64 {
+        let in_unreal = self.world == Some(WorldUpAxis::Unreal);
+        let usual = if in_unreal { PositionUnit::Centimetres } else { PositionUnit::Metres };
+        self.unit.unwrap_or(usual).metres()
     }
 }
 
@@ -132,6 +185,15 @@ mod tests {
         assert!(read("interval_m = 0").unwrap_err().contains("interval_m = 0"));
         assert!(read("horizontal_fov_deg = nan").unwrap_err().contains("horizontal_fov_deg"));
         assert!(read("interval = 1").unwrap_err().contains("interval"));
+    }
+
+    #[cfg(any(feature = "mcap", feature = "lerobot"))]
+    #[test]
+    fn settings_of_pose_files_are_refused_where_there_is_none() {
+        let refused = |text: &str| read(text).unwrap().refuse_pose_file_settings(Path::new("walk.toml"));
+        assert!(refused("world = \"unity\"").is_ok());
+        let error = refused("quaternion = \"wxyz\"").unwrap_err().to_string();
+        assert!(error.contains("quaternion is for pose files"), "{error}");
     }
 
     #[test]

@@ -3,8 +3,11 @@
 use crate::{
     describe::{self, DESCRIPTION_HINT, RecordingDescription},
     file_kind::RecordedFileKind,
-    names::{plain_files, scene_id_for_path, sorted_entries, unknown_scene},
-    poses,
+    names::{
+        PICTURE_FOLDERS, has_ending, is_picture_name, plain_files, scene_id_for_path, sorted_entries, unknown_scene,
+    },
+    photographs::NoPhotographs,
+    poses::{self, PicturePlace, PoseSource},
     reel::{PictureReel, Recording, RecordingSource, TakePicture},
 };
 use std::{
@@ -14,14 +17,14 @@ use std::{
 use wayword_core::{PlatformError, SceneId};
 use wayword_world::files;
 
-/// Subfolders in which datasets keep their pictures.
-pub(crate) const PICTURE_FOLDERS: [&str; 6] = ["rgb", "images", "color", "frames", "data", "image_2"];
 /// Words in the names of pictures that datasets have in addition to photographs.
 const NO_PHOTOGRAPHS: [&str; 6] = ["depth", "disparity", "mask", "normal", "segment", "semantic"];
 /// Endings of pictures that cannot be read.
 const UNREAD_ENDINGS: [&str; 8] = ["heic", "heif", "webp", "avif", "gif", "tif", "tiff", "bmp"];
 /// The list of pictures with their times that the RGB-D datasets of TUM have.
 const TUM_LIST_FILE: &str = "rgb.txt";
+/// The times of the pictures of a sequence of KITTI, seconds, one on each line.
+const KITTI_TIMES_FILE: &str = "times.txt";
 /// Largest list and largest picture file that are read, bytes; larger ones are errors.
 const MAX_LIST_BYTES: u64 = 64 << 20;
 const MAX_PICTURE_BYTES: u64 = 64 << 20;
@@ -48,13 +51,23 @@ impl PictureFolder {
         let places = std::iter::once(root.to_owned()).chain(PICTURE_FOLDERS.map(|name| root.join(name)));
         for pictures in places.filter(|place| place.is_dir()) {
             let mut names = sorted_entries(&pictures)?;
-            names.retain(|name| is_picture(name));
+            names.retain(|name| is_picture_name(name));
             let names = keep_photographs(names);
             if !names.is_empty() {
                 return Ok(Some(Self { scene: scene_id_for_path(root)?, root: root.to_owned(), pictures, names }));
             }
         }
         Ok(None)
+    }
+
+    /// What the pictures are, if they are no photographs; judged by a few of them.
+    pub(crate) fn no_photographs(&self) -> Option<NoPhotographs> {
+        NoPhotographs::in_folder(&self.pictures, &self.names)
+    }
+
+    fn find_poses(&self, described: &RecordingDescription) -> Result<Option<PoseSource>, PlatformError> {
+        let place = PicturePlace { root: &self.root, pictures: &self.pictures, names: &self.names };
+        place.find_poses(described)
     }
 
     /// The first file in the pictures' folder for which `is_wanted` is true, and the number of such files.
@@ -76,9 +89,22 @@ impl PictureFolder {
             });
         }
         let times_in_names: Option<Vec<f64>> = self.names.iter().map(|name| time_in_name(name)).collect();
-        let times = times_in_names
-            .unwrap_or_else(|| (0..self.names.len()).map(|number| number as f64 / pictures_per_s).collect());
+        let times = match times_in_names {
+            Some(times) => times,
+            None => self
+                .kitti_times()?
+                .unwrap_or_else(|| (0..self.names.len()).map(|number| number as f64 / pictures_per_s).collect()),
+        };
         Ok(times.into_iter().zip(self.names.iter().map(|name| self.pictures.join(name))).collect())
+    }
+
+    /// The times in KITTI's list, one for each picture; `None` if there is no such list.
+    fn kitti_times(&self) -> Result<Option<Vec<f64>>, PlatformError> {
+        let list = self.root.join(KITTI_TIMES_FILE);
+        let text = files::text_if_there(&list, MAX_LIST_BYTES, DESCRIPTION_HINT)?;
+        let times: Option<Vec<f64>> =
+            text.and_then(|text| text.split_whitespace().map(|word| word.parse().ok()).collect());
+        Ok(times.filter(|times| times.len() == self.names.len() && times.iter().all(|time_s| time_s.is_finite())))
     }
 }
 
@@ -96,9 +122,9 @@ impl RecordingSource for PictureFolder {
         timed.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (times_s, files) = timed.into_iter().unzip();
         let reel = FolderReel { times_s, files };
-        let poses = poses::find_pose_file(&self.root, &described)?;
-        let track =
-            poses.map(|file| poses::read_track(&file, &described, &reel.times_s, &|number| reel.picture_name(number)));
+        let track = self
+            .find_poses(&described)?
+            .map(|source| poses::read_source(&source, &described, &reel.times_s, &|number| reel.picture_name(number)));
         Ok(Recording { track: track.transpose()?, reel: Box::new(reel), horizontal_fov_rad: None, described })
     }
 
@@ -109,10 +135,9 @@ impl RecordingSource for PictureFolder {
         let description = self.root.join(describe::FOLDER_FILE);
         let described = RecordingDescription::read(&description)?;
         let pictures = self.timed_pictures(described.pictures_per_s.unwrap_or(1.0))?.into_iter().map(|(_, file)| file);
-        let beside = [description, self.root.join(TUM_LIST_FILE)]
-            .into_iter()
-            .chain(poses::find_pose_file(&self.root, &described)?);
-        Ok(plain_files(pictures.chain(beside)))
+        let poses = self.find_poses(&described)?.map(|source| source.files()).unwrap_or_default();
+        let beside = [description, self.root.join(TUM_LIST_FILE), self.root.join(KITTI_TIMES_FILE)];
+        Ok(plain_files(pictures.chain(beside).chain(poses)))
     }
 }
 
@@ -184,20 +209,10 @@ fn read_picture_list(text: &str, root: &Path) -> Result<Vec<(f64, PathBuf)>, Str
     read.collect()
 }
 
-/// Whether a file is a picture by its ending.
-fn is_picture(name: &str) -> bool {
-    let ending = Path::new(name).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    // macOS leaves "._x.jpg" next to "x.jpg" on foreign disks.
-    !name.starts_with('.') && ["png", "jpg", "jpeg"].iter().any(|known| ending.eq_ignore_ascii_case(known))
-}
-
 /// Whether a file is, by its ending, a photograph of a kind that cannot be read.
 pub(crate) fn is_unread_picture(name: &str) -> bool {
-    let ending = Path::new(name).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     // Datasets keep depth maps as TIFF, and these are not missing photographs.
-    !name.starts_with('.')
-        && !is_no_photograph(name)
-        && UNREAD_ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known))
+    !is_no_photograph(name) && has_ending(name, &UNREAD_ENDINGS)
 }
 
 /// Whether a picture is a depth map, a mask or the like by its name.
@@ -221,6 +236,11 @@ fn time_in_name(name: &str) -> Option<f64> {
     if digits && stem.starts_with('0') {
         return None;
     }
+    // ARKitScenes: the number of the scene, and the seconds.
+    let (digits, stem) = match stem.split_once('_') {
+        Some((scene, time)) if time.contains('.') && scene.bytes().all(|byte| byte.is_ascii_digit()) => (false, time),
+        _ => (digits, stem),
+    };
     let number: f64 = stem.parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0)?;
     let per_s = match (digits, stem.len()) {
         (false, _) => 1.0,
@@ -233,6 +253,8 @@ fn time_in_name(name: &str) -> Option<f64> {
     Some(number / per_s)
 }
 
+#[cfg(test)]
+mod layout_tests;
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -285,6 +307,7 @@ mod tests {
         let recording = open(stamped.path());
         assert!((recording.reel.times_s()[1] - 1_305_031_102.211_214).abs() < 1e-6);
         assert_eq!(time_in_name("1403636579763555584.png"), Some(1_403_636_579.763_555_6));
+        assert_eq!(time_in_name("40753679_6791.477.png"), Some(6791.477));
         assert_eq!(time_in_name("000012.png"), None);
         assert_eq!(time_in_name("0000000012.png"), None);
     }

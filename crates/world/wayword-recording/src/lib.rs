@@ -7,8 +7,9 @@
 //! # Where things are
 //! - `open`: which kind of recording a path is.
 //! - `file_kind`: files that cannot be read, by their first bytes, and the advice for each.
-//! - `poses/`: one file for each format of poses; `poses/mod.rs` has the names that are looked for, `axes` their conventions.
-//! - `pose_plausibility`: when poses are taken to be in another frame.
+//! - `poses/`: one file for each format of poses; `poses/find.rs` has the names that are looked for, `axes` their conventions.
+//! - `pose_reading`, `pose_plausibility`: the ways to read a pose, and when another way than the present one is likely.
+//! - `photographs`: which pictures are depth maps or masks.
 //! - `describe`: the keys of `recording.toml`.
 //! - `choose/`: which pictures become frames.
 //! - `mcap/topics.rs`, `lerobot/camera.rs`, `lerobot/pose_feature.rs`: which camera and which poses are taken.
@@ -34,10 +35,12 @@ mod lerobot;
 mod mcap;
 mod names;
 mod open;
+mod photographs;
 #[cfg(any(feature = "mcap", feature = "video"))]
 mod picture_size;
 mod platform;
 mod pose_plausibility;
+mod pose_reading;
 mod poses;
 mod reel;
 mod shelf;

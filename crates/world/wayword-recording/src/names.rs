@@ -13,6 +13,27 @@ const MAX_NAMED_SCENES: usize = 12;
 /// Most entries of a folder; more are an error.
 const MAX_ENTRIES: usize = 1_000_000;
 
+/// Subfolders in which datasets and phones' apps keep their pictures.
+pub(crate) const PICTURE_FOLDERS: [&str; 10] =
+    ["rgb", "images", "color", "frames", "data", "image_2", "image_0", "rgbd", "results", "lowres_wide"];
+
+/// Whether a file is a picture that can be read, by its ending.
+pub(crate) fn is_picture_name(name: &str) -> bool {
+    has_ending(name, &["png", "jpg", "jpeg"])
+}
+
+/// Whether a file is a video that can be read, by its ending.
+pub(crate) fn is_video_name(name: &str) -> bool {
+    has_ending(name, &["mp4", "m4v", "mov"])
+}
+
+/// Whether a name ends in one of these ways.
+pub(crate) fn has_ending(name: &str, endings: &[&str]) -> bool {
+    let ending = Path::new(name).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    // macOS leaves "._x.jpg" next to "x.jpg" on foreign disks.
+    !name.starts_with('.') && endings.iter().any(|known| ending.eq_ignore_ascii_case(known))
+}
+
 /// The scene name of a recording, from the name of its file or folder.
 pub(crate) fn scene_id_for_path(path: &Path) -> Result<SceneId, PlatformError> {
     let name = if path.is_dir() { path.file_name() } else { path.file_stem() };

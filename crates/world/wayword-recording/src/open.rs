@@ -4,8 +4,8 @@
 use crate::describe::RecordingDescription;
 use crate::{
     file_kind::{self, RecordedFileKind, UnreadRecordings},
-    folder::{PICTURE_FOLDERS, PictureFolder, is_unread_picture},
-    names::{scene_id_for_path, sorted_entries},
+    folder::{PictureFolder, is_unread_picture},
+    names::{PICTURE_FOLDERS, has_ending, is_video_name, scene_id_for_path, sorted_entries},
     reel::{Recording, RecordingSource},
     shelf::RecordingShelf,
 };
@@ -19,21 +19,43 @@ use wayword_world::files;
 const RECORDING_HINT: &str =
     "give a folder of pictures (PNG, JPEG), a folder of recordings, a LeRobot dataset, or a .mp4 or .mcap file";
 
+/// The folder in which EuRoC's and TUM-VI's sequences have their sensors.
+const EUROC_FOLDER: &str = "mav0";
+
 /// Opens a path: one recording, or a folder with several. `hear` gets a line for each file that is skipped.
 pub(crate) fn open_source(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn RecordingSource>, PlatformError> {
-    if let Some(source) = open_one(path)? {
-        return Ok(source);
+    if let Some(found) = open_one(path)? {
+        return Ok(found.into_source());
     }
     if !path.is_dir() {
         return Err(no_recording(path));
     }
-    let (mut sources, mut unknown_entries, mut broken) = (Vec::new(), Vec::new(), Vec::new());
+    // EuRoC and TUM-VI keep the folders of their cameras one folder deeper.
+    let sensors = path.join(EUROC_FOLDER);
+    if sensors.is_dir() {
+        return open_source(&sensors, hear);
+    }
+    let (mut sources, mut no_photographs) = (Vec::new(), Vec::new());
+    let (mut unknown_entries, mut broken) = (Vec::new(), Vec::new());
     // macOS leaves "._x.mp4" next to "x.mp4" on foreign disks, and file managers leave hidden folders of thumbnails.
     for entry in sorted_entries(path)?.into_iter().filter(|name| !name.starts_with('.')) {
         match open_one(&path.join(&entry)) {
-            Ok(Some(source)) => sources.push(source),
+            Ok(Some(RecordingEntry::Pictures(folder))) => match folder.no_photographs() {
+                Some(what) => no_photographs.push((entry, what, folder)),
+                None => sources.push(Box::new(folder) as Box<dyn RecordingSource>),
+            },
+            Ok(Some(RecordingEntry::Other(source))) => sources.push(source),
             Ok(None) => unknown_entries.push(entry),
             Err(error) => broken.push((entry, error)),
+        }
+    }
+    // Depth maps and masks belong to the photographs or the video beside them. Alone, they are what the user wants.
+    let is_alone = sources.is_empty() && broken.is_empty();
+    for (entry, what, folder) in no_photographs {
+        if is_alone {
+            sources.push(Box::new(folder));
+        } else {
+            hear(&format!("{entry} is skipped: it holds {}, and photographs or a video lie beside it", what.words()));
         }
     }
     if sources.is_empty() {
@@ -86,7 +108,7 @@ fn no_recording(path: &Path) -> PlatformError {
 /// # Errors
 /// When there is none, or it cannot be opened.
 fn open_recording(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
-    open_one(path)?.ok_or_else(|| no_recording(path))
+    open_one(path)?.map(RecordingEntry::into_source).ok_or_else(|| no_recording(path))
 }
 
 /// A recording that could not be opened when its folder was listed. A run that uses it opens it again, and reports the error
@@ -110,11 +132,27 @@ impl RecordingSource for UnopenedRecording {
     }
 }
 
-/// The source at a path; `None` where there is none.
-fn open_one(path: &Path) -> Result<Option<Box<dyn RecordingSource>>, PlatformError> {
+/// A recording at a path.
+enum RecordingEntry {
+    Pictures(PictureFolder),
+    Other(Box<dyn RecordingSource>),
+}
+
+impl RecordingEntry {
+    fn into_source(self) -> Box<dyn RecordingSource> {
+        match self {
+            Self::Pictures(folder) => Box::new(folder),
+            Self::Other(source) => source,
+        }
+    }
+}
+
+/// The recording at a path; `None` where there is none.
+fn open_one(path: &Path) -> Result<Option<RecordingEntry>, PlatformError> {
+    let other = |source| Some(RecordingEntry::Other(source));
     if path.is_dir() {
         if path.join("meta").join("info.json").is_file() {
-            return open_lerobot(path).map(Some);
+            return open_lerobot(path).map(other);
         }
         if let Some(bag) = open_bag(path)? {
             return Ok(Some(bag));
@@ -135,14 +173,14 @@ fn open_one(path: &Path) -> Result<Option<Box<dyn RecordingSource>>, PlatformErr
             let hint = RecordedFileKind::from_file(&file).map_or("move it away", |kind| kind.hint);
             return Err(files::file_error(path, reason, hint));
         }
-        return Ok(Some(Box::new(folder)));
+        return Ok(Some(RecordingEntry::Pictures(folder)));
     }
     if !path.is_file() {
         return Ok(None);
     }
     match file_ending(path).as_str() {
-        "mp4" | "m4v" | "mov" => open_video(path).map(Some),
-        "mcap" => open_mcap(path).map(Some),
+        "mp4" | "m4v" | "mov" => open_video(path).map(other),
+        "mcap" => open_mcap(path).map(other),
         _ => Ok(None),
     }
 }
@@ -154,12 +192,13 @@ fn file_ending(path: &Path) -> String {
 
 /// Whether a file is, by its ending, a video or an MCAP file, which this program opens as a recording of its own.
 fn is_recording_file(name: &str) -> bool {
-    !name.starts_with('.') && matches!(file_ending(Path::new(name)).as_str(), "mp4" | "m4v" | "mov" | "mcap")
+    is_video_name(name) || has_ending(name, &["mcap"])
 }
 
 #[cfg(feature = "lerobot")]
 fn open_lerobot(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
-    let described = RecordingDescription::read(&path.join(crate::describe::FOLDER_FILE))?;
+    let file = path.join(crate::describe::FOLDER_FILE);
+    let described = RecordingDescription::read(&file)?.refuse_pose_file_settings(&file)?;
     Ok(Box::new(crate::lerobot::LeRobotDataset::open(path, described)?))
 }
 
@@ -180,7 +219,9 @@ fn open_video(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
 
 #[cfg(feature = "mcap")]
 fn open_mcap(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
-    Ok(Box::new(crate::mcap::McapFile::open(path, RecordingDescription::read_beside(path)?)?))
+    let file = RecordingDescription::file_beside(path);
+    let described = RecordingDescription::read(&file)?.refuse_pose_file_settings(&file)?;
+    Ok(Box::new(crate::mcap::McapFile::open(path, described)?))
 }
 
 /// The recording of a rosbag2 folder. A single file keeps its own name.
@@ -309,6 +350,31 @@ mod tests {
             heard[1].starts_with("c is skipped: 1.heic is an HEIC picture, which cannot be read as it is; "),
             "{heard:?}"
         );
+    }
+
+    #[test]
+    fn open_skips_depth_maps_and_masks_beside_photographs_and_tells_it() {
+        let shelf = tempfile::tempdir().unwrap();
+        let save = |file: &str, picture: image::DynamicImage| {
+            let file = shelf.path().join(file);
+            std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+            picture.save(file).unwrap();
+        };
+        let depth = image::ImageBuffer::from_fn(8, 8, |x, y| image::Luma([(x * 300 + y) as u16]));
+        save("ahead/1.png", image::DynamicImage::ImageLuma16(depth));
+        let scenes = |hear: &dyn Fn(&str)| -> Vec<String> {
+            let source = open_source(shelf.path(), hear).unwrap();
+            source.scenes().iter().map(ToString::to_string).collect()
+        };
+        assert_eq!(scenes(&|_| ()), ["ahead"], "alone, they are what the user wants");
+        save("sure/1.png", image::DynamicImage::new_luma8(8, 8));
+        let photograph = image::ImageBuffer::from_fn(8, 8, |x, y| image::Rgb([x as u8 * 9, y as u8, 7]));
+        save("walk/1.png", image::DynamicImage::ImageRgb8(photograph));
+        let heard = std::cell::RefCell::new(Vec::new());
+        assert_eq!(scenes(&|line| heard.borrow_mut().push(line.to_owned())), ["walk"]);
+        let heard = heard.into_inner();
+        assert!(heard[0].starts_with("ahead is skipped: it holds depth maps"), "{heard:?}");
+        assert!(heard[1].starts_with("sure is skipped: it holds masks") && heard.len() == 2, "{heard:?}");
     }
 
     #[test]

@@ -4,7 +4,7 @@
 
 use crate::{
     choose::{FrameChoice, candidate_pictures, choose_frames},
-    open,
+    open, poses,
     reel::{Recording, RecordingSource},
     track::CameraTrack,
 };
@@ -93,6 +93,11 @@ impl RecordingPlatform {
             })?;
             (self.hear)(&describe_choice(scene, &recording, &choice));
             recording.reel.remarks().iter().for_each(|remark| (self.hear)(remark));
+            if recording.track.is_none() && recording.described.poses.is_none() {
+                for line in poses::describe_unread(&self.path, &self.source.files(scene)?) {
+                    (self.hear)(&line);
+                }
+            }
             if let Some(doubt) = recording.track.as_ref().and_then(CameraTrack::doubt) {
                 (self.hear)(doubt);
             }

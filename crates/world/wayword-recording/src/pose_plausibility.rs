@@ -1,48 +1,40 @@
-//! Checks whether poses are plausible with the axes by which they are read: those of the world and those of the body that
-//! carries the camera. People and robots move on a level plane with their cameras upright.
+//! Checks whether poses are plausible as they are read. People and robots move on a level plane, hold their cameras upright and
+//! look where they go.
 //!
 //! Stairs climb at 35 degrees. If a path goes straight up again and again and hardly leaves a vertical plane, it was read
-//! in the wrong axes, or it is the path of a drone or a lift. Whether the cameras are upright decides between the two. The
-//! user's settings `world` and `orientation` in a `recording.toml` are not questioned.
+//! in the wrong axes, or it is the path of a drone or a lift. Whether the cameras are upright decides between the two. Another
+//! reading is only advised if with it the cameras are upright, look along the path, and the path does not climb. The user's
+//! settings in a `recording.toml` are not questioned, except where the cameras hang upside down: no picture shows that, and in a
+//! mirrored world left and right would be swapped.
+//!
+//! Some readings differ only in left and right, or in up and down ([`axis_words`]). Poses cannot tell these apart, so all that fit
+//! are named.
+
+mod walk;
+
+pub(crate) use walk::{PoseSample, RecordedWalk};
 
 use crate::{
     axes::{PoseAxes, PoseBody, WorldUpAxis},
     describe::RecordingDescription,
+    pose_reading::{NumberReading, PoseReading},
 };
-use wayword_core::DVec3;
 
 /// Shorter paths are not judged, metres.
 const MIN_PATH_M: f64 = 3.0;
-/// Least length of a step of a path, metres: shorter ones are the tracker's noise.
-const MIN_STEP_M: f64 = 0.4;
-/// Steps that rise or fall by more than this share of their length are steeper than stairs and ramps (55 degrees).
-const STEEP_SHARE: f64 = 0.82;
-/// A path climbs if steep steps make up at least this share of its length. A single ladder makes up less.
-const CLIMBING_SHARE: f64 = 0.25;
-/// A path is level if it rises by at most this, metres, or by this share of its longest side.
-const MAX_LEVEL_RISE_M: f64 = 0.5;
-const MAX_LEVEL_RISE_SHARE: f64 = 0.08;
-/// A camera is upright if its own up direction is within 60 degrees of the vertical (this is the cosine).
-const UPRIGHT_COSINE: f64 = 0.5;
-/// Cameras are upright in at least this share of the poses, if these are read with the right axes.
-const UPRIGHT_POSES_SHARE: f64 = 0.9;
 /// Other axes are only suggested if the cameras are this upright on average with them (the cosine of 37 degrees).
 const WELL_UPRIGHT: f64 = 0.8;
-/// Least share of the poses that must have an orientation.
-const LEAST_ORIENTED_SHARE: f64 = 0.8;
+/// Another reading is only suggested if with it the camera looks along the path at least this much.
+const LOOKS_AHEAD: f64 = 0.7;
+/// Readings that fit worse than the best by more than this are not suggested: the sum of both measures.
+const FIT_SLACK: f64 = 0.1;
+/// Most readings that an error lists.
+const MAX_LISTED_READINGS: usize = 6;
 
-/// A pose as it was recorded.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct PoseSample {
-    pub(crate) position: DVec3,
-    /// recorded_from_body by its columns, if the pose has an orientation.
-    pub(crate) recorded_from_body: Option<[DVec3; 3]>,
-}
-
-/// Why poses are probably read with the wrong axes.
+/// Why poses are probably misread.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum PoseDoubt {
-    /// With other axes the path is plausible: the user has to choose.
+    /// With another reading the path is plausible, or with this one it cannot be right: the user has to choose.
     Misread(String),
     /// The path is unusual, but may be right.
     Odd(String),
@@ -58,48 +50,33 @@ impl PoseDoubt {
     }
 }
 
-/// The doubt about poses, in the order of their times, if they are read with these axes.
+/// The doubt about poses whose numbers have one reading, in the order of their times, if they are read with these axes.
+#[cfg(any(feature = "lerobot", feature = "mcap", test))]
 pub(crate) fn find_doubt(
     samples: &[PoseSample],
     axes: PoseAxes,
     described: &RecordingDescription,
 ) -> Option<PoseDoubt> {
-    let walk = RecordedWalk::from_samples(samples).filter(|walk| walk.length_m >= MIN_PATH_M)?;
+    let walk = RecordedWalk::from_samples(samples.iter().copied())?;
+    find_doubt_among(&[(NumberReading::default(), walk)], axes, described)
+}
+
+/// The doubt about poses: `walks` holds the walk for each possible reading of the numbers, and first the one that is used.
+pub(crate) fn find_doubt_among(
+    walks: &[(NumberReading, RecordedWalk)],
+    axes: PoseAxes,
+    described: &RecordingDescription,
+) -> Option<PoseDoubt> {
+    let (numbers, walk) = walks.first().filter(|(_, walk)| walk.length_m() >= MIN_PATH_M)?;
     let climbs = walk.is_climbing(axes.world) && !walk.is_level(axes.world);
-    let is_upright = walk.is_upright(axes);
-    if is_upright == Some(true) && !climbs {
-        return None;
+    if !walk.is_oriented() {
+        return if climbs { find_plane_doubt(walk, axes, described) } else { None };
     }
-    if let Some(likely) = likely_axes(&walk, axes, described) {
-        let oddity = match (is_upright == Some(true), climbs) {
-            (true, _) => "the path climbs straight up",
-            (false, true) => "the camera lies on its side and the path climbs straight up",
-            (false, false) => "the camera lies on its side",
-        };
-        let words = format!(
-            "read with {}, {oddity}; read with {}, the camera is upright and the path is level. Write {} into a \
-             recording.toml beside it, or {} if the poses are right as they are",
-            axes_setting(axes),
-            axes_setting(likely),
-            changed_settings(axes, likely),
-            axes_setting(axes)
-        );
-        // A drone may look straight down or go straight up, and a phone may be turned on its side. Only both together are
-        // certain.
-        let is_misread = climbs && is_upright == Some(false) && likely.world != axes.world;
-        return Some(if is_misread { PoseDoubt::Misread(words) } else { PoseDoubt::Odd(words) });
+    let review = PoseReview { walks, present: PoseReading { numbers: *numbers, axes }, described };
+    if walk.mean_up(axes) <= -WELL_UPRIGHT {
+        return Some(review.doubt_upside_down());
     }
-    match is_upright {
-        Some(true) => None,
-        Some(false) => walk.mean_up(axes).filter(|upright| *upright <= -WELL_UPRIGHT).map(|_| {
-            PoseDoubt::Odd(format!(
-                "read with {}, the camera is upside down: set `world` and `orientation` in a recording.toml, or \
-                 rotate the poses so that z is up",
-                axes_setting(axes)
-            ))
-        }),
-        None => find_plane_doubt(&walk, axes, described).filter(|_| climbs),
-    }
+    review.doubt_present(walk, walk.is_upright(axes), climbs)
 }
 
 /// The doubt about positions alone: they stay in a plane that would be level in another world.
@@ -107,139 +84,174 @@ fn find_plane_doubt(walk: &RecordedWalk, axes: PoseAxes, described: &RecordingDe
     let is_likely = |world: &WorldUpAxis| *world != axes.world && walk.is_level(*world) && !walk.is_climbing(*world);
     let likely =
         [WorldUpAxis::ZUp, WorldUpAxis::YUp].into_iter().find(is_likely).filter(|_| described.world.is_none())?;
-    let (now, likely) = (world_setting(axes.world), world_setting(likely));
+    let others = if likely == WorldUpAxis::YUp {
+        "y-down if y grows downwards, unity if the world is left-handed: positions alone do not show which, and a wrong \
+         one swaps left and right"
+    } else {
+        "unreal if the world is left-handed"
+    };
+    let (now, likely) = (axes.world.name(), likely.name());
     Some(PoseDoubt::Odd(format!(
-        "read with {now}, the path climbs and falls {:.1} m; read with {likely}, it stays level. If that is right, \
-         write {likely} into a recording.toml beside it (y-down if y grows downwards), else write {now}",
+        "read with world = \"{now}\", the path climbs and falls {:.1} m; read with world = \"{likely}\", it stays \
+         level. If that is right, write world = \"{likely}\" into a recording.toml beside it ({others}), else write \
+         world = \"{now}\"",
         walk.climbed_m(axes.world)
     )))
 }
 
-/// Other axes with which the cameras are upright and the path does not climb. Those that differ least from the present axes come
-/// first, then those with which the camera looks in the direction of movement.
-fn likely_axes(walk: &RecordedWalk, axes: PoseAxes, described: &RecordingDescription) -> Option<PoseAxes> {
-    let worlds = [WorldUpAxis::ZUp, WorldUpAxis::YUp, WorldUpAxis::YDown].into_iter();
-    let worlds = worlds.filter(|world| *world == axes.world || described.world.is_none());
-    let all = worlds.flat_map(|world| {
-        [PoseBody::Robot, PoseBody::Optical, PoseBody::OpenGl].map(|body| PoseAxes { world, body, ..axes })
-    });
-    let allowed = all.filter(|other| *other != axes && (other.body == axes.body || described.orientation.is_none()));
-    let fits = |other: &PoseAxes| {
-        walk.mean_up(*other).is_some_and(|upright| upright >= WELL_UPRIGHT) && !walk.is_climbing(other.world)
-    };
-    let changes = |other: &PoseAxes| usize::from(other.world != axes.world) + usize::from(other.body != axes.body);
-    allowed
-        .filter(fits)
-        .min_by(|a, b| changes(a).cmp(&changes(b)).then(walk.distance_ahead(*b).total_cmp(&walk.distance_ahead(*a))))
+/// The doubt about the hand of a world with y up whose walk turns: of positions alone, nobody can tell Unity's from others.
+pub(crate) fn find_hand_doubt(walk: &RecordedWalk, world: WorldUpAxis) -> Option<PoseDoubt> {
+    let is_in_doubt = world == WorldUpAxis::YUp && walk.length_m() >= MIN_PATH_M && walk.bends();
+    is_in_doubt.then(|| {
+        PoseDoubt::Odd(
+            "has positions only, and these do not show whether the world is left-handed. With world = \"y-up\" it is \
+             read as right-handed (ARKit, OpenGL); if it is Unity's, write world = \"unity\", else left and right are swapped"
+                .to_owned(),
+        )
+    })
 }
 
-/// A path in the frame of its recording.
-struct RecordedWalk {
-    /// At least a step apart.
-    places: Vec<DVec3>,
-    length_m: f64,
-    /// Orientations at those places; empty if too few poses have one.
-    recorded_from_body: Vec<[DVec3; 3]>,
+/// Poses with orientations, the way they are read, and the other ways.
+struct PoseReview<'a> {
+    walks: &'a [(NumberReading, RecordedWalk)],
+    present: PoseReading,
+    described: &'a RecordingDescription,
 }
 
-impl RecordedWalk {
-    fn from_samples(samples: &[PoseSample]) -> Option<Self> {
-        let mut places: Vec<DVec3> = Vec::new();
-        let mut orientations = Vec::new();
-        for sample in samples.iter().filter(|sample| sample.position.is_finite()) {
-            if places.last().is_none_or(|last: &DVec3| last.distance(sample.position) >= MIN_STEP_M) {
-                places.push(sample.position);
-                orientations.extend(sample.recorded_from_body);
+impl PoseReview<'_> {
+    /// Cameras hang upside down: whatever the user set is wrong, so all other readings are tried.
+    fn doubt_upside_down(&self) -> PoseDoubt {
+        let fitting = self.fitting_readings(|_| true);
+        let now = self.present.all_settings();
+        PoseDoubt::Misread(if fitting.is_empty() {
+            format!(
+                "read with {now}, the camera is upside down. Set `world` and `orientation` in a recording.toml; if the \
+                 world is left-handed, \"unity\" or \"unreal\""
+            )
+        } else {
+            format!(
+                "read with {now}, the camera is upside down. {}",
+                self.advice(&fitting, "into a recording.toml beside it", None)
+            )
+        })
+    }
+
+    /// The doubt about the present reading, with which the cameras do not hang upside down.
+    fn doubt_present(&self, walk: &RecordedWalk, is_upright: bool, climbs: bool) -> Option<PoseDoubt> {
+        let ahead = walk.ahead_share(self.present.axes);
+        if is_upright && !climbs && ahead >= LOOKS_AHEAD && walk.mean_up(self.present.axes) >= WELL_UPRIGHT {
+            return None;
+        }
+        let oddity = match (is_upright, climbs) {
+            (true, true) => "the path climbs straight up",
+            (false, true) => "the camera lies on its side and the path climbs straight up",
+            (false, false) => "the camera lies on its side",
+            (true, false) => "the camera looks away from the path",
+        };
+        // Once the camera has turned, hardly any wrong reading keeps it upright and ahead: a camera that looks to the side, back or
+        // down, or is held on its side, has none.
+        if walk.has_turn() {
+            let fitting = self.fitting_readings(|other| self.is_allowed(other));
+            if !fitting.is_empty() {
+                return Some(PoseDoubt::Misread(self.describe(&fitting, oddity)));
             }
         }
-        if (orientations.len() as f64) < LEAST_ORIENTED_SHARE * places.len() as f64 {
-            orientations.clear();
+        // On a straight walk, numbers in another order fit by chance, and so may the axes of another body.
+        let has_same_numbers = |other: &PoseReading| other.numbers == self.present.numbers;
+        if is_upright && !climbs {
+            let fitting = self.fitting_readings(has_same_numbers);
+            let looks_back = ahead <= -LOOKS_AHEAD && walk.has_turn() && !fitting.is_empty();
+            return looks_back.then(|| PoseDoubt::Odd(self.describe(&fitting, "the camera looks back along the path")));
         }
-        let length_m = places.array_windows().map(|[from, to]| from.distance(*to)).sum();
-        (!places.is_empty()).then_some(Self { places, length_m, recorded_from_body: orientations })
+        let fitting = self.fitting_readings(|other| self.is_allowed(other) && has_same_numbers(other));
+        let first = fitting.first()?;
+        let words = self.describe(&fitting, oddity);
+        let is_certain = climbs && !is_upright && first.axes.world != self.present.axes.world;
+        Some(if is_certain { PoseDoubt::Misread(words) } else { PoseDoubt::Odd(words) })
     }
 
-    /// The way from each place to the next.
-    fn steps(&self) -> impl Iterator<Item = DVec3> {
-        self.places.array_windows().map(|[from, to]| *to - *from)
+    /// Whether the user's settings leave a reading open.
+    fn is_allowed(&self, other: &PoseReading) -> bool {
+        let present = self.present.axes;
+        (self.described.world.is_none() || other.axes.world == present.world)
+            && (self.described.orientation.is_none() || other.axes.body == present.body)
     }
 
-    /// The vertical component of the camera's up direction, pose by pose; empty if too few poses have an orientation.
-    fn up_components(&self, axes: PoseAxes) -> impl Iterator<Item = f64> {
-        self.recorded_from_body
-            .iter()
-            .map(move |columns| axes.wayword_from_recorded(recorded_direction(columns, axes.body_up())).z)
+    /// The other readings with which the cameras are upright and look along a path that does not climb, without those that fit
+    /// clearly worse than the best. Those that differ least from the present one come first.
+    fn fitting_readings(&self, is_wanted: impl Fn(&PoseReading) -> bool) -> Vec<PoseReading> {
+        let mut fitting = Vec::new();
+        for (numbers, walk) in self.walks {
+            let all = candidate_axes(self.present.axes).map(|axes| PoseReading { numbers: *numbers, axes });
+            for other in all.filter(|other| *other != self.present && is_wanted(other)) {
+                let (up, ahead) = (walk.mean_up(other.axes), walk.ahead_share(other.axes));
+                let fits = walk.is_upright(other.axes) && up >= WELL_UPRIGHT && ahead >= LOOKS_AHEAD;
+                if fits && !walk.is_climbing(other.axes.world) {
+                    fitting.push((up + ahead, other));
+                }
+            }
+        }
+        let best = fitting.iter().map(|(fit, _)| *fit).fold(0.0, f64::max);
+        fitting.retain(|(fit, _)| *fit >= best - FIT_SLACK);
+        let mut fitting: Vec<PoseReading> = fitting.into_iter().map(|(_, other)| other).collect();
+        fitting.sort_by_key(|other| other.count_changes(self.present));
+        fitting.truncate(MAX_LISTED_READINGS);
+        fitting
     }
 
-    /// The mean of [`RecordedWalk::up_components`].
-    fn mean_up(&self, axes: PoseAxes) -> Option<f64> {
-        (!self.recorded_from_body.is_empty())
-            .then(|| self.up_components(axes).sum::<f64>() / self.recorded_from_body.len() as f64)
+    /// What is wrong with the present reading, and the settings to write.
+    fn describe(&self, fitting: &[PoseReading], oddity: &str) -> String {
+        let now = self.present.all_settings();
+        let as_is = self.present.settings_against(fitting);
+        let file = "into a recording.toml beside it";
+        let likely = match fitting {
+            [only] => format!("read with {}, ", only.all_settings()),
+            _ => "read in another way, ".to_owned(),
+        };
+        format!(
+            "read with {now}, {oddity}; {likely}the camera is upright and the path is level. {}",
+            self.advice(fitting, file, Some(&as_is))
+        )
     }
 
-    /// Whether the camera is upright in most of the poses; `None` if too few of them have an orientation.
-    fn is_upright(&self, axes: PoseAxes) -> Option<bool> {
-        let upright = self.up_components(axes).filter(|up| *up >= UPRIGHT_COSINE).count();
-        (!self.recorded_from_body.is_empty())
-            .then_some(upright as f64 >= UPRIGHT_POSES_SHARE * self.recorded_from_body.len() as f64)
-    }
-
-    /// Distance that the steps cover in the camera's view direction, metres.
-    fn distance_ahead(&self, axes: PoseAxes) -> f64 {
-        self.steps()
-            .zip(&self.recorded_from_body)
-            .map(|(step, columns)| recorded_direction(columns, axes.body_ahead()).dot(step))
-            .sum()
-    }
-
-    /// Whether a large part of the path goes straight up or down.
-    fn is_climbing(&self, world: WorldUpAxis) -> bool {
-        let up = up_direction(world);
-        let steep = self.steps().filter(|step| step.dot(up).abs() > STEEP_SHARE * step.length());
-        steep.map(DVec3::length).sum::<f64>() >= CLIMBING_SHARE * self.length_m
-    }
-
-    /// The distance that the path rises plus the distance that it falls, metres.
-    fn climbed_m(&self, world: WorldUpAxis) -> f64 {
-        self.steps().map(|step| step.dot(up_direction(world)).abs()).sum()
-    }
-
-    /// Whether the path stays in a plane that is level in a world.
-    fn is_level(&self, world: WorldUpAxis) -> bool {
-        let low = self.places.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = self.places.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-        let extent = high - low;
-        extent.dot(up_direction(world)).abs() <= MAX_LEVEL_RISE_M.max(MAX_LEVEL_RISE_SHARE * extent.max_element())
-    }
-}
-
-/// A direction in the body's frame, turned into the recorded frame by the columns of recorded_from_body.
-fn recorded_direction([x, y, z]: &[DVec3; 3], of_body: DVec3) -> DVec3 {
-    *x * of_body.x + *y * of_body.y + *z * of_body.z
-}
-
-/// The up direction in the recorded frame.
-fn up_direction(world: WorldUpAxis) -> DVec3 {
-    match world {
-        WorldUpAxis::ZUp => DVec3::Z,
-        WorldUpAxis::YUp => DVec3::Y,
-        WorldUpAxis::YDown => DVec3::NEG_Y,
+    /// The settings to write for each reading that fits; `as_is` are those with which nothing changes.
+    fn advice(&self, fitting: &[PoseReading], file: &str, as_is: Option<&str>) -> String {
+        let keep = as_is.map_or(String::new(), |now| format!(", or {now} if the poses are right as they are"));
+        let settings = |other: &PoseReading| other.settings_from(self.present, self.described.orientation.is_some());
+        match fitting {
+            [only] => format!("Write {} {file}{keep}", settings(only)),
+            _ => {
+                let each = fitting.iter().map(|other| format!("{} ({})", settings(other), axis_words(other.axes)));
+                let each = each.collect::<Vec<_>>().join(", or ");
+                format!(
+                    "These fit, and the poses do not show which is right: one turns the others' climbs into descents or \
+                     their left into right. Write {each} {file}{keep}"
+                )
+            }
+        }
     }
 }
 
-fn world_setting(world: WorldUpAxis) -> String {
-    format!("world = \"{}\"", world.name())
+/// All axes that are tried in place of others. Unreal Engine's world is left out: it differs from a robot's only in left and right.
+fn candidate_axes(present: PoseAxes) -> impl Iterator<Item = PoseAxes> {
+    let right_handed = [WorldUpAxis::ZUp, WorldUpAxis::YUp, WorldUpAxis::YDown].into_iter();
+    let right_handed =
+        right_handed.flat_map(|world| [PoseBody::Robot, PoseBody::Optical, PoseBody::OpenGl].map(|body| (world, body)));
+    let unity = (WorldUpAxis::Unity, PoseBody::Unity);
+    let own = (present.world, present.body);
+    let all = right_handed.chain([unity]).chain((present.world == WorldUpAxis::Unreal).then_some(own));
+    all.map(move |(world, body)| PoseAxes { world, body, ..present })
 }
 
-fn axes_setting(axes: PoseAxes) -> String {
-    format!("world = \"{}\" and orientation = \"{}\"", axes.world.name(), axes.body.name())
-}
-
-/// The settings that differ between two sets of axes, as they are written in `recording.toml`.
-fn changed_settings(from: PoseAxes, to: PoseAxes) -> String {
-    let world = (from.world != to.world).then(|| world_setting(to.world));
-    let body = (from.body != to.body).then(|| format!("orientation = \"{}\"", to.body.name()));
-    world.into_iter().chain(body).collect::<Vec<_>>().join(" and ")
+/// How the axes of a reading lie, for a user who has to choose.
+const fn axis_words(axes: PoseAxes) -> &'static str {
+    match axes.world {
+        WorldUpAxis::ZUp => "z points up",
+        WorldUpAxis::YUp => "y points up",
+        WorldUpAxis::YDown => "y points down",
+        WorldUpAxis::Unity => "left-handed, y points up: Unity",
+        WorldUpAxis::Unreal => "left-handed, z points up: Unreal Engine",
+    }
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::*;
 use std::f64::consts::FRAC_PI_2;
+use wayword_core::DVec3;
 
 /// A path in a world with z up: its places, with an OpenGL camera that looks along each step, tilted down by some
 /// radians.
@@ -70,9 +71,15 @@ fn both_settings_are_named_where_both_are_wrong() {
 }
 
 #[test]
-fn a_body_that_is_taken_for_another_is_odd() {
-    let Some(PoseDoubt::Odd(words)) = found(&level(), PoseAxes::for_body(PoseBody::Robot)) else { panic!("it is odd") };
+fn a_body_that_is_taken_for_another_is_refused_where_the_walk_turns() {
+    let Some(PoseDoubt::Misread(words)) = found(&level(), PoseAxes::for_body(PoseBody::Robot)) else {
+        panic!("it is misread")
+    };
     assert!(words.contains("Write orientation = \"open-gl\" into"), "{words}");
+    // On a straight walk it may be chance.
+    let straight = walk(&[[0.0, 0.0, 1.5], [0.0, 8.0, 1.5]], 0.2);
+    let told = found(&straight, PoseAxes::for_body(PoseBody::Robot));
+    assert!(matches!(&told, Some(PoseDoubt::Odd(words)) if words.contains("orientation = \"open-gl\"")), "{told:?}");
 }
 
 #[test]
@@ -118,13 +125,67 @@ fn drones_and_lifts_are_not_refused() {
 }
 
 #[test]
-fn a_camera_on_its_head_is_odd_and_a_short_walk_is_not_judged() {
+fn a_camera_on_its_head_is_refused_whatever_the_user_set_and_a_short_walk_is_not_judged() {
     let upside_down = level().into_iter().map(|sample| {
         let held = sample.recorded_from_body.map(|[x, y, z]| [-x, -y, z]);
         PoseSample { recorded_from_body: held, ..sample }
     });
-    // Read as an optical frame it would be upright and look back, so the warning names that frame.
-    let told = found(&upside_down.collect::<Vec<_>>(), OPEN_GL);
-    assert!(matches!(&told, Some(PoseDoubt::Odd(words)) if words.contains("orientation = \"optical\"")), "{told:?}");
+    let upside_down: Vec<PoseSample> = upside_down.collect();
+    // Read as an optical frame it would be upright, but look back.
+    let set = RecordingDescription {
+        world: Some(WorldUpAxis::ZUp),
+        orientation: Some(PoseBody::OpenGl),
+        ..RecordingDescription::default()
+    };
+    for described in [RecordingDescription::default(), set] {
+        let told = find_doubt(&upside_down, OPEN_GL, &described);
+        let Some(PoseDoubt::Misread(words)) = &told else { panic!("{told:?}") };
+        assert!(words.contains("the camera is upside down. Set `world` and `orientation`"), "{words}");
+    }
     assert_eq!(found(&with_y_up(walk(&[[0.0, 0.0, 1.5], [0.0, 2.0, 1.5]], 0.2)), OPEN_GL), None);
+}
+
+#[test]
+fn poses_of_unity_are_asked_for_beside_the_world_that_turns_them_over() {
+    // x right, y up, z ahead: mirrored.
+    let turn = |place: DVec3| DVec3::new(place.x, place.z, place.y);
+    let in_unity = level().into_iter().map(|sample| PoseSample {
+        position: turn(sample.position),
+        recorded_from_body: sample.recorded_from_body.map(|[x, y, z]| [turn(x), turn(y), turn(-z)]),
+    });
+    let in_unity: Vec<PoseSample> = in_unity.collect();
+    let Some(PoseDoubt::Misread(words)) = found(&in_unity, PoseAxes::for_body(PoseBody::Robot)) else {
+        panic!("it is misread")
+    };
+    assert!(words.contains("world = \"y-down\" and orientation = \"optical\" (y points down)"), "{words}");
+    assert!(words.contains("world = \"unity\" (left-handed, y points up: Unity)"), "{words}");
+    // The user knows which axis points up, and has set an orientation, which the world would not replace.
+    let described = RecordingDescription {
+        world: Some(WorldUpAxis::YUp),
+        orientation: Some(PoseBody::Optical),
+        ..RecordingDescription::default()
+    };
+    let axes = described.axes_or_usual(OPEN_GL);
+    let Some(PoseDoubt::Misread(words)) = find_doubt(&in_unity, axes, &described) else { panic!("it is upside down") };
+    assert!(words.contains("the camera is upside down"), "{words}");
+    assert!(words.contains("world = \"unity\" and orientation = \"unity\""), "{words}");
+    let described = RecordingDescription { world: Some(WorldUpAxis::Unity), ..RecordingDescription::default() };
+    assert_eq!(find_doubt(&in_unity, described.axes_or_usual(OPEN_GL), &described), None);
+}
+
+#[test]
+fn a_camera_that_looks_back_or_aside_is_not_turned_over() {
+    for turn_rad in [FRAC_PI_2, 2.0 * FRAC_PI_2, -FRAC_PI_2] {
+        for places in [&[[0.0, 0.0, 1.5], [0.0, 8.0, 1.5]][..], &[[0.0, 0.0, 1.5], [0.0, 6.0, 1.5], [6.0, 6.0, 1.5]]] {
+            let turned = walk(places, 0.1).into_iter().map(|sample| {
+                let turn = |vector: DVec3| {
+                    let (sine, cosine) = turn_rad.sin_cos();
+                    DVec3::new(vector.x * cosine - vector.y * sine, vector.x * sine + vector.y * cosine, vector.z)
+                };
+                PoseSample { recorded_from_body: sample.recorded_from_body.map(|held| held.map(turn)), ..sample }
+            });
+            let turned: Vec<PoseSample> = turned.collect();
+            assert_eq!(found(&turned, OPEN_GL), None, "{turn_rad} {places:?}");
+        }
+    }
 }

@@ -1,7 +1,7 @@
-//! Reads poses from JSON: Wayword's own list of poses, or NeRF's `transforms.json`.
+//! Reads poses from JSON: Wayword's own list of poses, NeRF's `transforms.json`, or the `metadata` of Record3D (a phone's app).
 
-use super::rows::{PoseFacing, PoseKey, PoseRow, PoseRows, seconds_in_unit};
-use crate::axes::{PoseAxes, PoseBody};
+use super::rows::{KnownConventions, PoseFacing, PoseKey, PoseRow, PoseRows, pose_from_matrix, seconds_in_unit};
+use crate::axes::{PoseAxes, PoseBody, WorldUpAxis};
 use serde::Deserialize;
 use wayword_core::DVec3;
 
@@ -9,8 +9,16 @@ use wayword_core::DVec3;
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum PoseFile {
-    Transforms { frames: Vec<NerfFrame> },
-    Poses { poses: Vec<JsonPose> },
+    Transforms {
+        frames: Vec<NerfFrame>,
+    },
+    Poses {
+        poses: Vec<JsonPose>,
+    },
+    /// For each picture qx, qy, qz, qw, x, y, z of ARKit's camera.
+    Record3D {
+        poses: Vec<[f64; 7]>,
+    },
     List(Vec<JsonPose>),
 }
 
@@ -31,7 +39,7 @@ struct JsonPose {
     #[serde(default)]
     image: Option<String>,
     position: [f64; 3],
-    /// x, y, z, w.
+    /// x, y, z, w, unless `quaternion` in recording.toml says otherwise.
     #[serde(default)]
     orientation: Option<[f64; 4]>,
     #[serde(default)]
@@ -50,11 +58,20 @@ pub(super) fn read_json(text: &str) -> Result<PoseRows, String> {
     match PoseFile::deserialize(value).map_err(|_| EXPECTED_JSON.to_owned())? {
         PoseFile::Transforms { frames } => {
             let rows = frames.into_iter().enumerate().map(|(at, frame)| frame.into_row().ok_or((at, "frame")));
-            collect_rows(PoseAxes::for_body(PoseBody::OpenGl), rows)
+            collect_rows(PoseAxes::for_body(PoseBody::OpenGl), KnownConventions::BODY_ONLY, rows)
+        }
+        PoseFile::Record3D { poses } => {
+            let rows = poses.into_iter().enumerate().map(|(at, [qx, qy, qz, qw, x, y, z])| {
+                let facing = PoseFacing::Quaternion([qx, qy, qz, qw]);
+                Ok(PoseRow { key: PoseKey::Number(at), position: DVec3::new(x, y, z), facing })
+            });
+            let arkit = PoseAxes { world: WorldUpAxis::YUp, ..PoseAxes::for_body(PoseBody::OpenGl) };
+            collect_rows(arkit, KnownConventions::ALL, rows)
         }
         PoseFile::Poses { poses } | PoseFile::List(poses) => {
             let rows = poses.into_iter().enumerate().map(|(at, pose)| pose.into_row().ok_or((at, "pose")));
-            collect_rows(PoseAxes::for_body(PoseBody::Robot), rows)
+            let known = KnownConventions { angle_unit: true, ..KnownConventions::BODY_ONLY };
+            collect_rows(PoseAxes::for_body(PoseBody::Robot), known, rows)
         }
     }
 }
@@ -62,10 +79,11 @@ pub(super) fn read_json(text: &str) -> Result<PoseRows, String> {
 /// Collects rows with the usual axes of their format. A row that is no pose is given as its number and its kind.
 fn collect_rows(
     usual: PoseAxes,
+    known: KnownConventions,
     rows: impl Iterator<Item = Result<PoseRow, (usize, &'static str)>>,
 ) -> Result<PoseRows, String> {
     let rows = rows.collect::<Result<_, _>>().map_err(|(at, what)| format!("{what} {at}: {EXPECTED_JSON}"))?;
-    Ok(PoseRows { usual, knows_body_up: true, rows })
+    Ok(PoseRows::new(usual, known, rows))
 }
 
 impl NerfFrame {
@@ -73,11 +91,8 @@ impl NerfFrame {
         let [[ax, ay, az, x], [bx, by, bz, y], [cx, cy, cz, z], ..] = *self.transform_matrix.as_slice() else {
             return None;
         };
-        Some(PoseRow {
-            key: PoseKey::Picture(self.file_path),
-            position: DVec3::new(x, y, z),
-            facing: PoseFacing::Columns([DVec3::new(ax, bx, cx), DVec3::new(ay, by, cy), DVec3::new(az, bz, cz)]),
-        })
+        let (position, columns) = pose_from_matrix([ax, ay, az, x, bx, by, bz, y, cx, cy, cz, z]);
+        Some(PoseRow { key: PoseKey::Picture(self.file_path), position, facing: PoseFacing::Columns(columns) })
     }
 }
 

@@ -1,52 +1,37 @@
-//! Finds and reads the pose file of a folder of pictures or of a video.
+//! Finds and reads the poses of a folder of pictures or of a video.
 
+mod clock;
+mod colmap;
+mod columns;
 mod csv;
+mod find;
+mod frame_files;
 mod json;
 mod matrix;
 mod rows;
+mod scale;
+mod sensor_file;
+mod unread;
+
+pub(crate) use find::{PicturePlace, PoseSource, find_pose_file};
+pub(crate) use unread::describe_unread;
 
 use crate::{
-    axes::{PoseAxes, WorldUpAxis},
-    describe::RecordingDescription,
-    pose_plausibility::{self, PoseDoubt},
+    axes::{PoseAxes, PoseBody, WorldUpAxis},
+    describe::{DESCRIPTION_HINT, RecordingDescription},
+    pose_plausibility::{self, PoseDoubt, RecordedWalk},
+    pose_reading::{AngleUnit, NumberReading, QuaternionOrder, TransformDirection},
     track::CameraTrack,
 };
-use rows::{PoseFacing, PoseKey};
-use std::path::{Component, Path, PathBuf};
+use clock::{FrameCount, PictureClock};
+use rows::{PoseFacing, PoseKey, PoseRows};
+use std::path::Path;
 use wayword_core::PlatformError;
 use wayword_world::files;
 
 /// Largest pose file that is read, bytes; a larger one is an error.
 const MAX_FILE_BYTES: u64 = 256 << 20;
 const POSE_FILE_HINT: &str = "docs/RECORDINGS.md shows the pose files that can be read";
-/// Names of a folder's pose file, in the order in which they are tried.
-const FOLDER_POSE_FILES: [&str; 6] =
-    ["poses.json", "poses.csv", "poses.tum", "poses.txt", "groundtruth.txt", "transforms.json"];
-
-/// Finds the pose file: the one that the description names, else that of a folder, or of a file by its name (`walk.csv`
-/// for `walk.mp4`); `None` if there is none.
-///
-/// # Errors
-/// When the description names a file that does not exist.
-pub(crate) fn find_pose_file(path: &Path, described: &RecordingDescription) -> Result<Option<PathBuf>, PlatformError> {
-    let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new(".")) };
-    if let Some(named) = &described.poses {
-        let plain = Path::new(named).components().all(|part| matches!(part, Component::Normal(_)));
-        let file = folder.join(named);
-        return if plain && file.is_file() {
-            Ok(Some(file))
-        } else {
-            let reason = format!("poses = {named:?} is not a file in the recording's folder");
-            Err(files::file_error(folder, reason, crate::describe::DESCRIPTION_HINT))
-        };
-    }
-    let candidates: Vec<PathBuf> = if path.is_dir() {
-        FOLDER_POSE_FILES.iter().map(|name| folder.join(name)).collect()
-    } else {
-        ["tum", "csv", "json", "txt"].iter().map(|ending| path.with_extension(ending)).collect()
-    };
-    Ok(candidates.into_iter().find(|file| file.is_file()))
-}
 
 /// Reads the track in a pose file, on the clock of pictures that were taken at `times_s` and have the names `name`.
 ///
@@ -58,72 +43,216 @@ pub(crate) fn read_track(
     times_s: &[f64],
     name: &dyn Fn(usize) -> String,
 ) -> Result<CameraTrack, PlatformError> {
+    read_source(&PoseSource::File(file.to_owned()), described, times_s, name)
+}
+
+/// As [`read_track`], of any source of poses.
+///
+/// # Errors
+/// As [`read_track`].
+pub(crate) fn read_source(
+    source: &PoseSource,
+    described: &RecordingDescription,
+    times_s: &[f64],
+    name: &dyn Fn(usize) -> String,
+) -> Result<CameraTrack, PlatformError> {
+    let clock = PictureClock { times_s, name };
+    let (origin, rows) = match source {
+        PoseSource::File(file) => (file, read_rows(file)?),
+        PoseSource::BodyFile { poses, sensor } => {
+            let mut rows = read_rows(poses)?;
+            if let Some(mounting) = sensor_file::read_mounting(sensor) {
+                // With it the poses are those of the camera itself.
+                rows.mounting = Some(mounting);
+                rows.known.body_up = true;
+                rows.usual = PoseAxes::for_body(PoseBody::Optical);
+            }
+            (poses, rows)
+        }
+        PoseSource::FrameFiles(frames) => (&frames.folder, frames.read()?),
+    };
+    TrackMaker { origin, described, clock, rows }.make_track()
+}
+
+/// The poses in a file, whose name and content decide the format.
+fn read_rows(file: &Path) -> Result<PoseRows, PlatformError> {
     let wrong = |reason: String| files::file_error(file, reason, POSE_FILE_HINT);
+    let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    if ending == "bin" {
+        let hint = "COLMAP's own converter writes text: colmap model_converter --output_type TXT";
+        return Err(files::file_error(file, "is not text", hint));
+    }
     let text = files::text_if_there(file, MAX_FILE_BYTES, POSE_FILE_HINT)?
         .ok_or_else(|| wrong("there is no such file".into()))?;
-    let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    let pose_rows = match ending {
+    let mut rows = match ending {
         "json" => json::read_json(&text),
         "csv" => csv::read_csv(&text),
+        "traj" => matrix::read_axis_angles(&text),
+        _ if text.trim_start().starts_with(['{', '[']) => json::read_json(&text),
+        _ if colmap::is_colmap_text(&text) => colmap::read_colmap(&text),
         _ => matrix::read_matrix(&text),
     }
     .map_err(wrong)?;
-    let axes = described.axes_or_usual(pose_rows.usual);
-    let doubt = pose_plausibility::find_doubt(&pose_rows.samples(), axes, described);
-    let rows = pose_rows.rows;
-    if axes.world != WorldUpAxis::ZUp && rows.iter().any(|row| matches!(row.facing, PoseFacing::Yaw(_))) {
-        return Err(wrong("a yaw turns about z, so `world` must be z-up".into()));
+    if name == "traj.txt" && rows.usual.world == WorldUpAxis::YDown {
+        // The rendered rooms of Replica, whose z points up.
+        rows.usual.world = WorldUpAxis::ZUp;
     }
-    if let Some(PoseDoubt::Misread(reason)) = doubt {
-        return Err(files::file_error(file, reason, crate::describe::DESCRIPTION_HINT));
-    }
-    let why_none = if rows.is_empty() {
-        "holds no poses"
-    } else {
-        "has no usable pose: the pictures that it names or counts are not here, or its positions are not valid"
-    };
-    let track = track_from_rows(rows, axes, times_s, name).ok_or_else(|| wrong(why_none.into()))?;
-    if !times_s.iter().any(|time_s| track.fix_at(*time_s).is_some()) {
-        let ((from, to), first, last) =
-            (track.span_s(), times_s.first().unwrap_or(&0.0), times_s.last().unwrap_or(&0.0));
-        return Err(wrong(format!(
-            "has poses from {from} to {to} s, but the pictures were taken from {first} to {last} s: no picture has a \
-             pose"
-        )));
-    }
-    Ok(match doubt {
-        Some(PoseDoubt::Odd(words)) => track.in_doubt(format!("{}: {words}", file.display())),
-        _ => track,
-    })
+    Ok(rows)
 }
 
-/// The track of rows, on the clock of the pictures. Rows of pictures that do not exist are left out; `None` if no row is left.
-fn track_from_rows(
-    rows: Vec<rows::PoseRow>,
-    axes: PoseAxes,
-    times_s: &[f64],
-    name: &dyn Fn(usize) -> String,
-) -> Option<CameraTrack> {
-    let by_name = rows.iter().any(|row| matches!(row.key, PoseKey::Picture(_)));
-    let mut named: Vec<(String, f64)> = Vec::new();
-    if by_name {
-        named = times_s.iter().enumerate().map(|(at, time_s)| (rows::picture_stem(&name(at)), *time_s)).collect();
-        named.sort_by(|a, b| a.0.cmp(&b.0));
+/// Makes a track of the poses in a file.
+struct TrackMaker<'a> {
+    /// The file, or the folder of the files.
+    origin: &'a Path,
+    described: &'a RecordingDescription,
+    clock: PictureClock<'a>,
+    rows: PoseRows,
+}
+
+impl TrackMaker<'_> {
+    fn make_track(mut self) -> Result<CameraTrack, PlatformError> {
+        self.check_settings()?;
+        let axes = self.described.axes_or_usual(self.rows.usual);
+        let numbers = self.described.numbers_or_usual(self.rows.usual_numbers);
+        let metres_per_unit = self.described.metres_per_unit();
+        self.apply_angle_unit(axes)?;
+        if !self.rows.known.unit && self.described.unit.is_none() && metres_per_unit == 1.0 {
+            self.ask(scale::find_unit_doubt(&self.rows, self.described.world.is_none()))?;
+        }
+        let doubt = self.find_doubt(axes, numbers, metres_per_unit);
+        if !axes.world.has_yaw() && self.rows.has_facing(|facing| matches!(facing, PoseFacing::Yaw(_))) {
+            return Err(self.wrong("a yaw turns about z, so `world` must be z-up, unity or unreal".into()));
+        }
+        if let Some(PoseDoubt::Misread(reason)) = doubt {
+            return Err(self.question(reason));
+        }
+        let track = self.place_in_time((numbers, axes, metres_per_unit))?;
+        Ok(match doubt {
+            Some(PoseDoubt::Odd(words)) => track.in_doubt(format!("{}: {words}", self.origin.display())),
+            _ => track,
+        })
     }
-    let fixes = rows.into_iter().filter_map(|row| {
-        let time_s = match &row.key {
-            PoseKey::Time(time_s) => Some(*time_s),
-            PoseKey::Number(number) => times_s.get(*number).copied(),
-            PoseKey::Picture(picture) => {
-                let stem = rows::picture_stem(picture);
-                let found = named.binary_search_by(|(other, _)| other.as_str().cmp(&stem)).ok();
-                found.and_then(|at| named.get(at)).map(|(_, time_s)| *time_s)
+
+    fn wrong(&self, reason: String) -> PlatformError {
+        files::file_error(self.origin, reason, POSE_FILE_HINT)
+    }
+
+    /// The error that asks for a setting.
+    fn question(&self, reason: String) -> PlatformError {
+        files::file_error(self.origin, reason, DESCRIPTION_HINT)
+    }
+
+    /// Ends with a question if there is one.
+    fn ask(&self, question: Option<String>) -> Result<(), PlatformError> {
+        question.map_or(Ok(()), |reason| Err(self.question(reason)))
+    }
+
+    /// Refuses settings that have no meaning for this file.
+    fn check_settings(&self) -> Result<(), PlatformError> {
+        let has_rotation =
+            self.rows.has_facing(|facing| matches!(facing, PoseFacing::Quaternion(_) | PoseFacing::Columns(_)));
+        if self.described.quaternion.is_some() && self.rows.known.order {
+            let reason = "names the order of its quaternions itself, so leave out `quaternion`";
+            return Err(self.question(reason.into()));
+        }
+        if self.described.transform == Some(TransformDirection::WorldToCamera) && !has_rotation {
+            let reason =
+                "has no rotations, and without them a transform from world to camera does not place the camera";
+            return Err(self.question(reason.into()));
+        }
+        Ok(())
+    }
+
+    /// Turns a yaw without a unit into radians.
+    fn apply_angle_unit(&mut self, axes: PoseAxes) -> Result<(), PlatformError> {
+        if self.rows.known.angle_unit {
+            return Ok(());
+        }
+        match self.described.angle_unit {
+            None => self.ask(scale::find_angle_doubt(&self.rows, axes)),
+            Some(AngleUnit::Radians) => Ok(()),
+            Some(AngleUnit::Degrees) => {
+                for row in &mut self.rows.rows {
+                    if let PoseFacing::Yaw(yaw) = row.facing {
+                        row.facing = PoseFacing::Yaw(yaw.to_radians());
+                    }
+                }
+                Ok(())
             }
+        }
+    }
+
+    /// The doubt about the way in which the poses are read, among all ways that the file and the user leave open.
+    fn find_doubt(&self, axes: PoseAxes, numbers: NumberReading, metres_per_unit: f64) -> Option<PoseDoubt> {
+        let known = self.rows.known;
+        let may_change_order = !known.order
+            && self.described.quaternion.is_none()
+            && self.rows.has_facing(|facing| matches!(facing, PoseFacing::Quaternion(_)));
+        let may_change_direction = !known.direction && self.described.transform.is_none();
+        let orders = [QuaternionOrder::Xyzw, QuaternionOrder::Wxyz].into_iter();
+        let orders = orders.filter(|order| *order == numbers.order || may_change_order);
+        let all = orders.flat_map(|order| {
+            let directions = [TransformDirection::CameraToWorld, TransformDirection::WorldToCamera];
+            directions.map(|direction| NumberReading { order, direction })
+        });
+        let others =
+            all.filter(|other| *other != numbers && (other.direction == numbers.direction || may_change_direction));
+        let walk = |numbers| {
+            let walk = RecordedWalk::from_samples(self.rows.samples(numbers, metres_per_unit))?;
+            Some((numbers, walk))
         };
-        Some(row.fix_at(time_s?, axes))
-    });
-    CameraTrack::new(fixes.collect())
+        let walks: Vec<(NumberReading, RecordedWalk)> =
+            std::iter::once(numbers).chain(others).filter_map(walk).collect();
+        let is_positions_only = !self.rows.has_facing(|facing| *facing != PoseFacing::Unknown);
+        let of_hand = || {
+            let (_, walk) = walks.first().filter(|_| is_positions_only)?;
+            pose_plausibility::find_hand_doubt(walk, axes.world)
+        };
+        pose_plausibility::find_doubt_among(&walks, axes, self.described).or_else(of_hand)
+    }
+
+    /// The track on the clock of the pictures.
+    fn place_in_time(&self, reading: (NumberReading, PoseAxes, f64)) -> Result<CameraTrack, PlatformError> {
+        let count = match self.described.pose_time_offset_s {
+            Some(_) => FrameCount::Other,
+            None => self.clock.frame_count(&self.rows),
+        };
+        let first = self.track_by(reading, count == FrameCount::Certain)?;
+        if self.meets_pictures(&first) {
+            return Ok(first);
+        }
+        if count == FrameCount::Likely {
+            return self.track_by(reading, true);
+        }
+        if self.rows.rows.iter().any(|row| matches!(row.key, PoseKey::Time(_))) {
+            return Err(self.question(clock::describe_clocks(first.span_s(), self.clock.times_s)));
+        }
+        Err(self.wrong("no picture has a pose".into()))
+    }
+
+    fn meets_pictures(&self, track: &CameraTrack) -> bool {
+        self.clock.times_s.iter().any(|time_s| track.fix_at(*time_s).is_some())
+    }
+
+    /// The track by times, or by the column `frame`. Rows of pictures that do not exist are left out.
+    fn track_by(&self, reading: (NumberReading, PoseAxes, f64), by_frames: bool) -> Result<CameraTrack, PlatformError> {
+        let offset_s = self.described.pose_time_offset_s.unwrap_or(0.0);
+        let times = self.clock.times_of_rows(&self.rows, offset_s, by_frames);
+        let rows = self.rows.rows.iter().zip(times);
+        let fixes = rows.filter_map(|(row, time_s)| Some(self.rows.fix_at(row, time_s?, reading)));
+        CameraTrack::new(fixes.collect()).ok_or_else(|| {
+            let why_none = if self.rows.rows.is_empty() {
+                "holds no poses"
+            } else {
+                "has no usable pose: the pictures that it names or counts are not here, or its positions are not valid"
+            };
+            self.wrong(why_none.into())
+        })
+    }
 }
 
+#[cfg(test)]
+mod convention_tests;
 #[cfg(test)]
 mod tests;

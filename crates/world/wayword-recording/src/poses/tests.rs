@@ -135,6 +135,100 @@ fn a_pose_file_is_found_by_its_name_and_never_outside() {
     }
 }
 
+#[test]
+fn lines_of_numbers_are_read_by_their_names_and_lengths() {
+    let pose = "0 1.5 -0.5 0.5 -0.5 0.5";
+    let first = "0.5 -0.5 0.5 -0.5";
+    let matrix = |x: u32| format!("0 0 1 {x} -1 0 0 0 0 -1 0 1.5");
+    let each = |line: &dyn Fn(u32) -> String| (0..3).map(|at| line(at) + "\n").collect::<String>();
+    let z_up = RecordingDescription { world: Some(WorldUpAxis::ZUp), ..RecordingDescription::default() };
+    for (name, text) in [
+        // RTAB-Map, with the number of the pose.
+        ("poses.txt", each(&|at| format!("1{at} {at} {pose} 17"))),
+        ("poses.txt", "#timestamp x y z qx qy qz qw id\n".to_owned() + &each(&|at| format!("1{at} {at} {pose} {at}"))),
+        // The names of the columns: in a comment, with units, without a comment.
+        (
+            "poses.txt",
+            "# timestamp tx ty tz qw qx qy qz\n".to_owned() + &each(&|at| format!("1{at} {at} 0 1.5 {first}")),
+        ),
+        (
+            "poses.tum",
+            "# walk\n# time [s] x [m] y [m] z [m] qw [] qx [] qy [] qz []\n".to_owned()
+                + &each(&|at| format!("1{at} {at} 0 1.5 {first}")),
+        ),
+        ("poses.txt", "time x y z qw qx qy qz\n".to_owned() + &each(&|at| format!("1{at} {at} 0 1.5 {first}"))),
+        (
+            "poses.txt",
+            "# x, y, z, qw, qx, qy, qz, time\n".to_owned() + &each(&|at| format!("{at},0,1.5,0.5,-0.5,0.5,-0.5,1{at}")),
+        ),
+        // A CSV without a header.
+        ("poses.csv", each(&|at| format!("1{at},{at},0,1.5,-0.5,0.5,-0.5,0.5"))),
+        // Matrices, 3 x 4 and 4 x 4, and with the number of the picture or the time before them.
+        ("poses.txt", each(&|at| matrix(at))),
+        ("poses.txt", each(&|at| matrix(at) + " 0 0 0 1")),
+        ("poses.txt", each(&|at| format!("{at} {}", matrix(at)))),
+        ("poses.txt", each(&|at| format!("1{at}.0001 {} 0 0 0 1", matrix(at)))),
+    ] {
+        let track = read(name, &text, 10.0, &z_up).unwrap_or_else(|error| panic!("{text}: {error}"));
+        let (place, deg) = at(&track, 11.0);
+        assert!(place.distance(DVec3::new(1.0, 0.0, 1.5)) < 1e-3 && deg == 90.0, "{text}: {place} {deg}");
+    }
+    for (text, told) in [
+        ("1 0 0 1.5 0 0 0 1 0.5\n", "this one has 9: one column too many"),
+        ("1 0 0 1.5 0 0 0 1 2 3\n", "this one has 10"),
+        (&("1 ".repeat(30) + "\n"), "this one has more than 17"),
+    ] {
+        let error = read("poses.txt", text, 0.0, &z_up).unwrap_err();
+        assert!(error.contains(told), "{text}: {error}");
+    }
+    let error = read("images.bin", "\0\0", 0.0, &z_up).unwrap_err();
+    assert!(error.contains("model_converter"), "{error}");
+}
+
+#[test]
+fn a_yaw_in_degrees_is_asked_for_where_it_points_along_the_path() {
+    let line = |at: u32| {
+        let (x, y, yaw) = if at < 6 { (at, 0, 0) } else { (5, at - 5, 90) };
+        format!("{},{x},{y},{yaw}\n", f64::from(at) * 0.3)
+    };
+    let text = "time,x,y,yaw\n".to_owned() + &(0..12).map(line).collect::<String>();
+    let error = read("poses.csv", &text, 0.0, &RecordingDescription::default()).unwrap_err();
+    assert!(error.contains("Write angle_unit = \"deg\" into a recording.toml"), "{error}");
+    let told = |unit| RecordingDescription { angle_unit: Some(unit), ..RecordingDescription::default() };
+    assert_eq!(at(&read("poses.csv", &text, 0.0, &told(AngleUnit::Degrees)).unwrap(), 3.0).1, 0.0);
+    assert!(read("poses.csv", &text, 0.0, &told(AngleUnit::Radians)).is_ok());
+    // A robot that drives backwards has such a yaw too, but not in degrees.
+    let back = text.replace(",90\n", ",4.71\n").replace(",0\n", ",3.14\n");
+    assert!(read("poses.csv", &back, 0.0, &RecordingDescription::default()).is_ok());
+}
+
+#[test]
+fn settings_that_have_no_meaning_for_a_file_are_refused() {
+    let order = RecordingDescription { quaternion: Some(QuaternionOrder::Wxyz), ..RecordingDescription::default() };
+    let error = read("poses.csv", "time,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n", 0.0, &order).unwrap_err();
+    assert!(error.contains("names the order of its quaternions itself"), "{error}");
+    let inverse = Some(TransformDirection::WorldToCamera);
+    let inverse = RecordingDescription { transform: inverse, ..RecordingDescription::default() };
+    assert!(read("poses.csv", "time,x,y\n0,0,0\n", 0.0, &inverse).unwrap_err().contains("has no rotations"));
+}
+
+#[test]
+fn a_column_that_counts_the_pictures_decides_if_it_does() {
+    let usual = RecordingDescription::default();
+    // The clock of a phone; the pictures are a second apart.
+    let text = |step_s: f64, frames: [u32; 3]| {
+        let line = |at: usize| format!("{},{},{at},0,0\n", 52311.25 + at as f64 * step_s, frames[at]);
+        "timestamp,frame,x,y,z\n".to_owned() + &(0..3).map(line).collect::<String>()
+    };
+    let place =
+        |text: &str| read("poses.csv", text, 0.0, &usual).map(|track| track.fix_at(2.0).map(|fix| fix.position.x));
+    assert_eq!(place(&text(1.0, [0, 1, 2])), Ok(Some(2.0)));
+    // The times of pictures without times are made up.
+    assert_eq!(place(&text(0.1, [0, 1, 2])), Ok(Some(2.0)));
+    let other = place(&text(1.0, [500, 501, 502])).unwrap_err();
+    assert!(other.contains("subtract 52311.25 s"), "{other}");
+}
+
 proptest! {
     #[test]
     fn no_file_makes_it_panic(text in "(time|x|y|z|qw|image|[0-9.,;# \\-\n\"\\[\\]{}:e]){0,60}", ending in "(csv|json|tum)") {

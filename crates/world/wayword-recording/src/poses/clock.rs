@@ -1,0 +1,93 @@
+//! Brings poses onto the clock of the pictures: by the pictures that they name or count, else by their times.
+
+use super::rows::{self, PoseKey, PoseRows};
+
+/// How far the times of poses may stray from those of the pictures that a column `frame` counts, seconds and as a share of the
+/// whole time.
+const MAX_FRAME_STRAY_S: f64 = 0.5;
+const MAX_FRAME_STRAY_SHARE: f64 = 0.02;
+/// Least share of a column `frame` that must be numbers of pictures.
+const LEAST_COUNTED_SHARE: f64 = 0.9;
+
+/// The pictures to which poses belong.
+#[derive(Clone, Copy)]
+pub(super) struct PictureClock<'a> {
+    /// The times of the pictures, ascending, seconds.
+    pub(super) times_s: &'a [f64],
+    /// The name of a picture.
+    pub(super) name: &'a dyn Fn(usize) -> String,
+}
+
+/// How the numbers in a column `frame` relate to the pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum FrameCount {
+    /// They count something else, or there are none.
+    Other,
+    /// They may count the pictures: the times neither prove nor disprove it.
+    Likely,
+    /// They count the pictures, and the times agree.
+    Certain,
+}
+
+impl PictureClock<'_> {
+    /// The time of each row on the clock of the pictures, seconds; `None` for pictures that do not exist.
+    pub(super) fn times_of_rows(self, rows: &PoseRows, offset_s: f64, by_frames: bool) -> Vec<Option<f64>> {
+        if let Some(frames) = rows.frames.as_ref().filter(|_| by_frames) {
+            return frames.iter().map(|number| self.times_s.get(*number).copied()).collect();
+        }
+        let mut named: Vec<(String, f64)> = Vec::new();
+        if rows.rows.iter().any(|row| matches!(row.key, PoseKey::Picture(_))) {
+            let stem = |at: usize| rows::picture_stem(&(self.name)(at));
+            named = self.times_s.iter().enumerate().map(|(at, time_s)| (stem(at), *time_s)).collect();
+            named.sort_by(|a, b| a.0.cmp(&b.0));
+        }
+        let time_of = |key: &PoseKey| match key {
+            PoseKey::Time(time_s) => Some(*time_s + offset_s),
+            PoseKey::Number(number) => self.times_s.get(*number).copied(),
+            PoseKey::Picture(picture) => {
+                let stem = rows::picture_stem(picture);
+                let found = named.binary_search_by(|(other, _)| other.as_str().cmp(&stem)).ok();
+                found.and_then(|at| named.get(at)).map(|(_, time_s)| *time_s)
+            }
+        };
+        rows.rows.iter().map(|row| time_of(&row.key)).collect()
+    }
+
+    /// Whether the column `frame` counts the pictures.
+    pub(super) fn frame_count(self, rows: &PoseRows) -> FrameCount {
+        let Some(frames) = rows.frames.as_deref().filter(|frames| !frames.is_empty()) else { return FrameCount::Other };
+        let counted = frames.iter().filter(|number| **number < self.times_s.len()).count() as f64;
+        let ascends = frames.array_windows().all(|[before, after]| before < after);
+        if !ascends || counted < LEAST_COUNTED_SHARE * frames.len() as f64 {
+            return FrameCount::Other;
+        }
+        let pairs = frames.iter().zip(&rows.rows).filter_map(|(number, row)| match row.key {
+            PoseKey::Time(time_s) => Some((time_s, *self.times_s.get(*number)?)),
+            PoseKey::Picture(_) | PoseKey::Number(_) => None,
+        });
+        let pairs: Vec<(f64, f64)> = pairs.collect();
+        let (Some((pose_s, picture_s)), Some((_, last_s))) = (pairs.first(), pairs.last()) else {
+            return FrameCount::Other;
+        };
+        let slack_s = MAX_FRAME_STRAY_S.max(MAX_FRAME_STRAY_SHARE * (last_s - picture_s));
+        let strays = |(pose, picture): &(f64, f64)| ((pose - pose_s) - (picture - picture_s)).abs() > slack_s;
+        if pairs.iter().any(strays) { FrameCount::Likely } else { FrameCount::Certain }
+    }
+}
+
+/// Why no picture has a pose, and which setting would mend it if both began together.
+pub(super) fn describe_clocks((from_s, to_s): (f64, f64), times_s: &[f64]) -> String {
+    let (first_s, last_s) = (times_s.first().unwrap_or(&0.0), times_s.last().unwrap_or(&0.0));
+    // Milliseconds are enough, and a sum of floating-point numbers may have more digits.
+    let offset_s = ((first_s - from_s) * 1000.0).round() / 1000.0;
+    let change = if offset_s < 0.0 {
+        format!("subtract {} s from the times of the poses", -offset_s)
+    } else {
+        format!("add {offset_s} s to the times of the poses")
+    };
+    format!(
+        "has poses from {from_s} to {to_s} s, but the pictures were taken from {first_s} to {last_s} s: no picture has a \
+         pose. If the first pose and the first picture belong together, {change}: write pose_time_offset_s = {offset_s} \
+         into a recording.toml beside it"
+    )
+}
