@@ -20,8 +20,22 @@ const MAX_BYTES: u64 = 4 << 30;
 const GLB_HEAD_BYTES: u64 = 20;
 /// Extensions that a file may require, by the beginning of their names: those that the reader supports, and those that change
 /// nothing in unlit pictures.
-const KNOWN_EXTENSIONS: [&str; 4] =
-    ["GOOGLE_texture_basis", "KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_"];
+const KNOWN_EXTENSIONS: [&str; 14] = [
+    "GOOGLE_texture_basis",
+    "KHR_texture_transform",
+    "KHR_mesh_quantization",
+    "KHR_materials_",
+    "ADOBE_materials_",
+    "EXT_materials_",
+    "KHR_lights_punctual",
+    "EXT_lights_",
+    "KHR_animation_",
+    "KHR_audio",
+    "KHR_xmp",
+    "KHR_physics_",
+    "MSFT_physics",
+    "AGI_",
+];
 
 /// A document and its bytes.
 pub(super) struct GltfAsset {
@@ -41,8 +55,8 @@ impl GltfAsset {
         let (root, mut blob) = (gltf.document.into_json(), gltf.blob);
         let foreign = |name: &&String| !KNOWN_EXTENSIONS.iter().any(|known| name.starts_with(known));
         if let Some(name) = root.extensions_required.iter().find(foreign) {
-            let hint = "export it without geometry compression";
-            return Err(FileError::new(file, format!("needs the extension {name:.60}, which cannot be read"), hint));
+            let reason = format!("needs the extension {name:.60}, which cannot be read");
+            return Err(FileError::new(file, reason, hint_without_extension(name)));
         }
         let folder = file.parent().unwrap_or(Path::new("")).to_owned();
         let beside = AdjacentFiles { folder, read: RefCell::default(), bytes: Cell::new(bytes.len() as u64) };
@@ -97,6 +111,16 @@ impl GltfAsset {
             buffer.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?)
         };
         range().map(|bytes| (view, bytes)).ok_or_else(|| format!("view {number} lies outside its buffer"))
+    }
+}
+
+/// How to write a scene without an extension that it requires.
+fn hint_without_extension(name: &str) -> &'static str {
+    match name {
+        name if name.contains("texture") => "write its pictures as PNG or JPEG when you export it",
+        name if name.contains("compression") => "export it without geometry compression",
+        name if name.contains("instancing") => "export each of its instances as a node of its own",
+        _ => "export it without this extension",
     }
 }
 

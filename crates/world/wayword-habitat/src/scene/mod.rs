@@ -13,6 +13,7 @@
 mod accessor;
 mod asset;
 mod nodes;
+mod paints;
 mod pictures;
 mod primitive;
 mod stage;
@@ -27,10 +28,12 @@ pub(crate) use stage::scene_stem;
 use crate::{axes::wayword_from_habitat, file_error::FileError};
 use asset::GltfAsset;
 use glam::{DMat3, Vec3};
+use paints::SurfacePaint;
 use std::{collections::BTreeMap, path::Path};
 use wayword_render::{Mesh, MeshMaterial, RenderScene, SceneError, Texture, TextureFilter};
 
 const EXPORT_HINT: &str = "export the scene again as GLB";
+const PICTURE_HINT: &str = "write its pictures as PNG or JPEG, and export the scene again";
 /// Triangle corners that any file may have. There is a limit because a file can place one mesh many times.
 const FREE_CORNERS: u64 = 1 << 22;
 /// Further triangle corners that a file may have for each of its bytes.
@@ -60,7 +63,7 @@ impl SceneModel {
 
     pub(crate) fn read_file(file: &Path, habitat_from_asset: DMat3) -> Result<Self, FileError> {
         let asset = GltfAsset::read(file)?;
-        let mut builder = SceneModelBuilder::from_asset(&asset);
+        let mut builder = SceneModelBuilder::from_asset(&asset, file)?;
         builder.read_materials(file)?;
         builder.place_meshes(file, habitat_from_asset)
     }
@@ -70,7 +73,7 @@ impl SceneModel {
     pub(crate) fn read_shape(file: &Path, habitat_from_asset: DMat3) -> Result<Self, FileError> {
         let asset = GltfAsset::read(file)?;
         asset.check_views().map_err(|reason| FileError::new(file, reason, EXPORT_HINT))?;
-        SceneModelBuilder::from_asset(&asset).place_meshes(file, habitat_from_asset)
+        SceneModelBuilder::from_asset(&asset, file)?.place_meshes(file, habitat_from_asset)
     }
 
     /// The scene as Habitat draws it.
@@ -110,6 +113,8 @@ fn light_mesh(mesh: &mut Mesh) -> Result<(), String> {
 struct SceneModelBuilder<'a> {
     asset: &'a GltfAsset,
     model: SceneModel,
+    /// The colours of each material of the file.
+    paints: Vec<SurfacePaint>,
     /// Index in the model of each texture of the file.
     textures: BTreeMap<usize, usize>,
     /// The material for meshes without one.
@@ -117,8 +122,13 @@ struct SceneModelBuilder<'a> {
 }
 
 impl<'a> SceneModelBuilder<'a> {
-    fn from_asset(asset: &'a GltfAsset) -> Self {
-        Self { asset, model: SceneModel::default(), textures: BTreeMap::new(), plain: None }
+    fn from_asset(asset: &'a GltfAsset, file: &Path) -> Result<Self, FileError> {
+        let paint = |(number, material)| {
+            SurfacePaint::from_material(material)
+                .map_err(|reason| FileError::new(file, format!("material {number}: {reason}"), EXPORT_HINT))
+        };
+        let paints: Result<Vec<SurfacePaint>, FileError> = asset.root.materials.iter().enumerate().map(paint).collect();
+        Ok(Self { asset, model: SceneModel::default(), paints: paints?, textures: BTreeMap::new(), plain: None })
     }
 
     /// The triangles, placed in Wayword's frame.
@@ -131,7 +141,11 @@ impl<'a> SceneModelBuilder<'a> {
             for (index, primitive) in mesh.iter().flat_map(|mesh| mesh.primitives.iter().enumerate()) {
                 let wrong =
                     |reason| FileError::new(file, format!("mesh {number}, primitive {index}: {reason}"), EXPORT_HINT);
-                let Some(mut mesh) = primitive::read_primitive(asset, primitive).map_err(wrong)? else { continue };
+                let paint = primitive.material.and_then(|material| self.paints.get(material.value()));
+                let texture_set = paint.map_or(0, SurfacePaint::texture_set);
+                let Some(mut mesh) = primitive::read_primitive(asset, primitive, texture_set).map_err(wrong)? else {
+                    continue;
+                };
                 corners += mesh.positions.len() as u64 + 3 * mesh.triangles.len() as u64;
                 if corners > most_corners {
                     let reason =
@@ -143,6 +157,10 @@ impl<'a> SceneModelBuilder<'a> {
                     _ => self.plain_material(),
                 };
                 self.finish_uvs(&mut mesh, primitive);
+                if place.determinant() < 0.0 {
+                    // A mirror turns the winding around (glTF 2.0, "Instantiation").
+                    mesh.triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
+                }
                 for position in &mut mesh.positions {
                     let placed = habitat_from_asset * place.transform_point3(position.as_dvec3());
                     *position = wayword_from_habitat(placed).as_vec3();
@@ -160,16 +178,15 @@ impl<'a> SceneModelBuilder<'a> {
     /// shader multiplies stored colours by them (Magnum's `FlatGL`).
     fn read_materials(&mut self, file: &Path) -> Result<(), FileError> {
         for (number, material) in self.asset.root.materials.iter().enumerate() {
-            let surface = &material.pbr_metallic_roughness;
-            let texture = match &surface.base_color_texture {
+            let Some(SurfacePaint { factor, texture }) = self.paints.get(number) else { continue };
+            let base_colour = factor.map(|factor| if factor.is_finite() { factor.max(0.0) } else { 1.0 });
+            let texture = match texture.as_ref().map(|info| info.index.value()) {
                 None => None,
-                Some(info) => {
-                    let wrong = |reason| FileError::new(file, format!("material {number}: {reason}"), EXPORT_HINT);
-                    Some(self.texture_index(info.index.value()).map_err(wrong)?)
+                Some(texture) => {
+                    let wrong = |reason| FileError::new(file, format!("material {number}: {reason}"), PICTURE_HINT);
+                    Some(self.texture_index(texture).map_err(wrong)?)
                 }
             };
-            let base_colour =
-                surface.base_color_factor.0.map(|factor| if factor.is_finite() { factor.max(0.0) } else { 1.0 });
             self.model.materials.push(MeshMaterial { base_colour, texture, double_sided: material.double_sided });
         }
         Ok(())
@@ -209,8 +226,8 @@ impl<'a> SceneModelBuilder<'a> {
             return;
         }
         mesh.uvs.resize(mesh.positions.len(), glam::Vec2::ZERO);
-        let material = primitive.material.and_then(|material| self.asset.root.materials.get(material.value()));
-        let info = material.and_then(|material| material.pbr_metallic_roughness.base_color_texture.as_ref());
+        let paint = primitive.material.and_then(|material| self.paints.get(material.value()));
+        let info = paint.and_then(|paint| paint.texture.as_ref());
         let transform = info.and_then(|info| info.extensions.as_ref()).and_then(|all| all.texture_transform.as_ref());
         let Some(transform) = transform else { return };
         let (sin, cos) = (libm::sinf(transform.rotation.0), libm::cosf(transform.rotation.0));

@@ -21,6 +21,13 @@ pub(super) fn read_texture(asset: &GltfAsset, number: usize) -> Result<(Texture,
     let texture = asset.root.textures.get(number).ok_or_else(|| format!("texture {number} does not exist"))?;
     let basis = texture.extensions.as_ref().and_then(|all| all.others.get("GOOGLE_texture_basis"));
     let basis = basis.and_then(|basis| basis.get("source")).and_then(serde_json::Value::as_u64);
+    let other = || texture.extensions.as_ref().and_then(|all| all.others.keys().next());
+    if basis.is_none()
+        && asset.root.images.get(texture.source.value()).is_none()
+        && let Some(other) = other()
+    {
+        return Err(format!("texture {number}: is only in the format of {other:.60}, which cannot be read"));
+    }
     let source = basis.and_then(|source| usize::try_from(source).ok()).unwrap_or(texture.source.value());
     let wrong = |reason: String| format!("image {source}: {reason}");
     let image = asset.root.images.get(source).ok_or_else(|| wrong("does not exist".to_owned()))?;

@@ -8,8 +8,12 @@ use gltf::json::{
 };
 use wayword_render::Mesh;
 
-/// The triangles in the node's frame, without a material; `None` for points and lines.
-pub(super) fn read_primitive(asset: &GltfAsset, primitive: &Primitive) -> Result<Option<Mesh>, String> {
+/// The triangles in the node's frame, without a material, with the texture coordinates of a set; `None` for points and lines.
+pub(super) fn read_primitive(
+    asset: &GltfAsset,
+    primitive: &Primitive,
+    texture_set: u32,
+) -> Result<Option<Mesh>, String> {
     let Checked::Valid(mode) = primitive.mode else { return Err("has an unknown mode".to_owned()) };
     if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
         return Ok(None);
@@ -17,7 +21,7 @@ pub(super) fn read_primitive(asset: &GltfAsset, primitive: &Primitive) -> Result
     let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
     let positions = attribute(Semantic::Positions).ok_or("has no positions")?;
     let positions: Vec<Vec3> = accessor::read_floats(asset, positions)?.into_iter().map(Vec3::from_array).collect();
-    let uvs = match attribute(Semantic::TexCoords(texture_set(asset, primitive))) {
+    let uvs = match attribute(Semantic::TexCoords(texture_set)) {
         Some(index) => accessor::read_floats(asset, index)?.into_iter().map(Vec2::from_array).collect(),
         None => Vec::new(),
     };
@@ -33,13 +37,6 @@ pub(super) fn read_primitive(asset: &GltfAsset, primitive: &Primitive) -> Result
         }
     };
     Ok(Some(Mesh { positions, uvs, colours, triangles: triangles_from_order(mode, &order), ..Mesh::default() }))
-}
-
-/// Number of the coordinate set that the base colour's texture uses.
-fn texture_set(asset: &GltfAsset, primitive: &Primitive) -> u32 {
-    let material = primitive.material.and_then(|material| asset.root.materials.get(material.value()));
-    let info = material.and_then(|material| material.pbr_metallic_roughness.base_color_texture.as_ref());
-    info.map_or(0, |info| info.tex_coord)
 }
 
 /// The triangles that a list, strip or fan of vertices forms.

@@ -143,6 +143,118 @@ fn errors_name_the_item() {
     );
 }
 
+/// The corners of a model's only triangle.
+fn corners(model: &SceneModel) -> [Vec3; 3] {
+    model.triangles().next().unwrap()
+}
+
+#[test]
+fn a_mirrored_node_keeps_the_side_from_which_a_triangle_is_seen() {
+    let (mut document, bytes) = triangle();
+    let plain = read(&glb(&document, &bytes)).unwrap();
+    let normal = |model: &SceneModel| {
+        let [a, b, c] = corners(model);
+        (b - a).cross(c - a)
+    };
+    assert_eq!(normal(&plain), Vec3::Z);
+    // As Blender leaves it, as a matrix, flat in one direction, and in a mirrored parent.
+    let mirrors = [
+        json!({ "mesh": 0, "scale": [-1, 1, 1] }),
+        json!({ "mesh": 0, "matrix": [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] }),
+        json!({ "mesh": 0, "scale": [-2, -2, -2], "rotation": [0, 1, 0, 0] }),
+    ];
+    for mirror in mirrors {
+        document["nodes"][1] = mirror.clone();
+        document["nodes"][0] = json!({ "children": [1] });
+        let once = read(&glb(&document, &bytes)).unwrap();
+        assert!(normal(&once).z.abs() > 0.9, "{mirror}: {once:?}");
+        let stored = {
+            let [a, b, c] = corners(&once);
+            [a, c, b]
+        };
+        let way = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).z;
+        let place = nodes::placed_meshes(&serde_json::from_value(document.clone()).unwrap())[0].1;
+        let expected = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|corner| place.transform_point3(corner.as_dvec3()).as_vec3());
+        assert_eq!((stored, way(corners(&once)) * way(expected) < 0.0), (expected, true), "{mirror}");
+        document["nodes"][0]["scale"] = json!([1, -1, 1]);
+        let twice = read(&glb(&document, &bytes)).unwrap();
+        assert_eq!(twice.meshes[0].triangles, [[0, 1, 2]], "two mirrors are none");
+    }
+}
+
+#[test]
+fn colours_are_found_wherever_a_material_keeps_them() {
+    let read_material = |material: serde_json::Value| {
+        let (mut document, bytes) = triangle();
+        document["materials"][0] = material;
+        let model = read(&glb(&document, &bytes)).unwrap();
+        (model.materials[0].base_colour, model.materials[0].texture)
+    };
+    let diffuse =
+        |fields: serde_json::Value| json!({ "extensions": { "KHR_materials_pbrSpecularGlossiness": fields } });
+    let texture = json!({ "index": 0 });
+    let grey = [0.5, 0.5, 0.5, 1.0];
+    assert_eq!(read_material(diffuse(json!({ "diffuseTexture": texture }))), ([1.0; 4], Some(0)));
+    assert_eq!(read_material(diffuse(json!({ "diffuseFactor": grey }))), (grey, None));
+    let mut both = diffuse(json!({ "diffuseFactor": grey }));
+    both["pbrMetallicRoughness"] = json!({ "baseColorTexture": texture });
+    assert_eq!(read_material(both), ([1.0; 4], Some(0)), "a base colour that is there is the one to draw");
+    let black = json!({ "baseColorFactor": [0, 0, 0, 1] });
+    let glow = [0.25, 0.5, 1.0];
+    let lamp = json!({ "pbrMetallicRoughness": black, "emissiveFactor": glow });
+    assert_eq!(read_material(lamp), ([0.25, 0.5, 1.0, 1.0], None));
+    let baked = json!({ "emissiveTexture": texture, "emissiveFactor": [1, 1, 1] });
+    assert_eq!(read_material(baked), ([1.0; 4], Some(0)));
+    let dark = json!({ "pbrMetallicRoughness": black, "emissiveTexture": texture });
+    assert_eq!(read_material(dark), ([0.0, 0.0, 0.0, 1.0], None), "a factor of 0 is no light");
+    let painted_lamp = json!({ "pbrMetallicRoughness": { "baseColorTexture": texture }, "emissiveFactor": glow });
+    assert_eq!(read_material(painted_lamp), ([1.0; 4], Some(0)));
+}
+
+#[test]
+fn the_transform_of_a_texture_may_choose_its_coordinates() {
+    let (mut document, bytes) = triangle();
+    let transform = json!({ "scale": [2, 1], "offset": [0.5, 0], "texCoord": 1 });
+    document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] =
+        json!({ "KHR_texture_transform": transform });
+    document["meshes"][0]["primitives"][0]["attributes"] = json!({ "POSITION": 0, "TEXCOORD_1": 1 });
+    let model = read(&glb(&document, &bytes)).unwrap();
+    let uvs: Vec<[f32; 2]> = model.meshes[0].uvs.iter().map(|uv| uv.to_array()).collect();
+    assert_eq!(uvs, [[0.5, 0.0], [2.5, 0.0], [0.5, 1.0]]);
+}
+
+#[test]
+fn an_extension_is_refused_only_if_it_is_needed_and_with_what_helps() {
+    let read_with = |name: &str| {
+        let (mut document, bytes) = triangle();
+        document["extensionsRequired"] = json!([name]);
+        read(&glb(&document, &bytes)).map(|_| ())
+    };
+    for name in ["KHR_materials_variants", "KHR_materials_unlit", "KHR_lights_punctual", "KHR_xmp_json_ld"] {
+        assert_eq!(read_with(name), Ok(()));
+    }
+    for (name, hint) in [
+        ("KHR_texture_basisu", "pictures as PNG or JPEG"),
+        ("EXT_texture_webp", "pictures as PNG or JPEG"),
+        ("EXT_texture_avif", "pictures as PNG or JPEG"),
+        ("MSFT_texture_dds", "pictures as PNG or JPEG"),
+        ("KHR_draco_mesh_compression", "without geometry compression"),
+        ("EXT_meshopt_compression", "without geometry compression"),
+        ("EXT_mesh_gpu_instancing", "as a node of its own"),
+        ("ACME_new", "without this extension"),
+    ] {
+        let error = read_with(name).unwrap_err();
+        assert!(error.contains(name) && error.contains(hint), "{error}");
+    }
+    // Not required, but there is no other picture.
+    let (mut document, bytes) = triangle();
+    document["textures"][0] = json!({ "extensions": { "EXT_texture_webp": { "source": 0 } } });
+    let error = read(&glb(&document, &bytes)).unwrap_err();
+    assert!(error.contains("texture 0: is only in the format of EXT_texture_webp") && error.contains("PNG"), "{error}");
+    document["textures"][0]["source"] = 0.into();
+    assert!(read(&glb(&document, &bytes)).is_ok());
+}
+
 #[test]
 fn nodes_in_a_circle_come_to_an_end() {
     let (mut document, bytes) = triangle();
