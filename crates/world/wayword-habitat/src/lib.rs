@@ -8,6 +8,7 @@
 //! - [`walk`]: walks as an agent's actions.
 //! - `semantics/`: labels and rooms; `semantics/rooms/rooms.txt` has the rules by which HM3D's rooms get names, `hallway.rs` those for hallways.
 //! - `platform/islands.rs`: the island of a navmesh on which paths lie.
+//! - `placement/`: which direction of a scene is up, and how long its unit is, judged by its floors.
 //! - `platform/graph_pairing.rs`, `graph_fit.rs`: which viewpoint graph belongs to a scene, and whether it lies in it.
 //! - `platform/examine.rs`: the report about a scene before a run.
 //! - [`axes`]: the conversion of frames.
@@ -17,6 +18,7 @@ pub mod bake;
 mod file_error;
 pub mod ground;
 pub mod navmesh;
+mod placement;
 pub mod platform;
 pub mod scene;
 mod semantics;

@@ -155,7 +155,7 @@ fn open_one(path: &Path) -> Result<Option<RecordingEntry>, PlatformError> {
             return open_lerobot(path).map(other);
         }
         if let Some(bag) = open_bag(path)? {
-            return Ok(Some(bag));
+            return Ok(other(bag));
         }
         let Some(folder) = PictureFolder::open(path)? else { return Ok(None) };
         // A picture may be among videos by chance, so the program does not guess which of them the user wants.

@@ -40,6 +40,7 @@ mod recording;
 mod resume;
 mod robustness;
 mod robustness_elsewhere;
+mod scene_placement;
 mod settings_examples;
 mod similarity;
 mod similarity_pictures;

@@ -63,7 +63,10 @@ impl BakeError {
     pub fn hint(&self) -> &'static str {
         match self {
             Self::Empty => "choose another scene",
-            Self::TooLarge { .. } | Self::Recast { .. } => "give the scene a .navmesh, or choose another scene",
+            Self::TooLarge { .. } => {
+                "give the scene a .navmesh, or if its unit is not the metre write units_to_meters into its stage_config.json"
+            }
+            Self::Recast { .. } => "give the scene a .navmesh, or choose another scene",
             Self::Setting { .. } => "change this setting of the navmesh",
         }
     }
@@ -81,6 +84,21 @@ pub fn bake_navmesh(model: &SceneModel, settings: &NavMeshSettings) -> Result<Na
     let recast = || voxels.build_polygons(mesh, bounds).map_err(|error| error.to_string());
     let (polygons, detail) = run_decoder(recast).map_err(|reason| BakeError::Recast { reason })?;
     Ok(single_tile(&tile_surface(&polygons, &detail), *settings))
+}
+
+/// Checks that a scene is not empty and not too large to be baked.
+///
+/// # Errors
+/// [`BakeError`] if it is.
+pub(crate) fn check_model_size(model: &SceneModel, settings: &NavMeshSettings) -> Result<(), BakeError> {
+    let corners = || model.triangles().flatten().map(|corner| habitat_from_wayword(corner.as_dvec3()).as_vec3());
+    let (low, high) = corners()
+        .fold(None, |bounds: Option<(Vec3, Vec3)>, corner| match bounds {
+            Some((low, high)) => Some((low.min(corner), high.max(corner))),
+            None => Some((corner, corner)),
+        })
+        .ok_or(BakeError::Empty)?;
+    check_size(&Aabb3d { min: low, max: high }, settings)
 }
 
 /// The settings in voxels (`rcConfig`).

@@ -1,19 +1,25 @@
 //! Examines the files of a scene before a run uses them.
 
 use super::{
+    HabitatOptions,
     files::StageFiles,
     graph,
     graph_fit::{self, GraphMisfit},
+    placed::PlacedStage,
 };
 use crate::{
-    scene::{HabitatStage, SceneModel},
+    scene::SceneModel,
     semantics::{self, SemanticFindings},
     triangle_columns::TriangleColumns,
 };
 use wayword_core::{GraphFit, GraphSize, PlatformError, RoomNames, SceneCondition, SceneId, SceneLack};
 
 /// Reads a scene's files without decoding the pictures that it is drawn with, and reports what they offer and which faults they have.
-pub(super) fn examine_scene(id: &SceneId, files: &StageFiles) -> Result<SceneCondition, PlatformError> {
+pub(super) fn examine_scene(
+    id: &SceneId,
+    files: &StageFiles,
+    options: &HabitatOptions,
+) -> Result<SceneCondition, PlatformError> {
     let mut condition = SceneCondition {
         scene: id.clone(),
         has_pictures: false,
@@ -25,7 +31,7 @@ pub(super) fn examine_scene(id: &SceneId, files: &StageFiles) -> Result<SceneCon
         lacks: Vec::new(),
         unusable: None,
     };
-    match fill_condition(&mut condition, files) {
+    match fill_condition(&mut condition, files, options) {
         Ok(()) => {}
         Err(error @ PlatformError::Lost { .. }) => return Err(error),
         Err(PlatformError::File { file, reason, hint }) => {
@@ -38,9 +44,13 @@ pub(super) fn examine_scene(id: &SceneId, files: &StageFiles) -> Result<SceneCon
 }
 
 /// Fills in the findings, up to the first file that cannot be used.
-fn fill_condition(condition: &mut SceneCondition, files: &StageFiles) -> Result<(), PlatformError> {
-    let stage = HabitatStage::from_file(&files.stage)?;
-    let model = SceneModel::read_shape(&stage.asset, stage.habitat_from_asset)?;
+fn fill_condition(
+    condition: &mut SceneCondition,
+    files: &StageFiles,
+    options: &HabitatOptions,
+) -> Result<(), PlatformError> {
+    let PlacedStage { stage, model, note } = PlacedStage::read(files, options, SceneModel::read_shape)?;
+    condition.lacks.extend(note.map(|note| SceneLack { what: note, hint: String::new() }));
     condition.has_pictures = true;
     match &files.graph {
         Some(file) => {

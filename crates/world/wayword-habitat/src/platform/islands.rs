@@ -8,10 +8,12 @@ use crate::{
     ground::NavMeshGround,
     triangle_columns::{OverheadCover, TriangleColumns},
 };
-use wayword_core::{GroundCover, GroundIsland, seeded_rng};
+use wayword_core::{DVec3, GroundCover, GroundIsland, seeded_rng};
 
 /// Random places that are examined on each island.
 const PLACES_PER_ISLAND: usize = 400;
+/// A place of a navmesh that is nearer to a surface lies on it, metres: on stairs it lies a little off.
+const ON_SURFACE_M: f64 = 0.5;
 /// Most islands that are examined, the largest first; paths never stay on another one, unless the user chooses it.
 const MAX_ISLANDS: usize = 64;
 /// Least area of an island that is examined, square metres.
@@ -60,11 +62,24 @@ pub(super) fn survey_islands(ground: &NavMeshGround, columns: &TriangleColumns) 
     worth.map(|(number, area_m2)| survey_island(ground, columns, number, area_m2)).collect()
 }
 
+/// The share of the largest island that lies on a surface of the scene; 1 if there is no island.
+pub(super) fn share_on_surfaces(ground: &NavMeshGround, columns: &TriangleColumns) -> f64 {
+    let mut rng = seeded_rng(0, &["habitat surfaces"]);
+    let places: Vec<DVec3> = (0..PLACES_PER_ISLAND)
+        .filter_map(|_| ground.random_place(0, &mut rng))
+        .map(|foothold| foothold.place)
+        .collect();
+    let lies_on_surface = |place: &&DVec3| {
+        columns.drop_m(**place + DVec3::Z * ON_SURFACE_M).is_some_and(|drop_m| drop_m <= 2.0 * ON_SURFACE_M)
+    };
+    if places.is_empty() { 1.0 } else { places.iter().filter(lies_on_surface).count() as f64 / places.len() as f64 }
+}
+
 fn survey_island(ground: &NavMeshGround, columns: &TriangleColumns, number: usize, area_m2: f64) -> IslandSurvey {
     let mut rng = seeded_rng(0, &["habitat islands", &number.to_string()]);
     let places =
         (0..PLACES_PER_ISLAND).filter_map(|_| ground.random_place(number, &mut rng)).map(|foothold| foothold.place);
-    let places: Vec<wayword_core::DVec3> = places.collect();
+    let places: Vec<DVec3> = places.collect();
     let covers: Vec<OverheadCover> = places.iter().map(|place| columns.cover_over(*place)).collect();
     let share = |is: fn(&OverheadCover) -> bool| {
         covers.iter().filter(|cover| is(cover)).count() as f64 / covers.len().max(1) as f64

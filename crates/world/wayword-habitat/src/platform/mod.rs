@@ -9,6 +9,9 @@ mod graph_pairing;
 #[cfg(test)]
 mod graph_tests;
 mod islands;
+mod placed;
+#[cfg(test)]
+mod placement_tests;
 mod sample;
 mod scene;
 #[cfg(test)]
@@ -21,6 +24,7 @@ use crate::{
 };
 use files::StageFiles;
 use graph_pairing::GraphPairing;
+use placed::PlacedStage;
 use scene::HabitatScene;
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -28,7 +32,7 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    DepthImage, Frame, FromAbove, Ground, GroundIsland, GroundRoute, ObjectId, Path, PathRequest, Platform,
+    DepthImage, Frame, FromAbove, Ground, GroundIsland, GroundRoute, Image, ObjectId, Path, PathRequest, Platform,
     PlatformError, RecentCache, SceneCatalogue, SceneCondition, SceneFiles, SceneId, View, ViewGaze, ViewpointGraph,
     ViewpointId,
 };
@@ -50,6 +54,14 @@ pub struct HabitatPlatform {
     examined: Mutex<BTreeMap<SceneId, SceneCondition>>,
     /// Scenes for which warnings were already given.
     warned: Mutex<BTreeSet<SceneId>>,
+    /// Scenes of which a picture was drawn.
+    pictured: Mutex<BTreeSet<SceneId>>,
+}
+
+/// Whether all pixels of a picture are alike.
+fn has_one_colour(image: &Image) -> bool {
+    let pixels = image.rgb_bytes().as_chunks::<3>().0;
+    pixels.iter().all(|pixel| pixels.first() == Some(pixel))
 }
 
 /// Options of the platform.
@@ -100,12 +112,12 @@ impl HabitatPlatform {
             Some(folder) => graph_pairing::pair_graphs(scenes, folder)?,
             None => GraphPairing::without_graphs(scenes),
         };
-        let (ready, examined, warned) =
-            (RecentCache::one_at_a_time(SCENES_IN_MEMORY), Mutex::default(), Mutex::default());
+        let ready = RecentCache::one_at_a_time(SCENES_IN_MEMORY);
+        let (examined, warned, pictured) = (Mutex::default(), Mutex::default(), Mutex::default());
         if let Some(idle) = pairs.describe_idle_graphs() {
             hear(&idle);
         }
-        Ok(Self { options, hear, pairs, ready, examined, warned })
+        Ok(Self { options, hear, pairs, ready, examined, warned, pictured })
     }
 
     /// The navmesh of a scene, from its file or baked. [`NavMesh::to_bytes`] returns a file that Habitat can read.
@@ -117,8 +129,8 @@ impl HabitatPlatform {
             return Ok(walkable.navmesh.clone());
         }
         let (_, files) = self.find_files(scene)?;
-        let stage = HabitatStage::from_file(&files.stage)?;
-        Ok(walkable::read_or_bake_navmesh(&SceneModel::from_stage(&stage)?, &stage, files, &self.options)?)
+        let PlacedStage { stage, model, .. } = PlacedStage::read(files, &self.options, SceneModel::read_file)?;
+        Ok(walkable::read_or_bake_navmesh(&model, &stage, files, &self.options)?)
     }
 
     /// A scene in memory, read if necessary.
@@ -157,12 +169,18 @@ impl HabitatPlatform {
     fn view_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze, pictured: bool) -> Result<View, PlatformError> {
         let prepared = self.prepared_scene(scene)?;
         prepared.check_frame(from)?;
-        prepared.view_from(
-            from.pose.position,
-            to_flat_gaze(gaze),
-            [self.options.width_px, self.options.height_px],
-            pictured,
-        )
+        let size = [self.options.width_px, self.options.height_px];
+        let view = prepared.view_from(from.pose.position, to_flat_gaze(gaze), size, pictured)?;
+        if let Some(image) = &view.image
+            && self.pictured.lock().unwrap_or_else(PoisonError::into_inner).insert(prepared.id.clone())
+            && has_one_colour(image)
+        {
+            (self.hear)(&format!(
+                "scene {scene}: its first view is of one single colour; perhaps its file keeps its colours where they \
+                 are not read"
+            ));
+        }
+        Ok(view)
     }
 }
 
@@ -260,7 +278,7 @@ impl SceneFiles for HabitatPlatform {
         let found = match self.known_condition(id) {
             Some(known) => known,
             None => {
-                let found = examine::examine_scene(id, files)?;
+                let found = examine::examine_scene(id, files, &self.options)?;
                 self.examined.lock().unwrap_or_else(PoisonError::into_inner).insert(id.clone(), found.clone());
                 found
             }

@@ -81,8 +81,8 @@ fn describe_request(walkable: &WalkableGround, request: &PathRequest) -> String 
     let length_m = &request.length_m;
     let ground_m2 = walkable.ground.islands_m2().nth(walkable.ground.main()).unwrap_or_default();
     format!(
-        "{} to {} metres on its {ground_m2:.1} m2 of ground (a scene is read as metres with z up; if that is wrong, a \
-         stage_config.json beside it must give units_to_meters, up and front)",
+        "{} to {} metres on its {ground_m2:.1} m2 of ground (if it has more, its unit or its axes are read \
+         wrong: a stage_config.json beside it must give units_to_meters, up and front)",
         length_m.start(),
         length_m.end()
     )

@@ -1,9 +1,9 @@
 //! A scene of the platform in memory, with its model, its ground and its labels.
 
-use super::{HabitatOptions, files::StageFiles, graph, walkable::WalkableGround};
+use super::{HabitatOptions, files::StageFiles, graph, placed::PlacedStage, walkable::WalkableGround};
 use crate::{
     file_error::FileError,
-    scene::{HabitatStage, SceneModel},
+    scene::SceneModel,
     semantics::{self, SceneSemantics},
 };
 use std::{
@@ -32,6 +32,8 @@ pub(super) struct HabitatScene {
     pub(super) semantics: Option<SceneSemantics>,
     /// The fault in its labels.
     lack: Option<SceneLack>,
+    /// What the user should know of how the scene was read.
+    pub(super) notes: Vec<String>,
     /// The viewpoints that see each object; computed when first needed.
     seen_from: OnceLock<BTreeMap<ObjectId, BTreeSet<ViewpointId>>>,
 }
@@ -44,8 +46,7 @@ impl HabitatScene {
         options: &HabitatOptions,
         fits: bool,
     ) -> Result<Self, PlatformError> {
-        let stage = HabitatStage::from_file(&files.stage)?;
-        let model = SceneModel::from_stage(&stage)?;
+        let PlacedStage { stage, model, note } = PlacedStage::read(files, options, SceneModel::read_file)?;
         let graph_error = |source| PlatformError::Graph { scene: id.clone(), source };
         let (walkable, graph) = match &files.graph {
             Some(file) => (None, graph::read_graph(file, (!fits).then_some(&model))?),
@@ -56,20 +57,21 @@ impl HabitatScene {
             }
         };
         let semantics = semantics::load_semantics(&files.semantic_files(&stage), stage.habitat_from_asset)?;
+        let notes = note.into_iter().collect();
         let lack = semantics.as_ref().and_then(|semantics| semantics.lack.clone());
         let semantics = semantics.filter(|semantics| semantics.has_labels);
         let scene =
             model.into_drawable().map_err(|error| FileError::new(&stage.asset, error.to_string(), DRAW_HINT))?;
         let (id, graph) = (id.clone(), Arc::new(graph));
         let off_graph = options.off_graph;
-        Ok(Self { id, scene, walkable, graph, off_graph, semantics, lack, seen_from: OnceLock::new() })
+        Ok(Self { id, scene, walkable, graph, off_graph, semantics, lack, notes, seen_from: OnceLock::new() })
     }
 
     /// The warnings that the user should see before a run uses the scene.
     pub(super) fn doubts(&self) -> impl Iterator<Item = String> {
         let island = self.walkable.as_ref().and_then(WalkableGround::island_doubt);
         let labels = self.lack.as_ref().map(|lack| format!("{}; {}", lack.what, lack.hint));
-        island.into_iter().chain(labels)
+        self.notes.iter().cloned().chain(island).chain(labels)
     }
 
     /// The islands of its navmesh, the largest first.

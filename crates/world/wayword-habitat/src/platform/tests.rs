@@ -6,7 +6,7 @@ use serde_json::json;
 use wayword_core::{GroundCover, Heading};
 
 /// A quad as two triangles.
-fn quad(out: &mut Vec<[f32; 3]>, corners: [[f32; 3]; 4]) {
+pub(super) fn quad(out: &mut Vec<[f32; 3]>, corners: [[f32; 3]; 4]) {
     out.extend([0, 1, 2, 0, 2, 3].map(|corner: usize| corners[corner]));
 }
 
@@ -29,6 +29,11 @@ fn file(colours: [[u8; 4]; 2]) -> Vec<u8> {
 
 /// A GLB of meshes, given as the corners of their triangles, each mesh in its colour.
 fn painted(meshes: &[Vec<[f32; 3]>], colours: &[[u8; 4]]) -> Vec<u8> {
+    painted_at(meshes, colours, &json!({ "mesh": 0 }))
+}
+
+/// The same with the fields of its only node.
+pub(super) fn painted_at(meshes: &[Vec<[f32; 3]>], colours: &[[u8; 4]], node: &serde_json::Value) -> Vec<u8> {
     let (mut bytes, mut views, mut accessors, mut primitives) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (positions, colour) in meshes.iter().zip(colours) {
         let count = positions.len();
@@ -49,7 +54,7 @@ fn painted(meshes: &[Vec<[f32; 3]>], colours: &[[u8; 4]]) -> Vec<u8> {
     let document = json!({
         "asset": { "version": "2.0" },
         "scenes": [{ "nodes": [0] }],
-        "nodes": [{ "mesh": 0 }],
+        "nodes": [node],
         "meshes": [{ "primitives": primitives }],
         "materials": [{}],
         "accessors": accessors,

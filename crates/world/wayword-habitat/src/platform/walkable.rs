@@ -11,6 +11,7 @@ use crate::{
     file_error::{self, FileError},
     ground::{NavMeshGround, viewpoint_graph},
     navmesh::{NavMesh, NavMeshSettings},
+    placement::judge_placement,
     scene::{HabitatStage, SceneModel},
     triangle_columns::TriangleColumns,
 };
@@ -19,6 +20,10 @@ use wayword_core::{DVec3, GroundIsland, GroundRoute, PlatformError, ViewpointGra
 /// Largest navmesh file that is read, bytes; a larger one is an error.
 const MAX_NAVMESH_BYTES: u64 = 1 << 30;
 const NAVMESH_HINT: &str = "remove the file, and a navmesh is baked from the scene instead";
+const NAVMESH_LIES_HINT: &str =
+    "give the scene its own navmesh, or write up, front and units_to_meters into a stage_config.json beside the scene";
+/// Least share of a navmesh that lies on a surface of its scene.
+const MIN_SURFACE_SHARE: f64 = 0.5;
 const ISLAND_HINT: &str = "choose an existing island with --island, or give the scene a .navmesh of its rooms";
 
 /// The ground of a scene.
@@ -61,6 +66,7 @@ impl WalkableGround {
         let columns = TriangleColumns::new(model.triangles());
         let navmesh = read_or_bake_navmesh(model, stage, files, options)?;
         let ground = NavMeshGround::new(&navmesh);
+        check_navmesh_lies(&ground, &columns, model, stage)?;
         let surveys = islands::survey_islands(&ground, &columns);
         let IslandChoice { number, is_doubtful } = resolve_island(&ground, &surveys, options, stage)?;
         Ok(Self { navmesh, ground: ground.keeping_to(number), columns, surveys, is_doubtful })
@@ -102,6 +108,26 @@ impl WalkableGround {
     pub(super) fn has_headroom(&self, ground: DVec3) -> bool {
         self.columns.cover_over(ground).is_headroom()
     }
+}
+
+/// Returns an error for a navmesh that does not lie on the surfaces of its scene, where the scene's own floors show that its axes
+/// or its unit are others.
+fn check_navmesh_lies(
+    ground: &NavMeshGround,
+    columns: &TriangleColumns,
+    model: &SceneModel,
+    stage: &HabitatStage,
+) -> Result<(), FileError> {
+    let share = islands::share_on_surfaces(ground, columns);
+    if share >= MIN_SURFACE_SHARE {
+        return Ok(());
+    }
+    let Some(note) = judge_placement(model, stage).ok().and_then(|placement| placement.note) else { return Ok(()) };
+    let reason = format!(
+        "only {:.0} % of its navmesh lie on a surface of the scene as it is read; by the scene's own floors {note}",
+        100.0 * share
+    );
+    Err(FileError::new(&stage.asset, reason, NAVMESH_LIES_HINT))
 }
 
 /// The island that paths stay on: the user's choice, else the one on which people would walk.

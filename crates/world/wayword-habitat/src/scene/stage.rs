@@ -16,6 +16,12 @@ pub struct HabitatStage {
     pub navmesh: Option<PathBuf>,
     /// The semantic mesh that it names.
     pub semantics: Option<PathBuf>,
+    /// The configuration, whether or not it exists.
+    pub(crate) config: PathBuf,
+    /// Whether it tells which direction is up.
+    pub(crate) is_up_told: bool,
+    /// Whether it tells the length of a unit.
+    pub(crate) is_unit_told: bool,
 }
 
 /// The fields of a `*.stage_config.json` that are used (Habitat's `StageAttributes`).
@@ -35,9 +41,8 @@ const MAX_BYTES: u64 = 1 << 20;
 const STAGE_CONFIG_ENDING: &str = ".stage_config.json";
 
 impl HabitatStage {
-    /// The stage of a file: a configuration, or a GLB or glTF file, which may have a configuration in its folder. A
-    /// stage without a configuration has z up and y in front (`StageAttributesManager.cpp`,
-    /// `setDefaultAssetNameBasedAttributes`).
+    /// The stage of a file: a configuration, or a GLB or glTF file, which may have a configuration in its folder. If it tells
+    /// no axes, those of [`default_axes`] are read.
     ///
     /// # Errors
     /// If there is a configuration and it cannot be read, or if the given configuration does not exist.
@@ -53,12 +58,18 @@ impl HabitatStage {
             None if name.ends_with(STAGE_CONFIG_ENDING) => {
                 Err(FileError::new(file, "there is no such file", STAGE_CONFIG_HINT))
             }
-            None => Ok(Self {
-                asset: file.to_owned(),
-                habitat_from_asset: habitat_from_axes(DVec3::Z, DVec3::Y),
-                navmesh: None,
-                semantics: None,
-            }),
+            None => {
+                let (up, front) = default_axes(file);
+                Ok(Self {
+                    asset: file.to_owned(),
+                    habitat_from_asset: Self::habitat_from_axes(up, front),
+                    navmesh: None,
+                    semantics: None,
+                    config,
+                    is_up_told: false,
+                    is_unit_told: false,
+                })
+            }
         }
     }
 
@@ -71,7 +82,14 @@ impl HabitatStage {
             let usable = length.is_finite() && length > 1e-6;
             usable.then(|| axis / length).ok_or_else(|| wrong(format!("{field} is not a direction: {axis}")))
         };
-        let (up, front) = (axis("up", fields.up, DVec3::Z)?, axis("front", fields.front, DVec3::Y)?);
+        let beside = |name: &str| config.parent().unwrap_or(Path::new("")).join(name);
+        let asset = match &fields.render_asset {
+            Some(name) => beside(name),
+            None if file != config => file.to_owned(),
+            None => return Err(wrong("has no render_asset".to_owned())),
+        };
+        let (up, front) = default_axes(&asset);
+        let (up, front) = (axis("up", fields.up, up)?, axis("front", fields.front, front)?);
         if front.cross(up).length() < 1e-6 {
             return Err(wrong(format!("front {front} is parallel to up {up}")));
         }
@@ -79,19 +97,45 @@ impl HabitatStage {
         if !(scale.is_finite() && (1e-6..=1e6).contains(&scale)) {
             return Err(wrong(format!("units_to_meters is {scale}, expected a positive number")));
         }
-        let beside = |name: &str| config.parent().unwrap_or(Path::new("")).join(name);
-        let asset = match &fields.render_asset {
-            Some(name) => beside(name),
-            None if file != config => file.to_owned(),
-            None => return Err(wrong("has no render_asset".to_owned())),
-        };
         Ok(Self {
             asset,
-            habitat_from_asset: habitat_from_axes(up, front) * scale,
+            habitat_from_asset: Self::habitat_from_axes(up, front) * scale,
             navmesh: fields.nav_asset.as_deref().filter(|name| name.ends_with(".navmesh")).map(beside),
             semantics: fields.semantic_asset.as_deref().map(beside),
+            config: config.to_owned(),
+            is_up_told: fields.up.is_some() || fields.front.is_some(),
+            is_unit_told: fields.units_to_meters.is_some(),
         })
     }
+
+    /// The rotation that takes `up` to +y and `front` to -z.
+    pub(crate) fn habitat_from_axes(up: DVec3, front: DVec3) -> DMat3 {
+        let right = front.cross(up).normalize();
+        let front = up.cross(right);
+        DMat3::from_cols(right, up, -front).transpose()
+    }
+
+    /// The direction in the file that is up, of length 1.
+    pub(crate) fn up(&self) -> DVec3 {
+        self.habitat_from_asset.row(1).normalize()
+    }
+
+    /// The direction in the file that is in front, of length 1.
+    pub(crate) fn front(&self) -> DVec3 {
+        -self.habitat_from_asset.row(2).normalize()
+    }
+
+    /// The length of the file's unit, metres.
+    pub(crate) fn units_to_meters(&self) -> f64 {
+        self.habitat_from_asset.row(1).length()
+    }
+}
+
+/// Up and front of a file without a configuration, as Habitat has them: z and y for a `.glb`, y and -z for a `.gltf`
+/// (`StageAttributesManager.cpp`, `setDefaultAssetNameBasedAttributes`).
+fn default_axes(asset: &Path) -> (DVec3, DVec3) {
+    let is_text = asset.extension().is_some_and(|ending| ending == "gltf");
+    if is_text { (DVec3::Y, DVec3::NEG_Z) } else { (DVec3::Z, DVec3::Y) }
 }
 
 /// A file's name without the ending for its format; `x.basis.glb` and `x.glb` both give `x`.
@@ -101,13 +145,6 @@ pub(crate) fn scene_stem(name: &str) -> &str {
         .find_map(|ending| name.strip_suffix(ending))
         .unwrap_or(name);
     name.strip_suffix(".basis").unwrap_or(name)
-}
-
-/// The rotation that takes `up` to +y and `front` to -z.
-fn habitat_from_axes(up: DVec3, front: DVec3) -> DMat3 {
-    let right = front.cross(up).normalize();
-    let front = up.cross(right);
-    DMat3::from_cols(right, up, -front).transpose()
 }
 
 #[cfg(test)]
@@ -128,6 +165,19 @@ mod tests {
             .unwrap();
         assert_eq!(y_up.asset, Path::new("a/y.glb"));
         assert_eq!(y_up.habitat_from_asset * DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.5, 1.0, 1.5));
+    }
+
+    #[test]
+    fn without_axes_a_glb_has_z_up_and_a_gltf_y_up() {
+        let up = |name: &str| HabitatStage::from_file(Path::new(name)).unwrap().up();
+        assert_eq!([up("nowhere/x.glb"), up("nowhere/x.gltf")], [DVec3::Z, DVec3::Y]);
+        let of = |asset: &str| stage(&format!(r#"{{"render_asset": "{asset}", "units_to_meters": 2}}"#)).unwrap();
+        let (glb, gltf) = (of("y.glb"), of("y.gltf"));
+        assert_eq!(
+            [(glb.up(), glb.front()), (gltf.up(), gltf.front())],
+            [(DVec3::Z, DVec3::Y), (DVec3::Y, DVec3::NEG_Z)]
+        );
+        assert_eq!((glb.units_to_meters(), glb.is_up_told, glb.is_unit_told), (2.0, false, true));
     }
 
     #[test]
