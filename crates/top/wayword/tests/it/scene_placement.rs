@@ -66,3 +66,30 @@ fn a_scene_that_is_too_small_to_walk_in_is_refused_with_its_size_before_a_run_an
         assert!(told.contains("m large, too small to walk in") && told.contains("units_to_meters"), "{told}");
     }
 }
+
+#[test]
+fn one_bad_line_of_hm3ds_annotations_leaves_out_its_object_and_nothing_else() {
+    let building = Building::new();
+    let stage = house(&building);
+    let annotations = PathBuf::from(stage.to_str().unwrap().replace(".stage_config.json", ".semantic.txt"));
+    let whole = std::fs::read_to_string(&annotations).unwrap();
+    let spoilt: Vec<String> = whole
+        .lines()
+        .enumerate()
+        .map(|(number, line)| match (number, line.split_once(',')) {
+            (20, Some((id, rest))) => format!("{id},{}", &rest[1..]),
+            _ => line.to_owned(),
+        })
+        .collect();
+    std::fs::write(&annotations, spoilt.join("\n")).unwrap();
+    let ran = generate(&building, "run");
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let told: Vec<&str> = ran.err.lines().filter(|line| line.contains(".semantic.txt")).collect();
+    let [told] = told[..] else { panic!("{ran:?}") };
+    assert!(told.contains("line 21: ") && told.contains("is not a 6-digit hex colour"), "{told}");
+    assert!(doctor(&building).out.contains("line 21: "));
+    std::fs::write(&annotations, whole.replace('\n', "\nx")).unwrap();
+    let ran = generate(&building, "refused");
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    assert!(ran.err.contains("line 2: ") && !ran.err.contains("download"), "{ran:?}");
+}

@@ -74,7 +74,10 @@ fn fill_condition(
         None => {}
     }
     drop(model);
-    let found = semantics::check_semantics(&files.semantic_files(&stage), stage.habitat_from_asset)?;
+    let semantics = files.semantic_files(&stage);
+    let broken = semantics::describe_broken_lines(&semantics)?;
+    condition.lacks.extend(broken.map(|what| SceneLack { what, hint: "correct these lines to have them".to_owned() }));
+    let found = semantics::check_semantics(&semantics, stage.habitat_from_asset)?;
     let Some(SemanticFindings { has_labels, rooms, lack }) = found else {
         condition.lacks.push(SceneLack {
             what: "no labels and no rooms: there are no semantic files beside it".to_owned(),

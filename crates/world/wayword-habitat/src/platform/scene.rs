@@ -56,8 +56,9 @@ impl HabitatScene {
                 (Some(walkable), graph)
             }
         };
-        let semantics = semantics::load_semantics(&files.semantic_files(&stage), stage.habitat_from_asset)?;
-        let notes = note.into_iter().collect();
+        let semantic_files = files.semantic_files(&stage);
+        let semantics = semantics::load_semantics(&semantic_files, stage.habitat_from_asset)?;
+        let notes = note.into_iter().chain(semantics::describe_broken_lines(&semantic_files)?).collect();
         let lack = semantics.as_ref().and_then(|semantics| semantics.lack.clone());
         let semantics = semantics.filter(|semantics| semantics.has_labels);
         let scene =

@@ -5,7 +5,7 @@
 //! 0.2).
 
 use super::SemanticThing;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::ObjectId;
 
 const ANNOTATIONS_HEADER: &str = "HM3D Semantic Annotations";
@@ -16,24 +16,43 @@ pub(super) struct Hm3dAnnotations {
     pub(super) things: Vec<SemanticThing>,
     /// Index of the thing of each colour.
     pub(super) by_colour: BTreeMap<[u8; 3], usize>,
+    /// The lines that cannot be read, each with its reason. Their objects are left out.
+    pub(super) broken_lines: Vec<String>,
 }
 
-/// Parses the whole file; the error names the line.
+/// Parses the file. A line that cannot be read is left out; the error names the first of them if they are most of the lines.
 pub(super) fn parse_annotations(text: &str) -> Result<Hm3dAnnotations, String> {
     let mut lines = text.lines().enumerate();
     let header = lines.next().map_or("", |(_, line)| line.trim_start_matches('\u{feff}').trim());
     if header != ANNOTATIONS_HEADER {
         return Err(format!("line 1: is {header:.40?}, expected {ANNOTATIONS_HEADER:?}"));
     }
-    let mut annotations = Hm3dAnnotations::default();
+    let (mut annotations, mut colours) = (Hm3dAnnotations::default(), BTreeSet::new());
     for (number, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
-        let (colour, thing) = parse_line(line.trim()).map_err(|reason| format!("line {}: {reason}", number + 1))?;
-        if annotations.by_colour.insert(colour, annotations.things.len()).is_some() {
-            return Err(format!("line {}: an earlier line has the same colour", number + 1));
+        let mut broken = |reason: &str| annotations.broken_lines.push(format!("line {}: {reason}", number + 1));
+        match parse_line(line.trim()) {
+            Err(reason) => broken(&reason),
+            Ok((colour, _)) if !colours.insert(colour) => {
+                broken("an earlier line has the same colour");
+                // The colour may be either's.
+                annotations.by_colour.remove(&colour);
+            }
+            Ok((colour, thing)) => {
+                annotations.by_colour.insert(colour, annotations.things.len());
+                annotations.things.push(thing);
+            }
         }
-        annotations.things.push(thing);
     }
+    refuse_if_most_broken(&annotations.broken_lines, annotations.things.len())?;
     Ok(annotations)
+}
+
+/// Returns the first broken line as an error if most of the lines are broken.
+pub(super) fn refuse_if_most_broken(broken_lines: &[String], read_lines: usize) -> Result<(), String> {
+    match broken_lines.first() {
+        Some(first) if broken_lines.len() > read_lines => Err(first.clone()),
+        _ => Ok(()),
+    }
 }
 
 /// The colour and the thing of a line.
@@ -75,12 +94,34 @@ mod tests {
 
     #[test]
     fn errors_name_the_line() {
-        let refusal = |lines: &str| parse_annotations(&format!("{ANNOTATIONS_HEADER}\n{lines}")).unwrap_err();
+        let refusal = |lines: &str| {
+            let read = parse_annotations(&format!("{ANNOTATIONS_HEADER}\n{lines}"));
+            read.map_or_else(|first| first, |read| read.broken_lines.concat())
+        };
         assert!(parse_annotations("ply").unwrap_err().starts_with("line 1: is \"ply\""));
         assert_eq!(refusal("1,BC0FF7"), "line 2: does not have four columns: id, colour, category, region");
         assert_eq!(refusal("\n1,BC0FF,\"a\",0"), "line 3: \"BC0FF\" is not a 6-digit hex colour");
         assert_eq!(refusal("x,BC0FF7,\"a\",0"), "line 2: \"x\" is not an id");
         assert_eq!(refusal("1,BC0FF7,\"a\",0\n2,bc0ff7,\"b\",0"), "line 3: an earlier line has the same colour");
+    }
+
+    #[test]
+    fn a_broken_line_leaves_out_its_own_object() {
+        let read = |lines: &str| parse_annotations(&format!("{ANNOTATIONS_HEADER}\n{lines}"));
+        let good = "1,BC0FF7,\"bed\",0\n2,00FF10,\"sofa\",1\n";
+        let bad =
+            ["3,5C557,\"radiator\",0", "3,5C557A0,\"radiator\",0", "3,GC557A,\"radiator\",0", "3", "x,5C557A,\"a\",0"];
+        for line in bad {
+            let annotations = read(&format!("{good}{line}\n4,0000FF,\"lamp\",0\n")).unwrap();
+            let names: Vec<_> = annotations.things.iter().filter_map(|thing| thing.name.as_deref()).collect();
+            assert_eq!(names, ["bed", "sofa", "lamp"], "{line}");
+            assert!(matches!(&annotations.broken_lines[..], [only] if only.starts_with("line 4: ")), "{annotations:?}");
+            assert!(
+                read(&[line; 3].join("\n")).is_err() && read(&format!("{line}\n{line}\n1,BC0FF7,\"bed\",0")).is_err()
+            );
+        }
+        let shared = read(&format!("{good}3,bc0ff7,\"lamp\",0\n")).unwrap();
+        assert_eq!(shared.by_colour, [([0, 0xff, 0x10], 1)].into(), "the colour may be the bed's or the lamp's");
     }
 
     proptest! {

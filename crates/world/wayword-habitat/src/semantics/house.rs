@@ -4,7 +4,7 @@
 //! Format: Matterport3D's `data_organization.md`. This reader uses the lines `R` (regions with their boxes), `O` (objects)
 //! and `C` (categories), and skips the others.
 
-use super::{HouseRegion, SemanticThing};
+use super::{HouseRegion, SemanticThing, hm3d::refuse_if_most_broken};
 use std::collections::BTreeMap;
 use wayword_core::{DVec3, ObjectId};
 
@@ -15,14 +15,16 @@ pub(super) struct MatterportHouse {
     /// Index in `things` of the thing of each number; the mesh refers to things by these numbers.
     pub(super) by_number: BTreeMap<u32, usize>,
     pub(super) regions: Vec<HouseRegion>,
+    /// The lines that cannot be read, each with its reason. Their rooms and objects are left out.
+    pub(super) broken_lines: Vec<String>,
 }
 
-/// Parses the whole file; the error names the line.
+/// Parses the file. A line that cannot be read is left out; the error names the first of them if they are most of the lines.
 pub(super) fn parse_house(text: &str) -> Result<MatterportHouse, String> {
     if !text.starts_with("ASCII") {
         return Err("line 1: does not begin with ASCII".to_owned());
     }
-    let mut regions = Vec::new();
+    let (mut regions, mut broken_lines) = (Vec::new(), Vec::new());
     let mut categories: BTreeMap<i64, &str> = BTreeMap::new();
     let mut objects: BTreeMap<u32, i64> = BTreeMap::new();
     for (number, line) in text.lines().enumerate().skip(1) {
@@ -41,9 +43,12 @@ pub(super) fn parse_house(text: &str) -> Result<MatterportHouse, String> {
             }
             Ok(())
         };
-        read().map_err(|reason| format!("line {}: {reason}", number + 1))?;
+        if let Err(reason) = read() {
+            broken_lines.push(format!("line {}: {reason}", number + 1));
+        }
     }
-    let mut house = MatterportHouse { regions, ..MatterportHouse::default() };
+    refuse_if_most_broken(&broken_lines, regions.len() + categories.len() + objects.len())?;
+    let mut house = MatterportHouse { regions, broken_lines, ..MatterportHouse::default() };
     for (number, category) in objects {
         let id = ObjectId::new(number.to_string()).map_err(|error| error.to_string())?;
         house.by_number.insert(number, house.things.len());
@@ -99,6 +104,15 @@ mod tests {
             house.regions,
             [HouseRegion { low: DVec3::new(-1.0, -2.0, 0.0), high: DVec3::new(3.0, 4.0, 2.5), letter: 'k' }]
         );
+    }
+
+    #[test]
+    fn a_broken_line_leaves_out_its_own_room_or_object() {
+        let house = parse_house(&format!("{TEXT}O x 0 9\nR 1 0 0 0 k 0 0 0 -1 -2 0 3 four 2.5 2.5 0 0 0\n")).unwrap();
+        assert_eq!((house.things.len(), house.regions.len()), (1, 1));
+        let told =
+            ["line 5: column 2: \"x\" is not a valid number", "line 6: column 14: \"four\" is not a valid number"];
+        assert_eq!(house.broken_lines, told);
     }
 
     #[test]

@@ -22,8 +22,12 @@ use wayword_render::{Mesh, MeshMaterial, RenderScene, Texture, TextureFilter};
 /// Largest list of objects and largest mesh that are read, bytes; larger ones are errors.
 const MAX_TEXT_BYTES: u64 = 64 << 20;
 const MAX_MESH_BYTES: u64 = 4 << 30;
-const HM3D_HINT: &str = "download it again from HM3D's semantic annotations";
-const MATTERPORT_HINT: &str = "download it again from Matterport3D for Habitat";
+/// Most lines that a warning lists.
+const MAX_TOLD_LINES: usize = 4;
+const HM3D_HINT: &str =
+    "put HM3D's own .semantic.glb and .semantic.txt beside the scene, or neither to go without labels";
+const MATTERPORT_HINT: &str =
+    "put Matterport3D's own _semantic.ply and .house beside the scene, or neither to go without labels";
 
 /// The id of triangles with painted textures: their objects follow from the colours in the picture.
 pub(super) const PAINTED_ID: u32 = u32::MAX;
@@ -74,6 +78,26 @@ pub(crate) fn check_semantics(
     }))
 }
 
+/// The warning about lines of these files that cannot be read; `None` if there are none.
+pub(crate) fn describe_broken_lines(files: &SemanticFiles) -> Result<Option<String>, FileError> {
+    let (text, lines) = match (&files.painted, &files.numbered) {
+        (Some((_, text)), _) => {
+            (text, hm3d::parse_annotations(&read_text(text, HM3D_HINT)?).map(|read| read.broken_lines))
+        }
+        (None, Some((_, text))) => {
+            (text, house::parse_house(&read_text(text, MATTERPORT_HINT)?).map(|read| read.broken_lines))
+        }
+        (None, None) => return Ok(None),
+    };
+    // A file that cannot be read at all is refused where it is used.
+    let lines = lines.unwrap_or_default();
+    let told: Vec<&str> = lines.iter().take(MAX_TOLD_LINES).map(String::as_str).collect();
+    let more = lines.len().saturating_sub(MAX_TOLD_LINES);
+    let rest = if more > 0 { format!("; and {more} more") } else { String::new() };
+    Ok((!lines.is_empty())
+        .then(|| format!("{}: what these lines tell is left out: {}{rest}", text.display(), told.join("; "))))
+}
+
 fn read_text(file: &Path, hint: &'static str) -> Result<String, FileError> {
     file_error::text_if_there(file, MAX_TEXT_BYTES, hint)?
         .ok_or_else(|| FileError::new(file, "there is no such file", hint))
@@ -81,8 +105,9 @@ fn read_text(file: &Path, hint: &'static str) -> Result<String, FileError> {
 
 /// Reads HM3D's files. The colour of a triangle's texture, or of its vertices, gives its thing.
 fn load_painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> Result<SceneSemantics, FileError> {
-    let hm3d::Hm3dAnnotations { mut things, by_colour } = hm3d::parse_annotations(&read_text(annotations, HM3D_HINT)?)
-        .map_err(|reason| FileError::new(annotations, reason, HM3D_HINT))?;
+    let hm3d::Hm3dAnnotations { mut things, by_colour, .. } =
+        hm3d::parse_annotations(&read_text(annotations, HM3D_HINT)?)
+            .map_err(|reason| FileError::new(annotations, reason, HM3D_HINT))?;
     let model = SceneModel::read_file(mesh, habitat_from_asset)?;
     let (mut meshes, mut shells, mut tally) = (Vec::new(), Vec::new(), PaintTally::default());
     for each in model.meshes {
@@ -138,7 +163,7 @@ fn load_painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> R
 
 /// Reads Matterport3D's files. The number of a face gives its thing.
 fn load_numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result<SceneSemantics, FileError> {
-    let house::MatterportHouse { mut things, by_number, regions } =
+    let house::MatterportHouse { mut things, by_number, regions, .. } =
         house::parse_house(&read_text(house, MATTERPORT_HINT)?)
             .map_err(|reason| FileError::new(house, reason, MATTERPORT_HINT))?;
     let wrong = |reason: String| FileError::new(mesh, reason, MATTERPORT_HINT);

@@ -27,7 +27,7 @@ mod rooms;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use load::{SemanticFiles, SemanticFindings, check_semantics, load_semantics};
+pub(crate) use load::{SemanticFiles, SemanticFindings, check_semantics, describe_broken_lines, load_semantics};
 
 use rooms::{NumberedRooms, ShellPart};
 use std::collections::BTreeMap;
