@@ -5,8 +5,6 @@ mod columns;
 mod direction;
 mod floors;
 #[cfg(test)]
-mod real_scenes;
-#[cfg(test)]
 mod tests;
 mod unit;
 

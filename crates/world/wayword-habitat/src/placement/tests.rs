@@ -1,5 +1,7 @@
 //! Tests with rooms that are written here, turned, mirrored and in other units.
 
+mod real_scenes;
+
 use super::*;
 use glam::DMat3;
 use std::path::Path;
@@ -61,14 +63,14 @@ fn open_flat() -> Mesh {
 }
 
 /// The 24 rotations of a cube.
-pub(super) fn rotations() -> Vec<DMat3> {
+fn rotations() -> Vec<DMat3> {
     let axes = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
     let pairs = axes.into_iter().flat_map(|a| axes.map(|b| (a, b))).filter(|(a, b)| a.dot(*b) == 0.0);
     pairs.map(|(a, b)| DMat3::from_cols(a, b, a.cross(b))).collect()
 }
 
 /// A mesh with its places multiplied. A mirror turns its triangles around, so that they are seen from where they were.
-pub(super) fn moved(mesh: &Mesh, by: DMat3) -> SceneModel {
+fn moved(mesh: &Mesh, by: DMat3) -> SceneModel {
     let mut mesh = mesh.clone();
     mesh.positions.iter_mut().for_each(|place| *place = (by * place.as_dvec3()).as_vec3());
     if by.determinant() < 0.0 {
@@ -78,7 +80,7 @@ pub(super) fn moved(mesh: &Mesh, by: DMat3) -> SceneModel {
 }
 
 /// A stage that is read with z up, as Wayword's own frame.
-pub(super) fn stage() -> HabitatStage {
+fn stage() -> HabitatStage {
     HabitatStage::from_file(Path::new("nowhere/x.glb")).unwrap()
 }
 

@@ -1,9 +1,6 @@
 //! Scenes that others made, in 24 rotations and three units. Needs the data; without it the test prints that it is skipped.
 
-use super::{
-    tests::{moved, rotations, stage},
-    *,
-};
+use super::*;
 use std::path::PathBuf;
 
 /// The scenes, and whether they have ceilings. Without them nothing shows the unit.
