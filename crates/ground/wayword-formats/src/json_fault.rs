@@ -28,7 +28,7 @@ impl JsonFault {
                 ("something follows the end of the JSON", "give one list, or one object in each line")
             }
             (Category::Io, bounded_tokens::NOT_A_NUMBER) => {
-                (message, "write a number there, or null where there is none")
+                (message, "write a number there; null only where a value may be missing")
             }
             (Category::Io, bounded_tokens::TOO_LONG) => (message, "shorten it, or leave it out"),
             (Category::Io, _) => (message, CUT_OFF),
