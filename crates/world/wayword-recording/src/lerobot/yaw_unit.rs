@@ -8,13 +8,15 @@ const FULL_TURN_RAD: f64 = std::f64::consts::TAU + 0.1;
 const MIN_STEP_M: f64 = 0.1;
 /// Fewest steps from which a unit is judged.
 const MIN_STEPS: usize = 4;
-/// The path follows a yaw if the cosine between them is this on average (that of 10 degrees), or its opposite: a robot may drive
-/// backwards.
+/// The path follows a yaw if the cosine between them is this (that of 10 degrees) at most steps, or its opposite: a robot may
+/// drive backwards.
 const FOLLOWS: f64 = 0.985;
 /// It does not if the cosine is less than this (that of 16 degrees). Two corridors can fit a wrong unit nearly.
 const FITS_NEARLY: f64 = 0.96;
 /// Within a full turn, radians are doubted only if the path leads elsewhere, by 60 degrees (this is the cosine).
 const LEADS_ELSEWHERE: f64 = 0.5;
+/// The share of steps that may fit less well: those at corners.
+const CORNER_SHARE: f64 = 0.2;
 
 /// A unit of angles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,17 +71,21 @@ fn describe_doubt(most: f64, path: &str) -> String {
 fn follow_path(poses: &[(DVec3, f64)], unit: AngleUnit) -> (usize, f64) {
     let mut poses = poses.iter().filter(|(position, yaw)| position.is_finite() && yaw.is_finite());
     let Some(mut from) = poses.next() else { return (0, 0.0) };
-    let (mut steps, mut sum) = (0, 0.0);
+    let mut cosines = Vec::new();
     for to in poses {
         let step = to.0 - from.0;
         if libm::hypot(step.x, step.y) < MIN_STEP_M {
             continue;
         }
-        sum += libm::cos(libm::atan2(step.y, step.x) - unit.to_rad(from.1));
-        steps += 1;
+        cosines.push(libm::cos(libm::atan2(step.y, step.x) - unit.to_rad(from.1)));
         from = to;
     }
-    (steps, sum / steps.max(1) as f64)
+    let sign = if cosines.iter().sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
+    cosines.iter_mut().for_each(|cosine| *cosine *= sign);
+    cosines.sort_by(f64::total_cmp);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a length is an index")]
+    let corners = (cosines.len() as f64 * CORNER_SHARE) as usize;
+    (cosines.len(), sign * cosines.get(corners).copied().unwrap_or(0.0).max(0.0))
 }
 
 #[cfg(test)]
@@ -116,7 +122,8 @@ mod tests {
     fn corridors(yaw: impl Fn(f64) -> f64) -> Vec<(DVec3, f64)> {
         let pose = |at: u32| {
             let (x, y) = if at < 20 { (f64::from(at), 0.0) } else { (20.0, f64::from(at) - 20.0) };
-            (DVec3::new(x, y, 0.0) * 0.25, yaw(if at < 20 { 0.0 } else { 90.0 }))
+            // It turns after the first step around the corner.
+            (DVec3::new(x, y, 0.0) * 0.25, yaw(if at <= 20 { 0.0 } else { 90.0 }))
         };
         (0..40).map(pose).collect()
     }
