@@ -170,9 +170,13 @@ fn take_path(item: &mut DatasetItem<'_>) -> Result<Path, FormatError> {
     if frames.is_empty() {
         return Err(item.wrong_field("path.frames", "it is empty", "add at least one frame"));
     }
+    let is_motion_known = path.get("motion").is_none_or(|motion| motion == "known");
     // One by one, so that an error can name the frame.
     for (index, frame) in frames.iter().enumerate() {
-        item.parse_value::<wayword_core::Frame>(&format!("path.frames[{index}]"), frame.clone())?;
+        // Where the motion is not known, frames need no pose.
+        if is_motion_known || frame.get("pose").is_some() {
+            item.parse_value::<wayword_core::Frame>(&format!("path.frames[{index}]"), frame.clone())?;
+        }
     }
     item.parse_value("path", path)
 }
