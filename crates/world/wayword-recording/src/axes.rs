@@ -64,6 +64,7 @@ impl PoseAxes {
 
     /// The camera's heading in Wayword's frame by a quaternion (x, y, z, w); `None` if the camera looks straight up or down,
     /// or the quaternion is invalid.
+    #[cfg(any(feature = "lerobot", feature = "mcap", test))]
     pub(crate) fn heading_by_quaternion(self, recorded_from_body: [f64; 4]) -> Option<Heading> {
         self.heading_along(rotate_vector(recorded_from_body, self.body_ahead())?)
     }

@@ -224,8 +224,8 @@ impl PoseReview<'_> {
                 let each = fitting.iter().map(|other| format!("{} ({})", settings(other), axis_words(other.axes)));
                 let each = each.collect::<Vec<_>>().join(", or ");
                 format!(
-                    "These fit, and the poses do not show which is right: one turns the others' climbs into descents or \
-                     their left into right. Write {each} {file}{keep}"
+                    "These fit, and differ in left and right or in up and down; the poses do not show which is right. \
+                     Write {each} {file}{keep}"
                 )
             }
         }

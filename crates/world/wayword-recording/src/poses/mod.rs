@@ -13,7 +13,9 @@ mod scale;
 mod sensor_file;
 mod unread;
 
-pub(crate) use find::{PicturePlace, PoseSource, find_pose_file};
+#[cfg(any(feature = "video", test))]
+pub(crate) use find::find_pose_file;
+pub(crate) use find::{PicturePlace, PoseSource};
 pub(crate) use unread::describe_unread;
 
 use crate::{
@@ -37,6 +39,7 @@ const POSE_FILE_HINT: &str = "docs/RECORDINGS.md shows the pose files that can b
 ///
 /// # Errors
 /// When it cannot be read, or has no pose for any of these pictures.
+#[cfg(any(feature = "video", test))]
 pub(crate) fn read_track(
     file: &Path,
     described: &RecordingDescription,
