@@ -46,6 +46,16 @@ pub(crate) enum AngleUnit {
     Degrees,
 }
 
+impl AngleUnit {
+    /// An angle in this unit, in radians.
+    pub(crate) fn to_rad(self, angle: f64) -> f64 {
+        match self {
+            Self::Radians => angle,
+            Self::Degrees => angle.to_radians(),
+        }
+    }
+}
+
 /// The order and the direction of the numbers of a pose.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct NumberReading {

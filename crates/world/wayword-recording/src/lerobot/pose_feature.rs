@@ -2,12 +2,13 @@
 
 use super::{
     info::{DatasetFeature, DatasetInfo},
-    yaw_unit::{AngleUnit, judge_yaw_unit},
+    yaw_unit::judge_yaw_unit,
 };
 use crate::{
     axes::{PoseAxes, PoseBody, WorldUpAxis, rotation_columns},
     describe::RecordingDescription,
     pose_plausibility::PoseSample,
+    pose_reading::AngleUnit,
     track::TrackFix,
 };
 use std::path::Path;

@@ -1,5 +1,6 @@
 //! Finds out whether a yaw without a unit is in radians or in degrees: a robot mostly moves where it looks.
 
+use crate::pose_reading::AngleUnit;
 use wayword_core::DVec3;
 
 /// A yaw beyond this is more than a full turn in radians. Robots that add up their turns get there, and degrees do.
@@ -17,23 +18,6 @@ const FITS_NEARLY: f64 = 0.96;
 const LEADS_ELSEWHERE: f64 = 0.5;
 /// The share of steps that may fit less well: those at corners.
 const CORNER_SHARE: f64 = 0.2;
-
-/// A unit of angles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum AngleUnit {
-    Radians,
-    Degrees,
-}
-
-impl AngleUnit {
-    /// An angle in this unit, in radians.
-    pub(super) fn to_rad(self, angle: f64) -> f64 {
-        match self {
-            Self::Radians => angle,
-            Self::Degrees => angle.to_radians(),
-        }
-    }
-}
 
 /// The unit of yaws, counter-clockwise from +x, by the positions at which they were recorded. The error gives the reason why it
 /// cannot be known.

@@ -22,7 +22,7 @@ use crate::{
     axes::{PoseAxes, PoseBody, WorldUpAxis},
     describe::{DESCRIPTION_HINT, RecordingDescription},
     pose_plausibility::{self, PoseDoubt, RecordedWalk},
-    pose_reading::{AngleUnit, NumberReading, QuaternionOrder, TransformDirection},
+    pose_reading::{NumberReading, QuaternionOrder, TransformDirection},
     track::CameraTrack,
 };
 use clock::{FrameCount, PictureClock};
@@ -174,11 +174,10 @@ impl TrackMaker<'_> {
         }
         match self.described.angle_unit {
             None => self.ask(scale::find_angle_doubt(&self.rows, axes)),
-            Some(AngleUnit::Radians) => Ok(()),
-            Some(AngleUnit::Degrees) => {
+            Some(unit) => {
                 for row in &mut self.rows.rows {
                     if let PoseFacing::Yaw(yaw) = row.facing {
-                        row.facing = PoseFacing::Yaw(yaw.to_radians());
+                        row.facing = PoseFacing::Yaw(unit.to_rad(yaw));
                     }
                 }
                 Ok(())

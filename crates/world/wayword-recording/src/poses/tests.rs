@@ -1,6 +1,7 @@
 //! Tests of all formats of pose files.
 
 use super::*;
+use crate::pose_reading::AngleUnit;
 use proptest::prelude::*;
 use wayword_core::DVec3;
 
