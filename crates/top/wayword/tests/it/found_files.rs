@@ -23,7 +23,7 @@ fn the_object_counts_under_the_name_that_vln_duet_gives_it() {
         let object = walk.shift_remove("predObjId").unwrap();
         walk.insert(
             "pred_objid".to_owned(),
-            object.as_u64().map_or(object.clone(), |number| number.to_string().into()),
+            object.as_u64().map_or(object, |number| number.to_string().into()),
         );
     });
     let official = report(&evaluate(&building, &annotated(&building, EPISODES), EPISODES, &["--json"]));
