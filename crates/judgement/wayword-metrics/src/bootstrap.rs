@@ -34,6 +34,14 @@ pub struct MeanEstimate {
     pub clusters: usize,
 }
 
+impl MeanEstimate {
+    /// The ends of the interval; `None` where all values come in one group, because nothing shows how groups differ.
+    #[must_use]
+    pub fn interval(&self) -> Option<[f64; 2]> {
+        (self.clusters > 1).then_some([self.low, self.high])
+    }
+}
+
 /// The mean of values, with a percentile bootstrap interval (Efron 1979) that draws whole clusters with replacement.
 ///
 /// Items on one path are not independent: REVERIE's 501 val_seen items are 126 paths. Drawing items one by one would make

@@ -31,8 +31,9 @@ pub struct CaptionFigures {
     pub bleu: [MeanEstimate; 4],
     /// ROUGE-L.
     pub rouge_l: MeanEstimate,
-    /// CIDEr-D; often printed times 100.
-    pub cider_d: MeanEstimate,
+    /// CIDEr-D; often printed times 100. `None` for one text: how rare a word is cannot be told from one item, and the measure is 0 for
+    /// every text.
+    pub cider_d: Option<MeanEstimate>,
 }
 
 /// Figures of a set of texts and of the two anchors. `rest`, `person` and `other_path` can be compared with each other: all three
@@ -188,6 +189,10 @@ impl CaptionFigures {
             values: means.texts,
             clusters: sums.len(),
         };
-        Some(Self { bleu: std::array::from_fn(estimate), rouge_l: estimate(4), cider_d: estimate(5) })
+        Some(Self {
+            bleu: std::array::from_fn(estimate),
+            rouge_l: estimate(4),
+            cider_d: (means.texts > 1).then(|| estimate(5)),
+        })
     }
 }

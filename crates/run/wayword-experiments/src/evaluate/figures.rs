@@ -185,6 +185,9 @@ impl fmt::Display for SubmissionReport {
         if self.whatever_the_rule.contains_key(&TrajectoryMetric::Rgs) && self.objects_named == 0 {
             writeln!(f, "no trajectory names an object (predObjId), so RGS and RGSPL are 0")?;
         }
+        if self.paths == 1 {
+            return write!(f, "\nmeans over instructions, without intervals, because all are about one path");
+        }
         write!(f, "\nmeans over instructions, with {:.0} % intervals, clustered by path", self.level * 100.0)
     }
 }
@@ -194,13 +197,20 @@ fn write_figure_table(
     figures: &BTreeMap<TrajectoryMetric, SubmissionFigure>,
 ) -> fmt::Result {
     for (metric, SubmissionFigure { estimate, left_out }) in figures {
-        let MeanEstimate { mean, low, high, .. } = estimate;
-        let name = metric.table_name();
+        let (name, mean) = (metric.table_name(), estimate.mean);
         match metric {
             TrajectoryMetric::NavigationErrorM | TrajectoryMetric::TrajectoryLengthM => {
-                write!(f, "  {name:<7} {mean:>7.2}     {low:.2} to {high:.2}")?;
+                write!(f, "  {name:<7} {mean:>7.2}")?;
+                if let Some([low, high]) = estimate.interval() {
+                    write!(f, "     {low:.2} to {high:.2}")?;
+                }
             }
-            _ => write!(f, "  {name:<7} {:>6.1} %    {:.1} to {:.1} %", mean * 100.0, low * 100.0, high * 100.0)?,
+            _ => {
+                write!(f, "  {name:<7} {:>6.1} %", mean * 100.0)?;
+                if let Some([low, high]) = estimate.interval() {
+                    write!(f, "    {:.1} to {:.1} %", low * 100.0, high * 100.0)?;
+                }
+            }
         }
         if *left_out > 0 {
             let why = if *metric == TrajectoryMetric::NavigationErrorM {

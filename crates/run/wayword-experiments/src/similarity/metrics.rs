@@ -152,6 +152,12 @@ impl fmt::Display for TextMetricsReport {
             writeln!(f, "only in the first row, because B has one text for them: {}", count_phrase(*single, "item"))?;
         }
         if let Some(figures) = all {
+            if figures.cider_d.is_none() {
+                writeln!(f, "no CIDEr-D: how rare a word is cannot be told from one item")?;
+            }
+            if figures.rouge_l.interval().is_none() {
+                writeln!(f, "no intervals: all texts are about one path")?;
+            }
             let [one, two, three, _] = figures.bleu.map(|bleu| format_percent(&bleu));
             writeln!(f, "A against all of B's texts: BLEU-1 {one}, BLEU-2 {two}, BLEU-3 {three}")?;
         }
@@ -213,7 +219,8 @@ fn format_share(value: Option<f64>) -> String {
 fn write_metric_row(f: &mut fmt::Formatter<'_>, name: &str, figures: Option<&CaptionFigures>) -> fmt::Result {
     match figures {
         Some(CaptionFigures { bleu, rouge_l, cider_d }) => {
-            let [bleu, rouge_l, cider_d] = [&bleu[3], rouge_l, cider_d].map(format_percent);
+            let [bleu, rouge_l] = [&bleu[3], rouge_l].map(format_percent);
+            let cider_d = cider_d.as_ref().map_or_else(|| "-".to_owned(), format_percent);
             writeln!(f, "{name:<42} {bleu:>22} {rouge_l:>22} {cider_d:>22}")
         }
         None => writeln!(f, "{name:<42} {:>22} nothing to measure", "-"),

@@ -106,9 +106,10 @@ fn write_sides(f: &mut fmt::Formatter<'_>, [a, b]: [&SimilaritySide; 2]) -> fmt:
 }
 
 /// A share and its interval in percent.
-fn format_percent(MeanEstimate { mean, low, high, .. }: &MeanEstimate) -> String {
-    let [mean, low, high] = [mean, low, high].map(|value| format!("{:.1}", value * 100.0));
-    format!("{mean} ({low} to {high})")
+fn format_percent(estimate: &MeanEstimate) -> String {
+    let percent = |value: f64| format!("{:.1}", value * 100.0);
+    let interval = estimate.interval().map(|[low, high]| format!(" ({} to {})", percent(low), percent(high)));
+    percent(estimate.mean) + &interval.unwrap_or_default()
 }
 
 impl fmt::Display for SimilarityReport {
@@ -129,8 +130,11 @@ impl fmt::Display for SimilarityReport {
 
 fn write_cosine_row(f: &mut fmt::Formatter<'_>, name: &str, estimate: Option<&MeanEstimate>) -> fmt::Result {
     match estimate {
-        Some(MeanEstimate { mean, low, high, values, clusters }) => {
-            writeln!(f, "{name:<38} {mean:>6.3}   {low:.3} to {high:.3}  {values:>6} {clusters:>6}")
+        Some(estimate) => {
+            let interval = estimate.interval().map(|[low, high]| format!("{low:.3} to {high:.3}"));
+            let MeanEstimate { mean, values, clusters, .. } = estimate;
+            let interval = interval.unwrap_or_else(|| "one path".to_owned());
+            writeln!(f, "{name:<38} {mean:>6.3}   {interval:<14}  {values:>6} {clusters:>6}")
         }
         None => writeln!(f, "{name:<38} {:>6}   nothing to measure", "-"),
     }

@@ -94,6 +94,24 @@ fn metrics_are_between_another_person_and_another_path_and_name_their_protocol()
 }
 
 #[test]
+fn one_item_has_no_interval_and_no_figure_that_needs_several() {
+    let building = Building::new();
+    let items: Vec<Value> = serde_json::from_slice(&fs::read(building.reverie()).unwrap()).unwrap();
+    building.write("one.json", Value::from(&items[..1]).to_string());
+    let shown = building.wayword(&["similarity", "one.json", "one.json", "--metrics", "--resamples", "100"]);
+    assert_eq!(shown.code, Some(0), "{shown:?}");
+    assert!(shown.out.contains("no CIDEr-D: how rare a word is cannot be told from one item"), "{shown:?}");
+    assert!(shown.out.contains("no intervals: all texts are about one path"), "{shown:?}");
+    let row = shown.out.lines().find(|line| line.starts_with("A against all of B's texts ")).unwrap();
+    assert!(row.trim_end().ends_with('-') && row.contains("100.0") && !row.contains("to"), "{row}");
+    let found =
+        building.wayword(&["similarity", "one.json", "one.json", "--metrics", "--resamples", "100", "--json"]).json();
+    assert!(found["all"]["cider_d"].is_null(), "{found}");
+    let cosine = building.wayword(&["similarity", "one.json", "one.json", "--resamples", "100"]);
+    assert!(cosine.out.contains("one path"), "{cosine:?}");
+}
+
+#[test]
 fn metrics_need_no_model_and_texts_may_be_cut_off() {
     let building = Building::new();
     let metrics = |more: &[&str]| {
