@@ -11,7 +11,10 @@ use super::{
     request_guard::{self, RequestLimiter, RequestSource},
 };
 use crate::{
-    store::{ArrivalOutcome, InputRefusal, ParticipantArrival, ParticipantInput, StudyTransaction, WithdrawalChoice},
+    store::{
+        ArrivalOutcome, InputRefusal, ParticipantArrival, ParticipantInput, StudyTransaction, WithdrawalChoice,
+        may_be_issued,
+    },
     study::{RecruiterSettings, Study, StudyError, StudyTask},
     token::is_token,
 };
@@ -338,6 +341,13 @@ async fn open_recruiter_link(State(site): SiteState, Query(query): Query<BTreeMa
         );
     }
     let value = |name: &String| query.get(name).cloned().unwrap_or_default();
+    if let Some(parameter) = [person, session].into_iter().find(|name| !may_be_issued(&value(name), name)) {
+        let text = format!(
+            "Please open the study from the recruiter's page. A preview has no id: {parameter} in this link is empty, or a placeholder."
+        );
+        let page = StudyPage::message_page(&site.study, "This link has no participant's id", &text, false);
+        return page_response(&site, StatusCode::FORBIDDEN, &page);
+    }
     let arrival = ParticipantArrival::Recruit { person: value(person), session: value(session), study: value(study) };
     response_or_problem_page(handle_arrival(&site, arrival).await, &site)
 }

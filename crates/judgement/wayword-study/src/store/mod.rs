@@ -11,7 +11,7 @@ mod stage;
 
 pub(crate) use answers::{InputRefusal, MAX_MOVES_PER_WALK, MAX_OWN_TEXT_CHARS, ParticipantInput};
 pub use counts::{ConditionProgress, StudyProgress};
-pub(crate) use people::{ArrivalOutcome, ParticipantArrival, WithdrawalChoice};
+pub(crate) use people::{ArrivalOutcome, ParticipantArrival, WithdrawalChoice, may_be_issued};
 pub use people::{ErasureReport, InviteTokens};
 pub use recruits::{Reconciliation, ReconciliationRow};
 pub(crate) use stage::{AnswerProgress, ParticipantStage, ParticipationOutcome, StoredSlot};

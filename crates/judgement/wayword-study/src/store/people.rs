@@ -18,6 +18,21 @@ const MAX_SESSIONS_PER_PERSON: i64 = 8;
 /// Longest id from a recruiter, bytes. A link with a longer one counts as unknown.
 const MAX_RECRUITER_ID_BYTES: usize = 128;
 
+/// What scripts and templates leave where a value is missing. No recruiter issues these as ids.
+const NO_IDS: [&str; 6] = ["undefined", "null", "none", "nan", "nil", "false"];
+
+/// Whether a recruiter may have issued an id. An empty one, a missing value, and the name of a parameter (a template that nobody
+/// filled in) are none.
+pub(crate) fn may_be_issued(id: &str, parameter: &str) -> bool {
+    let is = |other: &str| id.eq_ignore_ascii_case(other);
+    is_plain_id(id) && !id.is_empty() && !is(parameter) && !NO_IDS.into_iter().any(is)
+}
+
+fn is_plain_id(id: &str) -> bool {
+    id.len() <= MAX_RECRUITER_ID_BYTES
+        && id.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'_' | b'.' | b':'))
+}
+
 /// The link by which a visitor came.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -31,14 +46,12 @@ pub(crate) enum ParticipantArrival {
 impl ParticipantArrival {
     /// Whether its parts have the form of tokens and ids, which the site accepts.
     pub(crate) fn is_plain(&self) -> bool {
-        let is_id = |id: &str| {
-            id.len() <= MAX_RECRUITER_ID_BYTES
-                && id.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'_' | b'.' | b':'))
-        };
         match self {
             Self::Link(token) => is_token(token),
             Self::Recruit { person, study, session } => {
-                !person.is_empty() && !session.is_empty() && [person, study, session].into_iter().all(|id| is_id(id))
+                !person.is_empty()
+                    && !session.is_empty()
+                    && [person, study, session].into_iter().all(|id| is_plain_id(id))
             }
         }
     }

@@ -41,7 +41,7 @@ pub struct Reconciliation {
 impl StudyTransaction<'_> {
     /// Compares the recruiter's list with ours.
     pub(crate) fn reconcile_recruiter_list(&self, file: &Path) -> Result<Reconciliation, StudyError> {
-        let theirs = read_recruiter_list(file)?;
+        let (theirs, repeated) = read_recruiter_list(file)?;
         let mut find = self.db.prepare(
             "SELECT recruit.id, person.name, person.status FROM recruit JOIN person ON person.id = recruit.person",
         )?;
@@ -69,7 +69,9 @@ impl StudyTransaction<'_> {
                 participant: our.map(|(name, _)| name.clone()),
                 ours: our.map(|(_, status)| *status),
                 theirs: their.cloned(),
-                problem: status_conflict(our.map(|(_, status)| *status), their.map(String::as_str)),
+                problem: status_conflict(our.map(|(_, status)| *status), their.map(String::as_str)).or_else(|| {
+                    repeated.contains(id).then_some("they list this id several times; its best status counts")
+                }),
             }
         };
         let mut rows: Vec<ReconciliationRow> = ids.into_iter().map(row).collect();
@@ -81,7 +83,7 @@ impl StudyTransaction<'_> {
 
 /// How our status and theirs disagree. The names of their statuses are those of Prolific and MTurk.
 fn status_conflict(ours: Option<ParticipantStatus>, theirs: Option<&str>) -> Option<&'static str> {
-    let theirs = theirs.map(|status| status.trim().to_ascii_uppercase().replace(['-', '_'], " "));
+    let theirs = theirs.map(comparable_status);
     let is_listed_done = matches!(theirs.as_deref(), Some("APPROVED" | "AWAITING REVIEW" | "SUBMITTED"));
     let is_listed_left = matches!(theirs.as_deref(), Some("RETURNED" | "TIMED OUT" | "REJECTED" | "ABANDONED"));
     match (ours, theirs.as_deref()) {
@@ -122,8 +124,21 @@ fn plain_status(status: &str) -> String {
     status.chars().filter(is_plain).take(40).collect()
 }
 
-/// Reads ids and statuses from a recruiter's file.
-fn read_recruiter_list(file: &Path) -> Result<BTreeMap<String, String>, StudyError> {
+/// A status in the form in which statuses are compared.
+fn comparable_status(status: &str) -> String {
+    status.trim().to_ascii_uppercase().replace(['-', '_'], " ")
+}
+
+/// How far a participant came by a status of the recruiter: of several rows of one id the highest counts, in whatever order they are.
+fn status_rank(status: &str) -> (usize, String) {
+    const ASCENDING: [&str; 4] = ["ACTIVE", "SUBMITTED", "AWAITING REVIEW", "APPROVED"];
+    let status = comparable_status(status);
+    let rank = ASCENDING.iter().position(|known| *known == status).map_or(0, |at| at + 1);
+    (rank, status)
+}
+
+/// Reads ids and statuses from a recruiter's file, with the ids that have several rows.
+fn read_recruiter_list(file: &Path) -> Result<(BTreeMap<String, String>, BTreeSet<String>), StudyError> {
     let wrong = |problem: String| StudyError::File {
         path: file.to_owned(),
         problem,
@@ -140,14 +155,23 @@ fn read_recruiter_list(file: &Path) -> Result<BTreeMap<String, String>, StudyErr
     let (Some(person), Some(status)) = (column(&PERSON_COLUMN_NAMES), column(&STATUS_COLUMN_NAMES)) else {
         return Err(wrong("it has no column of participants, or none of their status".to_owned()));
     };
-    let mut statuses = BTreeMap::new();
+    let (mut statuses, mut repeated) = (BTreeMap::<String, String>::new(), BTreeSet::new());
     for row in reader.records() {
         let row = row.map_err(|error| wrong(error.to_string()))?;
         if let (Some(person), Some(status)) = (row.get(person), row.get(status)) {
-            statuses.insert(person.trim().to_owned(), status.trim().to_owned());
+            let (person, status) = (person.trim().to_owned(), status.trim().to_owned());
+            match statuses.get(&person) {
+                Some(other) => {
+                    repeated.insert(person.clone());
+                    if status_rank(&status) > status_rank(other) {
+                        statuses.insert(person, status);
+                    }
+                }
+                None => drop(statuses.insert(person, status)),
+            }
         }
     }
-    Ok(statuses)
+    Ok((statuses, repeated))
 }
 
 #[cfg(test)]

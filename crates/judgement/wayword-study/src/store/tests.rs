@@ -461,8 +461,28 @@ fn reconcile_compares_the_recruiters_list_with_ours() {
     let told: Vec<(&str, bool)> =
         matched.rows.iter().map(|row| (row.recruiter_id.as_str(), row.problem.is_some())).collect();
     assert_eq!(told, [("p2", true), ("p1", false), ("p3", false)]);
+    // Several rows of an id count the same in whatever order they are.
+    for statuses in ["1,p1,RETURNED\n2,p1,APPROVED\n", "1,p1,APPROVED\n2,p1,RETURNED\n"] {
+        std::fs::write(&file, format!("Submission id,Participant id,Status\n{statuses}")).unwrap();
+        let rows = desk.study.reconcile_recruiter_list(&file).unwrap().rows;
+        let row = rows.iter().find(|row| row.recruiter_id == "p1").unwrap();
+        assert_eq!(row.theirs.as_deref(), Some("APPROVED"));
+        assert!(row.problem.unwrap().contains("several times"), "{row:?}");
+    }
     desk.study.close(true).unwrap();
     assert!(desk.study.reconcile_recruiter_list(&file).unwrap_err().to_string().contains("first"));
+}
+
+#[test]
+fn what_a_template_leaves_where_a_value_is_missing_is_no_id() {
+    for none in
+        ["", "undefined", "NULL", "NaN", "PROLIFIC_PID", "prolific_pid", "{{%PROLIFIC_PID%}}", "[object Object]"]
+    {
+        assert!(!people::may_be_issued(none, "PROLIFIC_PID"), "{none}");
+    }
+    for id in ["5f0000000000000000000001", "A1B2C3D4", "1042", "nullius"] {
+        assert!(people::may_be_issued(id, "PROLIFIC_PID"), "{id}");
+    }
 }
 
 #[test]

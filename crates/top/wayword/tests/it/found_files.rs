@@ -21,10 +21,7 @@ fn the_object_counts_under_the_name_that_vln_duet_gives_it() {
     let building = Building::new();
     let of_duet = changed(&building, EPISODES, |walk| {
         let object = walk.shift_remove("predObjId").unwrap();
-        walk.insert(
-            "pred_objid".to_owned(),
-            object.as_u64().map_or(object, |number| number.to_string().into()),
-        );
+        walk.insert("pred_objid".to_owned(), object.as_u64().map_or(object, |number| number.to_string().into()));
     });
     let official = report(&evaluate(&building, &annotated(&building, EPISODES), EPISODES, &["--json"]));
     let found = report(&evaluate(&building, &of_duet, EPISODES, &["--json"]));
