@@ -62,7 +62,9 @@ pub fn read_split(file: &Path, platform: &dyn Platform) -> Result<SplitEpisodes,
         format => format.read_file(file)?,
     };
     for episode in episodes.iter_mut().filter(|episode| !episode.floor_positions.is_empty()) {
-        episode.viewpoints = viewpoints_along_path(platform, &path_for_episode(platform, episode)?)?;
+        let path = path_for_episode(platform, episode)?;
+        refuse_far_from_graph(platform, &path)?;
+        episode.viewpoints = viewpoints_along_path(platform, &path)?;
     }
     if let Some(without_viewpoints) = episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
         return Err(CommandError::usage(
@@ -87,16 +89,24 @@ pub fn path_name(scene: &SceneId, path_id: &str) -> String {
 /// The viewpoints nearest to the frames of a path, without repeats in a row.
 ///
 /// # Errors
-/// When its scene is unknown, or a frame lies far from every viewpoint.
+/// When its scene is unknown.
 pub(crate) fn viewpoints_along_path(
     platform: &dyn Platform,
     path: &wayword_core::Path,
 ) -> Result<Vec<ViewpointId>, CommandError> {
     let graph = platform.graph_for_scene(&path.scene)?;
-    let mut viewpoints = Vec::with_capacity(path.frames.len());
+    let nearest = |frame: &wayword_core::Frame| nearest_viewpoint(&graph, frame.pose.position);
+    let mut viewpoints: Vec<ViewpointId> =
+        path.frames.iter().filter_map(nearest).map(|(viewpoint, _)| viewpoint.clone()).collect();
+    viewpoints.dedup();
+    Ok(viewpoints)
+}
+
+/// Refuses positions of VLN-CE that lie nowhere near the viewpoints, as those of another scene or in another frame do.
+fn refuse_far_from_graph(platform: &dyn Platform, path: &wayword_core::Path) -> Result<(), CommandError> {
+    let graph = platform.graph_for_scene(&path.scene)?;
     for position in path.frames.iter().map(|frame| frame.pose.position) {
-        let Some((viewpoint, off_m)) = nearest_viewpoint(&graph, position) else { continue };
-        if off_m > MAX_OFF_GRAPH_M {
+        if let Some((_, off_m)) = nearest_viewpoint(&graph, position).filter(|(_, off_m)| *off_m > MAX_OFF_GRAPH_M) {
             let problem = format!(
                 "path {}: its place at {:.2}, {:.2}, {:.2} (metres, z up) lies {off_m:.1} m from the nearest viewpoint of scene {}",
                 path.id, position.x, position.y, position.z, path.scene
@@ -104,10 +114,8 @@ pub(crate) fn viewpoints_along_path(
             let hint = "check that the file's positions are in this scene's frame (VLN-CE: Habitat's, y up)";
             return Err(CommandError::usage(problem, hint));
         }
-        viewpoints.push(viewpoint.clone());
     }
-    viewpoints.dedup();
-    Ok(viewpoints)
+    Ok(())
 }
 
 /// A place that lies farther than this from every viewpoint is not on the graph, metres: the radius of a goal.

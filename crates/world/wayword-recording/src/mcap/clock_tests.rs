@@ -200,6 +200,16 @@ fn clocks_that_differ_by_a_constant_are_brought_together_and_told() {
     }
 }
 
+#[test]
+fn a_delay_that_a_camera_may_have_moves_nothing_and_is_told() {
+    for base in [walk(), walk_by_transforms()] {
+        let sent = change(base, |message| message.logged_ns += if is_picture(message) { 700 * MS } else { 0 });
+        let remarks = remarks_of_whole("a slow camera", &sent, 1e-3);
+        assert!(remarks.contains("0.7 s") && remarks.contains("the stamps are believed"), "{remarks}");
+        assert!(remarks.contains("clock = \"recorder\""), "{remarks}");
+    }
+}
+
 /// What happened to the clocks, and how it changes a message.
 type ClockChange = (&'static str, fn(&mut SentMessage));
 
@@ -349,7 +359,7 @@ fn changed_clocks_give_the_same_pictures_at_the_same_places() {
             MessageBody::Grey(_) => (from_ns..=to_ns).contains(&message.stamp_ns),
             _ => (from_ns - S..=to_ns + S).contains(&message.stamp_ns),
         });
-        let shift_ns = dice.random_range(700 * MS..2000 * S) * if dice.random_bool(0.5) { 1 } else { -1 };
+        let shift_ns = dice.random_range(1400 * MS..2000 * S) * if dice.random_bool(0.5) { 1 } else { -1 };
         let (of_pictures, of_all) = (dice.random_bool(0.5), dice.random_range(-1000 * S..1000 * S));
         let jitter_ms = dice.random_range(1..60_i64);
         let mut sent = change(base, |message| {

@@ -28,6 +28,9 @@ const MIN_STANDING_NS: i64 = 1_000_000_000;
 /// because they are slow: by up to this, nanoseconds. Such a frame moves little.
 const MAX_GROUND_GAP_NS: i64 = 2_000_000_000;
 
+/// A constant gap up to this may be the time that a camera needs to compress and send a picture, nanoseconds: its stamp is right then.
+const MAX_DELAY_NS: i64 = 1_200_000_000;
+
 /// Which messages count, and at what times.
 #[derive(Debug)]
 pub(crate) struct ClockPlan {
@@ -107,6 +110,15 @@ impl ClockPlan {
             match gap {
                 ClockGap::None => {}
                 _ if edge.places_ground() && gap.most_ns() <= MAX_GROUND_GAP_NS => {}
+                ClockGap::Constant(ahead_ns) if ahead_ns.saturating_abs() <= MAX_DELAY_NS => {
+                    self.remarks.push(format!(
+                        "by the recorder's clock, the stamps of {} are {:.1} s {} those of the pictures; that is taken for a delay on \
+                         the way to the recorder, and the stamps are believed. If the clocks differ, {CLOCK_HINT}",
+                        edge.name,
+                        seconds(ahead_ns.saturating_abs()),
+                        if ahead_ns < 0 { "behind" } else { "ahead of" },
+                    ));
+                }
                 ClockGap::Constant(ahead_ns) => {
                     timing.shift_ns = ahead_ns.saturating_neg();
                     self.remarks.push(format!(
