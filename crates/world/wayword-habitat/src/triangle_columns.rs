@@ -78,10 +78,10 @@ impl TriangleColumns {
         let extent = high - low;
         loop {
             // Casts saturate; the additional cell takes the triangles on the far edge.
-            columns.size = [extent.x, extent.y].map(|side| (side / columns.side_m) as usize + 1);
-            let cells = columns.size[0] as u64 * columns.size[1] as u64;
-            let touched_cells: u64 =
-                columns.triangles.iter().map(|triangle| columns.touched_cell_count(triangle)).sum();
+            columns.size = [extent.x, extent.y].map(|side| ((side / columns.side_m) as usize).saturating_add(1));
+            let cells = (columns.size[0] as u64).saturating_mul(columns.size[1] as u64);
+            let touched_cells = columns.triangles.iter().map(|triangle| columns.touched_cell_count(triangle));
+            let touched_cells = touched_cells.fold(0, u64::saturating_add);
             let max_cells = FREE_CELLS + CELLS_PER_TRIANGLE * columns.triangles.len() as u64;
             if columns.size == [1, 1] || (cells <= max_cells && touched_cells <= max_cells) {
                 break;
@@ -122,8 +122,8 @@ impl TriangleColumns {
     }
 
     fn touched_cell_count(&self, triangle: &[Vec3; 3]) -> u64 {
-        let count = |[first, last]: [usize; 2]| (last - first + 1) as u64;
-        self.cell_span(triangle).map(count).into_iter().product()
+        let count = |[first, last]: [usize; 2]| (last.saturating_sub(first) as u64).saturating_add(1);
+        self.cell_span(triangle).map(count).into_iter().fold(1, u64::saturating_mul)
     }
 
     fn touched_cells(&self, triangle: &[Vec3; 3]) -> impl Iterator<Item = usize> + use<> {
@@ -308,6 +308,15 @@ mod tests {
         assert!(wide.members.len() < 4_000_000 && wide.side_m > MIN_CELL_SIDE_M);
         assert_eq!(wide.cover_over(DVec3::new(4e5, -4e5, 0.0)), OverheadCover::Ceiling(3.0));
         assert_eq!(TriangleColumns::new(std::iter::empty()).cover_over(DVec3::ZERO), OverheadCover::Sky);
+    }
+
+    #[test]
+    fn coordinates_that_no_scene_has_do_not_overflow() {
+        for half_m in [2e19, 1e30, 3e38] {
+            let far = columns(&[sheet(half_m, 0.0, true), sheet(half_m, 3.0, false)]);
+            let _ = (far.cover_over(DVec3::ZERO), far.drop_m(DVec3::new(1.0, 1.0, 2.0)));
+            let _ = far.is_open(DVec3::ZERO, DVec3::new(5.0, 5.0, 5.0), &mut 1000);
+        }
     }
 
     /// A wall along y at x = 1 with a doorway from y = 0 to y = 1, and a floor.

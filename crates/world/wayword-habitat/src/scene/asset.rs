@@ -13,7 +13,8 @@ use std::{
 };
 use wayword_core::contain_panics::run_decoder;
 
-const EXPORT_HINT: &str = "export the scene again as GLB";
+/// What to do about a fault in a scene's file.
+pub(crate) const EXPORT_HINT: &str = "export the scene again as GLB";
 /// Largest file that is read, bytes; a larger one is an error. HM3D's and Matterport3D's are below 1 GB.
 const MAX_BYTES: u64 = 4 << 30;
 /// Number of bytes before the document in a GLB.

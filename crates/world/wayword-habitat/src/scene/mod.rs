@@ -21,7 +21,7 @@ mod studio;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub(crate) use asset::files_beside;
+pub(crate) use asset::{EXPORT_HINT, files_beside};
 pub use stage::HabitatStage;
 pub(crate) use stage::scene_stem;
 
@@ -30,9 +30,10 @@ use asset::GltfAsset;
 use glam::{DMat3, Vec3};
 use paints::SurfacePaint;
 use std::{collections::BTreeMap, path::Path};
-use wayword_render::{Mesh, MeshMaterial, RenderScene, SceneError, Texture, TextureFilter};
+use wayword_render::{MAX_COORDINATE_M, Mesh, MeshMaterial, RenderScene, SceneError, Texture, TextureFilter};
 
-const EXPORT_HINT: &str = "export the scene again as GLB";
+const PLACE_HINT: &str = "correct its position or the scale of its node, or write units_to_meters into its stage_config.json if it is \
+    not in metres";
 const PICTURE_HINT: &str = "write its pictures as PNG or JPEG, and export the scene again";
 /// Triangle corners that any file may have. There is a limit because a file can place one mesh many times.
 const FREE_CORNERS: u64 = 1 << 22;
@@ -94,6 +95,18 @@ impl SceneModel {
     }
 }
 
+/// Returns an error that names the first vertex that lies nowhere, or so far away that it cannot be drawn.
+fn check_coordinates(positions: &[Vec3]) -> Result<(), String> {
+    let is_far = |place: &Vec3| !place.is_finite() || place.abs().max_element() > MAX_COORDINATE_M;
+    match positions.iter().enumerate().find(|(_, place)| is_far(place)) {
+        None => Ok(()),
+        Some((vertex, Vec3 { x, y, z })) => Err(format!(
+            "vertex {vertex} lies at {x:.3e} {y:.3e} {z:.3e} m in the scene; at most {MAX_COORDINATE_M:e} m from its \
+             origin can be drawn"
+        )),
+    }
+}
+
 /// Gives a mesh without a material colours as if it were lit in a studio, one for each face. Its faces no longer share corners.
 ///
 /// # Errors
@@ -136,11 +149,13 @@ impl<'a> SceneModelBuilder<'a> {
         let asset = self.asset;
         let most_corners = FREE_CORNERS + CORNERS_PER_BYTE.saturating_mul(asset.total_bytes());
         let mut corners = 0;
-        for (number, place) in nodes::placed_meshes(&asset.root) {
+        let placed = nodes::placed_meshes(&asset.root);
+        for (number, place) in placed.map_err(|reason| FileError::new(file, reason, EXPORT_HINT))? {
             let mesh = asset.root.meshes.get(number);
             for (index, primitive) in mesh.iter().flat_map(|mesh| mesh.primitives.iter().enumerate()) {
-                let wrong =
-                    |reason| FileError::new(file, format!("mesh {number}, primitive {index}: {reason}"), EXPORT_HINT);
+                let wrong_with =
+                    |reason, hint| FileError::new(file, format!("mesh {number}, primitive {index}: {reason}"), hint);
+                let wrong = |reason| wrong_with(reason, EXPORT_HINT);
                 let paint = primitive.material.and_then(|material| self.paints.get(material.value()));
                 let texture_set = paint.map_or(0, SurfacePaint::texture_set);
                 let Some(mut mesh) = primitive::read_primitive(asset, primitive, texture_set).map_err(wrong)? else {
@@ -154,7 +169,8 @@ impl<'a> SceneModelBuilder<'a> {
                 }
                 mesh.material = match primitive.material.map(|material| material.value()) {
                     Some(material) if material < asset.root.materials.len() => material,
-                    _ => self.plain_material(),
+                    Some(material) => return Err(wrong(format!("material {material} does not exist"))),
+                    None => self.plain_material(),
                 };
                 self.finish_uvs(&mut mesh, primitive);
                 if place.determinant() < 0.0 {
@@ -165,6 +181,7 @@ impl<'a> SceneModelBuilder<'a> {
                     let placed = habitat_from_asset * place.transform_point3(position.as_dvec3());
                     *position = wayword_from_habitat(placed).as_vec3();
                 }
+                check_coordinates(&mesh.positions).map_err(|reason| wrong_with(reason, PLACE_HINT))?;
                 if self.plain == Some(mesh.material) && mesh.colours.is_empty() {
                     light_mesh(&mut mesh).map_err(wrong)?;
                 }

@@ -5,14 +5,23 @@ use gltf::json::{Root, scene::Node};
 
 /// Every mesh of the scene with its transform into the file's frame. A node that is reached twice is skipped, so that a
 /// cycle ends; glTF does not allow cycles.
-pub(super) fn placed_meshes(root: &Root) -> Vec<(usize, DMat4)> {
+///
+/// # Errors
+/// Names the scene, node or mesh that does not exist, and what refers to it.
+pub(super) fn placed_meshes(root: &Root) -> Result<Vec<(usize, DMat4)>, String> {
     let mut seen = vec![false; root.nodes.len()];
     let first = root.scene.map_or(0, |scene| scene.value());
-    let mut pending: Vec<(usize, DMat4)> = match root.scenes.get(first) {
-        Some(scene) => scene.nodes.iter().rev().map(|node| (node.value(), DMat4::IDENTITY)).collect(),
+    let top = match root.scenes.get(first) {
+        Some(scene) => scene.nodes.iter().map(|node| node.value()).collect(),
         // If a file has no scenes, all nodes without a parent are shown.
-        None => root_nodes(root).into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect(),
+        None if root.scenes.is_empty() => root_nodes(root),
+        None => return Err(missing("scene", first, root.scenes.len())),
     };
+    let absent = top.iter().find(|node| **node >= root.nodes.len());
+    if let Some(node) = absent {
+        return Err(format!("scene {first}: {}", missing("node", *node, root.nodes.len())));
+    }
+    let mut pending: Vec<(usize, DMat4)> = top.into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect();
     let mut placed = Vec::new();
     while let Some((index, above)) = pending.pop() {
         let (Some(node), Some(seen)) = (root.nodes.get(index), seen.get_mut(index)) else { continue };
@@ -20,12 +29,25 @@ pub(super) fn placed_meshes(root: &Root) -> Vec<(usize, DMat4)> {
             continue;
         }
         let here = above * local_transform(node);
-        if let Some(mesh) = node.mesh {
-            placed.push((mesh.value(), here));
+        let wrong = |reason| format!("node {index}: {reason}");
+        if let Some(mesh) = node.mesh.map(|mesh| mesh.value()) {
+            if mesh >= root.meshes.len() {
+                return Err(wrong(missing("mesh", mesh, root.meshes.len())));
+            }
+            placed.push((mesh, here));
         }
-        pending.extend(node.children.iter().flatten().rev().map(|child| (child.value(), here)));
+        let children = || node.children.iter().flatten().map(|child| child.value());
+        if let Some(child) = children().find(|child| *child >= root.nodes.len()) {
+            return Err(wrong(missing("node", child, root.nodes.len())));
+        }
+        pending.extend(children().rev().map(|child| (child, here)));
     }
-    placed
+    Ok(placed)
+}
+
+/// The fault of a number that is not in a list of the file.
+fn missing(what: &str, number: usize, count: usize) -> String {
+    format!("{what} {number} does not exist: the file has {count}, counted from 0")
 }
 
 /// The nodes without a parent.

@@ -21,11 +21,12 @@ pub(super) fn read_primitive(
     let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
     let positions = attribute(Semantic::Positions).ok_or("has no positions")?;
     let positions: Vec<Vec3> = accessor::read_floats(asset, positions)?.into_iter().map(Vec3::from_array).collect();
-    let uvs = match attribute(Semantic::TexCoords(texture_set)) {
+    let (set, paint) = (attribute(Semantic::TexCoords(texture_set)), attribute(Semantic::Colors(0)));
+    let uvs: Vec<Vec2> = match set {
         Some(index) => accessor::read_floats(asset, index)?.into_iter().map(Vec2::from_array).collect(),
         None => Vec::new(),
     };
-    let colours = match attribute(Semantic::Colors(0)) {
+    let colours = match paint {
         Some(index) => accessor::read_floats::<3>(asset, index)?,
         None => Vec::new(),
     };
@@ -36,6 +37,20 @@ pub(super) fn read_primitive(
             (0..count.map_err(|_| format!("has {} positions, more than a mesh may have", positions.len()))?).collect()
         }
     };
+    let vertices = positions.len();
+    for (name, is_there, count) in
+        [("TEXCOORD", set.is_some(), uvs.len()), ("COLOR_0", paint.is_some(), colours.len())]
+    {
+        if is_there && count != vertices {
+            return Err(format!("{name} has {count} entries, but POSITION has {vertices}: each vertex needs one"));
+        }
+    }
+    if let Some(vertex) = order.iter().find(|vertex| **vertex as usize >= vertices) {
+        return Err(format!("its indices name vertex {vertex}, but there are {vertices}, counted from 0"));
+    }
+    if mode == Mode::Triangles && !order.len().is_multiple_of(3) {
+        return Err(format!("its triangles have {} corners, which is no multiple of 3", order.len()));
+    }
     Ok(Some(Mesh { positions, uvs, colours, triangles: triangles_from_order(mode, &order), ..Mesh::default() }))
 }
 

@@ -143,6 +143,80 @@ fn errors_name_the_item() {
     );
 }
 
+#[test]
+fn numbers_that_lead_nowhere_are_refused_with_their_place() {
+    let refusal = |change: fn(&mut serde_json::Value)| {
+        let (mut document, bytes) = triangle();
+        change(&mut document);
+        let error = read(&glb(&document, &bytes)).unwrap_err();
+        error.split_once("x.glb: ").unwrap().1.split_once(';').unwrap().0.to_owned()
+    };
+    assert_eq!(refusal(|d| d["scene"] = 5.into()), "scene 5 does not exist: the file has 1, counted from 0");
+    assert_eq!(
+        refusal(|d| d["scenes"][0]["nodes"] = json!([0, 9])),
+        "scene 0: node 9 does not exist: the file has 2, counted from 0"
+    );
+    assert_eq!(
+        refusal(|d| d["nodes"][0]["children"] = json!([1, 9999])),
+        "node 0: node 9999 does not exist: the file has 2, counted from 0"
+    );
+    assert_eq!(
+        refusal(|d| d["nodes"][1]["mesh"] = 999.into()),
+        "node 1: mesh 999 does not exist: the file has 1, counted from 0"
+    );
+    assert_eq!(
+        refusal(|d| d["meshes"][0]["primitives"][0]["material"] = 999.into()),
+        "mesh 0, primitive 0: material 999 does not exist"
+    );
+    assert_eq!(
+        refusal(|d| d["accessors"][1]["count"] = 2.into()),
+        "mesh 0, primitive 0: TEXCOORD has 2 entries, but POSITION has 3: each vertex needs one"
+    );
+    assert_eq!(
+        refusal(|d| {
+            d["meshes"][0]["primitives"][0]["attributes"] = json!({ "POSITION": 0, "COLOR_0": 3 });
+            d["accessors"]
+                .as_array_mut()
+                .unwrap()
+                .push(json!({ "bufferView": 0, "componentType": 5126, "count": 2, "type": "VEC3" }));
+        }),
+        "mesh 0, primitive 0: COLOR_0 has 2 entries, but POSITION has 3: each vertex needs one"
+    );
+    assert_eq!(
+        refusal(|d| d["accessors"][2]["count"] = 2.into()),
+        "mesh 0, primitive 0: its triangles have 2 corners, which is no multiple of 3"
+    );
+    assert_eq!(
+        refusal(|d| d["accessors"][0]["count"] = 2.into()),
+        "mesh 0, primitive 0: TEXCOORD has 3 entries, but POSITION has 2: each vertex needs one"
+    );
+    assert_eq!(
+        refusal(|d| {
+            d["meshes"][0]["primitives"][0]["attributes"] = json!({ "POSITION": 0 });
+            d["accessors"][0]["count"] = 2.into();
+        }),
+        "mesh 0, primitive 0: its indices name vertex 2, but there are 2, counted from 0"
+    );
+}
+
+#[test]
+fn a_vertex_that_no_scene_has_is_refused_however_it_came_there() {
+    let far = |change: &dyn Fn(&mut serde_json::Value, &mut Vec<u8>)| {
+        let (mut document, mut bytes) = triangle();
+        change(&mut document, &mut bytes);
+        read(&glb(&document, &bytes)).map(|_| ())
+    };
+    for x in [1.1e6_f32, 2e19, 3.4e38, f32::INFINITY, f32::NAN] {
+        let error = far(&|_, bytes| bytes[12..16].copy_from_slice(&x.to_le_bytes())).unwrap_err();
+        assert!(error.contains("mesh 0, primitive 0: vertex 1 lies at ") && error.contains("1e6 m"), "{error}");
+        assert!(error.contains("scale of its node") && error.contains("units_to_meters"), "{error}");
+    }
+    assert!(far(&|document, _| document["nodes"][0]["scale"] = json!([1e30, 1, 1])).is_err());
+    assert!(far(&|document, _| document["nodes"][0]["translation"] = json!([0, 0, 1e12])).is_err());
+    assert!(far(&|document, _| document["nodes"][1]["rotation"] = json!([0, 0, 0, 0])).is_err());
+    assert_eq!(far(&|_, bytes| bytes[12..16].copy_from_slice(&9e5_f32.to_le_bytes())), Ok(()));
+}
+
 /// The corners of a model's only triangle.
 fn corners(model: &SceneModel) -> [Vec3; 3] {
     model.triangles().next().unwrap()
@@ -173,7 +247,7 @@ fn a_mirrored_node_keeps_the_side_from_which_a_triangle_is_seen() {
             [a, c, b]
         };
         let way = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).z;
-        let place = nodes::placed_meshes(&serde_json::from_value(document.clone()).unwrap())[0].1;
+        let place = nodes::placed_meshes(&serde_json::from_value(document.clone()).unwrap()).unwrap()[0].1;
         let expected = [Vec3::ZERO, Vec3::X, Vec3::Y].map(|corner| place.transform_point3(corner.as_dvec3()).as_vec3());
         assert_eq!((stored, way(corners(&once)) * way(expected) < 0.0), (expected, true), "{mirror}");
         document["nodes"][0]["scale"] = json!([1, -1, 1]);
