@@ -1,5 +1,6 @@
 //! A glTF file's document with its buffers. Every reference is checked when it is followed.
 
+use super::file_kind::{KindFault, check_file_kind};
 use crate::file_error::{self, FileError};
 use gltf::json::{Index, Root, buffer::View};
 use serde::Deserialize;
@@ -50,6 +51,7 @@ impl GltfAsset {
     pub(super) fn read(file: &Path) -> Result<Self, FileError> {
         let wrong = |reason: String| FileError::new(file, reason, EXPORT_HINT);
         let bytes = file_error::read_bytes(file, MAX_BYTES, "use a GLB or glTF file")?;
+        check_file_kind(&bytes).map_err(|KindFault { reason, hint }| FileError::new(file, reason, hint))?;
         // The library's validation rejects GOOGLE_texture_basis, so values are checked here where they are used.
         let gltf = run_decoder(|| gltf::Gltf::from_slice_without_validation(&bytes).map_err(|error| error.to_string()))
             .map_err(&wrong)?;

@@ -12,6 +12,7 @@
 
 mod accessor;
 mod asset;
+mod file_kind;
 mod nodes;
 mod paints;
 mod pictures;

@@ -38,8 +38,7 @@ pub(super) fn read_primitive(
         }
     };
     let vertices = positions.len();
-    for (name, is_there, count) in
-        [("TEXCOORD", set.is_some(), uvs.len()), ("COLOR_0", paint.is_some(), colours.len())]
+    for (name, is_there, count) in [("TEXCOORD", set.is_some(), uvs.len()), ("COLOR_0", paint.is_some(), colours.len())]
     {
         if is_there && count != vertices {
             return Err(format!("{name} has {count} entries, but POSITION has {vertices}: each vertex needs one"));

@@ -27,7 +27,7 @@ pub(super) fn parse_annotations(text: &str) -> Result<Hm3dAnnotations, String> {
     if header != ANNOTATIONS_HEADER {
         return Err(format!("line 1: is {header:.40?}, expected {ANNOTATIONS_HEADER:?}"));
     }
-    let (mut annotations, mut colours) = (Hm3dAnnotations::default(), BTreeSet::new());
+    let (mut annotations, mut colours, mut ids) = (Hm3dAnnotations::default(), BTreeSet::new(), BTreeSet::new());
     for (number, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
         let mut broken = |reason: &str| annotations.broken_lines.push(format!("line {}: {reason}", number + 1));
         match parse_line(line.trim()) {
@@ -37,6 +37,8 @@ pub(super) fn parse_annotations(text: &str) -> Result<Hm3dAnnotations, String> {
                 // The colour may be either's.
                 annotations.by_colour.remove(&colour);
             }
+            // Two things with one id would be one object.
+            Ok((_, thing)) if !ids.insert(thing.id.clone()) => broken("an earlier line has the same id"),
             Ok((colour, thing)) => {
                 annotations.by_colour.insert(colour, annotations.things.len());
                 annotations.things.push(thing);
@@ -103,6 +105,17 @@ mod tests {
         assert_eq!(refusal("\n1,BC0FF,\"a\",0"), "line 3: \"BC0FF\" is not a 6-digit hex colour");
         assert_eq!(refusal("x,BC0FF7,\"a\",0"), "line 2: \"x\" is not an id");
         assert_eq!(refusal("1,BC0FF7,\"a\",0\n2,bc0ff7,\"b\",0"), "line 3: an earlier line has the same colour");
+    }
+
+    #[test]
+    fn an_id_given_twice_stays_with_its_first_line() {
+        let lines = "1,BC0FF7,\"bed\",0\n01,00FF10,\"sofa\",1\n2,0000FF,\"lamp\",0\n1,00FFFF,\"bed\",0\n";
+        let read = parse_annotations(&format!("{ANNOTATIONS_HEADER}\n{lines}")).unwrap();
+        assert_eq!(
+            read.broken_lines,
+            ["line 3: an earlier line has the same id", "line 5: an earlier line has the same id"]
+        );
+        assert_eq!(read.by_colour, [([0xbc, 0x0f, 0xf7], 0), ([0, 0, 0xff], 1)].into());
     }
 
     #[test]

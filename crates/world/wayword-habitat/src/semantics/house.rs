@@ -33,12 +33,8 @@ pub(super) fn parse_house(text: &str) -> Result<MatterportHouse, String> {
         let mut read = || -> Result<(), String> {
             match words.first().copied() {
                 Some("R") => regions.push(record.read_region()?),
-                Some("O") => {
-                    objects.insert(record.number_at(1)?, record.number_at(3)?);
-                }
-                Some("C") => {
-                    categories.insert(record.number_at(1)?, record.word_at(3)?);
-                }
+                Some("O") => insert_once(&mut objects, record.number_at(1)?, record.number_at(3)?)?,
+                Some("C") => insert_once(&mut categories, record.number_at(1)?, record.word_at(3)?)?,
                 _ => {}
             }
             Ok(())
@@ -55,6 +51,15 @@ pub(super) fn parse_house(text: &str) -> Result<MatterportHouse, String> {
         house.things.push(SemanticThing::new(id, categories.get(&category).copied().unwrap_or_default()));
     }
     Ok(house)
+}
+
+/// Adds what a line tells of a number, which no earlier line may have told of.
+fn insert_once<N: Ord, T>(known: &mut BTreeMap<N, T>, number: N, told: T) -> Result<(), String> {
+    if known.contains_key(&number) {
+        return Err("an earlier line has the same number".to_owned());
+    }
+    known.insert(number, told);
+    Ok(())
 }
 
 /// The words of a line, by column.

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     axes::wayword_from_habitat,
     file_error::{self, FileError},
-    scene::SceneModel,
+    scene::{EXPORT_HINT, SceneModel},
 };
 use glam::{DMat3, UVec2, Vec2, Vec3};
 use std::{
@@ -108,7 +108,10 @@ fn load_painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> R
     let hm3d::Hm3dAnnotations { mut things, by_colour, .. } =
         hm3d::parse_annotations(&read_text(annotations, HM3D_HINT)?)
             .map_err(|reason| FileError::new(annotations, reason, HM3D_HINT))?;
-    let model = SceneModel::read_file(mesh, habitat_from_asset)?;
+    // Nobody can export again what was downloaded.
+    let hint_for = |error: &FileError| if error.hint == EXPORT_HINT { HM3D_HINT } else { error.hint };
+    let model = SceneModel::read_file(mesh, habitat_from_asset)
+        .map_err(|error| FileError { hint: hint_for(&error), ..error })?;
     let (mut meshes, mut shells, mut tally) = (Vec::new(), Vec::new(), PaintTally::default());
     for each in model.meshes {
         let texture = model.materials.get(each.material).and_then(|material| material.texture);
@@ -174,6 +177,7 @@ fn load_numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result
     let owned_triangles: Vec<OwnedTriangle> =
         faces.triangles.iter().map(|(corners, object)| (*corners, thing(*object))).collect();
     measure_things(&positions, &owned_triangles, &mut things);
+    let lists_objects = owned_triangles.iter().any(|(_, thing)| thing.is_some());
     let meshes = meshes_by_thing(&positions, &owned_triangles).map_err(wrong)?;
     // Scans are seen only from inside, and the winding of their faces is not reliable.
     let material = MeshMaterial { double_sided: true, ..MeshMaterial::default() };
@@ -185,8 +189,11 @@ fn load_numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result
         regions,
         rooms: NumberedRooms::default(),
         has_labels: true,
-        lists_objects: true,
-        lack: None,
+        lists_objects,
+        lack: (!lists_objects).then(|| SceneLack {
+            what: format!("no face of {} belongs to an object of {}", mesh.display(), house.display()),
+            hint: "put the .house beside the mesh that came with it to have objects".to_owned(),
+        }),
     })
 }
 

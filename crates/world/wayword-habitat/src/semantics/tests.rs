@@ -3,7 +3,10 @@
 mod genuine;
 
 use super::*;
-use crate::scene::{HabitatStage, tests::glb};
+use crate::{
+    file_error::FileError,
+    scene::{HabitatStage, tests::glb},
+};
 use serde_json::json;
 use std::path::Path;
 use wayword_core::{Heading, ViewGaze};
@@ -107,6 +110,10 @@ const HOUSE: &str = "ASCII 1.0\n\
     C 0 1 sofa\nC 1 2 lamp\nC 2 3 wall\nC 3 4 bed\n";
 
 fn semantics(mesh: (&str, &[u8]), text: (&str, &str)) -> SceneSemantics {
+    read_semantics(mesh, text).unwrap()
+}
+
+fn read_semantics(mesh: (&str, &[u8]), text: (&str, &str)) -> Result<SceneSemantics, FileError> {
     let folder = tempfile::tempdir().unwrap();
     let (mesh_file, text_file) = (folder.path().join(mesh.0), folder.path().join(text.0));
     std::fs::write(&mesh_file, mesh.1).unwrap();
@@ -117,7 +124,42 @@ fn semantics(mesh: (&str, &[u8]), text: (&str, &str)) -> SceneSemantics {
         SemanticFiles { painted: Some((mesh_file, text_file)), numbered: None }
     };
     let stage = HabitatStage::from_file(Path::new("x.glb")).unwrap();
-    load_semantics(&files, stage.habitat_from_asset).unwrap().unwrap()
+    load_semantics(&files, stage.habitat_from_asset).map(Option::unwrap)
+}
+
+#[test]
+fn a_list_that_is_empty_or_cut_gives_no_labels_or_a_warning() {
+    let read = |list: &str| semantics(("x.semantic.glb", &by_vertices()), ("x.semantic.txt", list));
+    let whole = read(ANNOTATIONS);
+    assert_eq!((whole.has_labels, whole.lists_objects, whole.lack), (true, true, None));
+    let lines: Vec<&str> = ANNOTATIONS.split_inclusive('\n').collect();
+    let empty = read(lines[0]);
+    assert!(!empty.has_labels && empty.lack.unwrap().what.starts_with("0.0 % of the painted triangles"));
+    let half = read(&lines[..3].concat());
+    assert!(half.has_labels && !half.lists_objects, "objects may be there that the list does not have");
+    assert!(half.lack.unwrap().what.starts_with("50.0 % of the painted triangles"));
+    let other = HOUSE.replace("\nO ", "\nX ");
+    let regions = semantics(("x_semantic.ply", &by_numbers()), ("x.house", &other));
+    assert!(!regions.lists_objects && regions.lack.unwrap().what.starts_with("no face of "));
+}
+
+#[test]
+fn a_semantic_mesh_that_is_broken_or_shows_nothing_gives_no_labels() {
+    let document = |nodes: serde_json::Value| json!({ "asset": { "version": "2.0" }, "scenes": [{ "nodes": [0] }], "nodes": nodes });
+    let read = |mesh: &[u8]| read_semantics(("x.semantic.glb", mesh), ("x.semantic.txt", ANNOTATIONS));
+    let nothing = read(&glb(&document(json!([{}])), b"")).unwrap();
+    assert!(!nothing.has_labels && !nothing.lists_objects);
+    assert!(nothing.lack.unwrap().what.starts_with("no triangle in x.semantic.glb is painted"));
+    for (mesh, reason) in [
+        (glb(&document(json!([{ "mesh": 999 }])), b""), "node 0: mesh 999 does not exist"),
+        (by_vertices()[..600].to_vec(), "is cut off: it should have "),
+        (Vec::new(), "is empty"),
+        (b"<html>".to_vec(), "is a web page or XML"),
+    ] {
+        let error = read(&mesh).unwrap_err();
+        assert!(error.reason.starts_with(reason), "{error}");
+        assert_ne!(error.hint, crate::scene::EXPORT_HINT, "{error}");
+    }
 }
 
 fn seen_labels(semantics: &SceneSemantics) -> Vec<(String, String)> {
