@@ -49,8 +49,8 @@ fn fill_condition(
     files: &StageFiles,
     options: &HabitatOptions,
 ) -> Result<(), PlatformError> {
-    let PlacedStage { stage, model, note } = PlacedStage::read(files, options, SceneModel::read_shape)?;
-    condition.lacks.extend(note.map(|note| SceneLack { what: note, hint: String::new() }));
+    let PlacedStage { stage, model, notes } = PlacedStage::read(files, options, SceneModel::read_shape)?;
+    condition.lacks.extend(notes.into_iter().map(|note| SceneLack { what: note, hint: String::new() }));
     condition.has_pictures = true;
     match &files.graph {
         Some(file) => {

@@ -12,7 +12,7 @@
 
 use crate::{
     file_error::FileError,
-    scene::{HabitatStage, files_beside, scene_stem},
+    scene::{HabitatStage, files_beside, has_ending, scene_stem},
     semantics::SemanticFiles,
 };
 use std::{
@@ -79,7 +79,7 @@ fn stage_rank(name: &str) -> Option<usize> {
 }
 
 fn is_gltf(file: &Path) -> bool {
-    file.extension().is_some_and(|ending| ending == "glb" || ending == "gltf")
+    has_ending(file, "glb") || has_ending(file, "gltf")
 }
 
 /// Adds the files in a folder and, down to `depth`, in the folders below it.
@@ -107,7 +107,8 @@ impl StageFiles {
     /// The navmesh beside the scene.
     pub(super) fn navmesh_file(&self, stage: &HabitatStage) -> Option<PathBuf> {
         let own = self.sibling_files(&[".basis.navmesh", ".navmesh"]);
-        stage.navmesh.iter().chain(&own).find(|file| file.is_file()).cloned()
+        let named = stage.navmesh.iter().filter(|file| has_ending(file, "navmesh"));
+        named.chain(&own).find(|file| file.is_file()).cloned()
     }
 
     /// The file that shows where one can walk: the viewpoint graph, or else the navmesh.
@@ -128,14 +129,17 @@ impl StageFiles {
         all
     }
 
-    /// The semantic files beside the scene.
+    /// The semantic files that the configuration names, or else those beside the scene.
     pub(super) fn semantic_files(&self, stage: &HabitatStage) -> SemanticFiles {
         let there = |ending: &str| self.sibling_files(&[ending]).into_iter().find(|file| file.is_file());
-        let mesh = stage.semantics.clone().filter(|file| file.is_file()).or_else(|| there(".semantic.glb"));
-        SemanticFiles {
-            painted: mesh.zip(there(".semantic.txt")),
-            numbered: there("_semantic.ply").zip(there(".house")),
-        }
+        let usable = |file: &Option<PathBuf>, is_kind: fn(&Path) -> bool| {
+            file.clone().filter(|file| is_kind(file) && file.is_file())
+        };
+        let mesh = usable(&stage.semantics, is_gltf).or_else(|| there(".semantic.glb"));
+        let list = usable(&stage.object_list, |file| has_ending(file, "txt")).or_else(|| there(".semantic.txt"));
+        let faces = usable(&stage.semantics, |file| has_ending(file, "ply")).or_else(|| there("_semantic.ply"));
+        let house = usable(&stage.object_list, |file| has_ending(file, "house")).or_else(|| there(".house"));
+        SemanticFiles { painted: mesh.zip(list), numbered: faces.zip(house) }
     }
 
     /// The paths beside the stage that have the scene's name and one of these endings.
@@ -177,6 +181,29 @@ mod tests {
         assert!(files.semantic_files(&stage).painted.unwrap().1.ends_with("a.semantic.txt"));
         let matterport = &scenes[&SceneId::new("b").unwrap()];
         assert!(matterport.semantic_files(&HabitatStage::from_file(&matterport.stage).unwrap()).numbered.is_some());
+    }
+
+    #[test]
+    fn semantic_files_are_those_that_the_configuration_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        for file in ["x.glb", "x.semantic.glb", "x.semantic.txt", "b.glb", "b.txt", "c.ply", "c.house"] {
+            std::fs::write(at(file), "").unwrap();
+        }
+        let found = |mesh: &str, list: &str| {
+            let config = at("x.stage_config.json");
+            let fields = serde_json::json!({
+                "render_asset": "x.glb", "semantic_asset": mesh, "semantic_descriptor_filename": list
+            });
+            std::fs::write(&config, fields.to_string()).unwrap();
+            let stage = HabitatStage::from_file(&config).unwrap();
+            StageFiles { stage: config, graph: None }.semantic_files(&stage)
+        };
+        let painted = |mesh: &str, list: &str| Some((at(mesh), at(list)));
+        assert_eq!(found("b.glb", "b.txt").painted, painted("b.glb", "b.txt"));
+        assert_eq!(found("", "").painted, painted("x.semantic.glb", "x.semantic.txt"));
+        assert_eq!(found("nosuch.glb", "nosuch.txt").painted, painted("x.semantic.glb", "x.semantic.txt"));
+        assert_eq!(found("c.ply", "c.house").numbered, Some((at("c.ply"), at("c.house"))));
     }
 
     #[test]

@@ -15,8 +15,8 @@ use std::path::Path;
 pub(super) struct PlacedStage {
     pub(super) stage: HabitatStage,
     pub(super) model: SceneModel,
-    /// What was decided against Habitat's rule.
-    pub(super) note: Option<String>,
+    /// What the user should know: files that its configuration names in vain, and what was decided against Habitat's rule.
+    pub(super) notes: Vec<String>,
 }
 
 impl PlacedStage {
@@ -29,9 +29,11 @@ impl PlacedStage {
     ) -> Result<Self, FileError> {
         let stage = HabitatStage::from_file(&files.stage)?;
         let model = read(&stage.asset, stage.habitat_from_asset)?;
-        let has_ways = files.graph.is_some() || options.navmesh.is_some() || files.navmesh_file(&stage).is_some();
+        let is_walked_otherwise = files.graph.is_some() || options.navmesh.is_some();
+        let mut notes = stage.describe_unusable_files(!is_walked_otherwise);
+        let has_ways = is_walked_otherwise || files.navmesh_file(&stage).is_some();
         if has_ways {
-            return Ok(Self { stage, model, note: None });
+            return Ok(Self { stage, model, notes });
         }
         let placement = judge_placement(&model, &stage)?;
         let model = if placement.stage == stage {
@@ -41,6 +43,7 @@ impl PlacedStage {
         };
         check_model_size(&model, &NavMeshSettings::default())
             .map_err(|error| FileError::new(&stage.asset, error.to_string(), error.hint()))?;
-        Ok(Self { stage: placement.stage, model, note: placement.note })
+        notes.extend(placement.note);
+        Ok(Self { stage: placement.stage, model, notes })
     }
 }

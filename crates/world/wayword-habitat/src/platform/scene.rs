@@ -46,7 +46,7 @@ impl HabitatScene {
         options: &HabitatOptions,
         fits: bool,
     ) -> Result<Self, PlatformError> {
-        let PlacedStage { stage, model, note } = PlacedStage::read(files, options, SceneModel::read_file)?;
+        let PlacedStage { stage, model, mut notes } = PlacedStage::read(files, options, SceneModel::read_file)?;
         let graph_error = |source| PlatformError::Graph { scene: id.clone(), source };
         let (walkable, graph) = match &files.graph {
             Some(file) => (None, graph::read_graph(file, (!fits).then_some(&model))?),
@@ -58,7 +58,7 @@ impl HabitatScene {
         };
         let semantic_files = files.semantic_files(&stage);
         let semantics = semantics::load_semantics(&semantic_files, stage.habitat_from_asset)?;
-        let notes = note.into_iter().chain(semantics::describe_broken_lines(&semantic_files)?).collect();
+        notes.extend(semantics::describe_broken_lines(&semantic_files)?);
         let lack = semantics.as_ref().and_then(|semantics| semantics.lack.clone());
         let semantics = semantics.filter(|semantics| semantics.has_labels);
         let scene =

@@ -24,7 +24,7 @@ pub(crate) mod tests;
 
 pub(crate) use asset::{EXPORT_HINT, files_beside};
 pub use stage::HabitatStage;
-pub(crate) use stage::scene_stem;
+pub(crate) use stage::{has_ending, scene_stem};
 
 use crate::{axes::wayword_from_habitat, file_error::FileError};
 use asset::GltfAsset;

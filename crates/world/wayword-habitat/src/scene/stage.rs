@@ -16,6 +16,8 @@ pub struct HabitatStage {
     pub navmesh: Option<PathBuf>,
     /// The semantic mesh that it names.
     pub semantics: Option<PathBuf>,
+    /// The list of the mesh's objects that it names.
+    pub(crate) object_list: Option<PathBuf>,
     /// The configuration, whether or not it exists.
     pub(crate) config: PathBuf,
     /// Whether it tells which direction is up.
@@ -33,11 +35,16 @@ struct StageConfig {
     units_to_meters: Option<f64>,
     nav_asset: Option<String>,
     semantic_asset: Option<String>,
+    semantic_descriptor_filename: Option<String>,
+    /// Habitat's factors for the picture of a stage, along its three axes. Habitat scales neither labels nor the navmesh by them.
+    scale: Option<[f64; 3]>,
 }
 
 const STAGE_CONFIG_HINT: &str = "see Habitat's documentation of stage_config.json";
 /// Largest configuration that is read, bytes; a larger one is an error.
 const MAX_BYTES: u64 = 1 << 20;
+const SCALE_HINT: &str = "remove scale and export the scene in its own size; where scale is one number, units_to_meters can have \
+    that number instead, but habitat-sim does not apply it";
 const STAGE_CONFIG_ENDING: &str = ".stage_config.json";
 
 impl HabitatStage {
@@ -65,6 +72,7 @@ impl HabitatStage {
                     habitat_from_asset: Self::habitat_from_axes(up, front),
                     navmesh: None,
                     semantics: None,
+                    object_list: None,
                     config,
                     is_up_told: false,
                     is_unit_told: false,
@@ -88,10 +96,15 @@ impl HabitatStage {
             None if file != config => file.to_owned(),
             None => return Err(wrong("has no render_asset".to_owned())),
         };
+        let named = |name: Option<String>| name.filter(|name| !name.is_empty()).map(|name| beside(&name));
         let (up, front) = default_axes(&asset);
         let (up, front) = (axis("up", fields.up, up)?, axis("front", fields.front, front)?);
         if front.cross(up).length() < 1e-6 {
             return Err(wrong(format!("front {front} is parallel to up {up}")));
+        }
+        if let Some(scale) = fields.scale.filter(|scale| *scale != [1.0; 3]) {
+            let reason = format!("scale is {scale:?}; only a scale of 1 can be read");
+            return Err(FileError::new(config, reason, SCALE_HINT));
         }
         let scale = fields.units_to_meters.unwrap_or(1.0);
         if !(scale.is_finite() && (1e-6..=1e6).contains(&scale)) {
@@ -100,12 +113,38 @@ impl HabitatStage {
         Ok(Self {
             asset,
             habitat_from_asset: Self::habitat_from_axes(up, front) * scale,
-            navmesh: fields.nav_asset.as_deref().filter(|name| name.ends_with(".navmesh")).map(beside),
-            semantics: fields.semantic_asset.as_deref().map(beside),
+            navmesh: named(fields.nav_asset),
+            semantics: named(fields.semantic_asset),
+            object_list: named(fields.semantic_descriptor_filename),
             config: config.to_owned(),
             is_up_told: fields.up.is_some() || fields.front.is_some(),
             is_unit_told: fields.units_to_meters.is_some(),
         })
+    }
+
+    /// What the user should know of the files that the configuration names and that cannot be used. `reads_navmesh` tells whether a
+    /// navmesh would be read at all.
+    pub(crate) fn describe_unusable_files(&self, reads_navmesh: bool) -> Vec<String> {
+        let named = [
+            ("nav_asset", self.navmesh.as_ref().filter(|_| reads_navmesh), &["navmesh"][..]),
+            ("semantic_asset", self.semantics.as_ref(), &["glb", "gltf", "ply"]),
+            ("semantic_descriptor_filename", self.object_list.as_ref(), &["txt", "house"]),
+        ];
+        let describe = |(field, file, endings): (&str, Option<&PathBuf>, &[&str])| {
+            let file = file?;
+            let fault = match endings.iter().any(|ending| has_ending(file, ending)) {
+                true if file.is_file() => return None,
+                true => "which is not there".to_owned(),
+                false => format!("which is no .{} file", endings.join(" or .")),
+            };
+            Some(format!(
+                "{}: {field} names {}, {fault}; correct or remove {field}: without it, the file beside the scene with \
+                 the scene's name is read where there is one",
+                self.config.display(),
+                file.display()
+            ))
+        };
+        named.into_iter().filter_map(describe).collect()
     }
 
     /// The rotation that takes `up` to +y and `front` to -z.
@@ -134,8 +173,12 @@ impl HabitatStage {
 /// Up and front of a file without a configuration, as Habitat has them: z and y for a `.glb`, y and -z for a `.gltf`
 /// (`StageAttributesManager.cpp`, `setDefaultAssetNameBasedAttributes`).
 fn default_axes(asset: &Path) -> (DVec3, DVec3) {
-    let is_text = asset.extension().is_some_and(|ending| ending == "gltf");
-    if is_text { (DVec3::Y, DVec3::NEG_Z) } else { (DVec3::Z, DVec3::Y) }
+    if has_ending(asset, "gltf") { (DVec3::Y, DVec3::NEG_Z) } else { (DVec3::Z, DVec3::Y) }
+}
+
+/// Whether a file's name has an ending, such as `glb`.
+pub(crate) fn has_ending(file: &Path, ending: &str) -> bool {
+    file.extension().is_some_and(|own| own == ending)
 }
 
 /// A file's name without the ending for its format; `x.basis.glb` and `x.glb` both give `x`.
@@ -186,6 +229,41 @@ mod tests {
         assert!(stage(r#"{"up": [0, 1, 0]}"#).unwrap_err().contains("is parallel to up"));
         assert!(stage(r#"{"units_to_meters": 0}"#).unwrap_err().contains("units_to_meters is 0"));
         assert!(stage("{").unwrap_err().starts_with("a/x.stage_config.json: "));
+    }
+
+    #[test]
+    fn a_scale_is_refused_and_an_origin_changes_nothing_as_in_habitat() {
+        for scale in ["[2, 2, 2]", "[1, 1, 0.5]", "[-1, 1, 1]"] {
+            let error = stage(&format!(r#"{{"scale": {scale}}}"#)).unwrap_err();
+            assert!(error.contains("x.stage_config.json: scale is [") && error.contains("units_to_meters"), "{error}");
+        }
+        assert_eq!(stage(r#"{"scale": [1, 1, 1], "origin": [1, 2, 3]}"#), stage("{}"));
+    }
+
+    #[test]
+    fn named_files_that_cannot_be_used_are_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let config = folder.path().join("x.stage_config.json");
+        std::fs::write(folder.path().join("there.navmesh"), "").unwrap();
+        let told = |fields: &str| {
+            let stage = HabitatStage::parse(&config, &folder.path().join("x.glb"), fields).unwrap();
+            stage.describe_unusable_files(true)
+        };
+        assert_eq!(told(r#"{"nav_asset": "there.navmesh", "semantic_asset": ""}"#), [""; 0]);
+        for (field, name, fault) in [
+            ("nav_asset", "nosuch.navmesh", "which is not there"),
+            ("nav_asset", "there", "which is no .navmesh file"),
+            ("semantic_asset", "nosuch.glb", "which is not there"),
+            ("semantic_asset", "nosuch", "which is no .glb or .gltf or .ply file"),
+            ("semantic_descriptor_filename", "nosuch.txt", "which is not there"),
+            ("semantic_descriptor_filename", "info.json", "which is no .txt or .house file"),
+        ] {
+            let all = told(&format!(r#"{{"{field}": "{name}"}}"#));
+            let [only] = &all[..] else { panic!("{all:?}") };
+            assert!(only.contains(&format!("{field} names ")) && only.contains(&format!("{name}, {fault}")), "{only}");
+        }
+        let graph = HabitatStage::parse(&config, &config, r#"{"render_asset": "x.glb", "nav_asset": "a.navmesh"}"#);
+        assert_eq!(graph.unwrap().describe_unusable_files(false), [""; 0], "the graph shows the ways");
     }
 
     #[test]
