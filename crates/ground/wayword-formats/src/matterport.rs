@@ -6,6 +6,7 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
 };
+use wayword_core::{SceneId, ViewpointId};
 
 /// Takes `path_id`, `scan`, `path` and `heading`. `id` is the field that names the item.
 pub(crate) fn take_path(item: &mut DatasetItem<'_>, id: &str) -> Result<Episode, FormatError> {
@@ -61,7 +62,7 @@ pub(crate) fn path_field(file: &Path, episode: &Episode) -> Result<Value, Format
         let problem = format!("the path of item {:?} names no viewpoints, and this format requires them", episode.id);
         return Err(FormatError::for_document(file, problem, "write it as vlnce or wayword"));
     }
-    Ok(episode.viewpoints.iter().map(wayword_core::ViewpointId::as_str).collect())
+    Ok(episode.viewpoints.iter().map(ViewpointId::as_str).collect())
 }
 
 /// The field with the ids of a single instruction's tokens, for agents that load them.
@@ -95,12 +96,21 @@ pub(crate) struct PathNumbers {
     numbers: FreeNumbers,
     /// The numbers of paths with other names, by the name.
     given: BTreeMap<String, u64>,
+    /// The different paths of a scene with one name.
+    own: BTreeMap<(SceneId, String), Vec<NumberedPath>>,
+}
+
+/// One of several paths with one name.
+struct NumberedPath {
+    viewpoints: Vec<ViewpointId>,
+    /// Its own number; the first path keeps the name.
+    number: Option<u64>,
 }
 
 impl PathNumbers {
     pub(crate) fn new(episodes: &[Episode]) -> Self {
         let names = episodes.iter().map(|episode| episode.path_id.as_str());
-        Self { numbers: FreeNumbers::not_in(names), given: BTreeMap::new() }
+        Self { numbers: FreeNumbers::not_in(names), given: BTreeMap::new(), own: BTreeMap::new() }
     }
 
     /// A number that no path has.
@@ -123,6 +133,24 @@ impl PathNumbers {
         self.given.insert(name.clone(), number);
         fields.insert("path_id".to_owned(), number.into());
         fields.insert(PATH_NAME.to_owned(), name.as_str().into());
+    }
+
+    /// As [`Self::put_path_id`], for a format in which a `path_id` is one path: a different path of the same name gets a
+    /// number of its own.
+    pub(crate) fn put_own_path_id(&mut self, fields: &mut Map<String, Value>, episode: &Episode) {
+        let Episode { scene, path_id, viewpoints, .. } = episode;
+        let paths = self.own.entry((scene.clone(), path_id.clone())).or_default();
+        let number = match paths.iter().find(|other| other.viewpoints == *viewpoints) {
+            Some(known) => known.number,
+            None => {
+                let number = (!paths.is_empty()).then(|| self.numbers.next_free());
+                paths.push(NumberedPath { viewpoints: viewpoints.clone(), number });
+                number
+            }
+        };
+        let Some(number) = number else { return self.put_path_id(fields, episode) };
+        fields.insert("path_id".to_owned(), number.into());
+        fields.insert(PATH_NAME.to_owned(), path_id.as_str().into());
     }
 }
 

@@ -1,14 +1,26 @@
-//! Keeps three rules while a file is read: no two items have the same name, the values that stay in memory are no more
-//! than [`limits::MAX_VALUES_IN_MEMORY`], and headings are radians.
+//! Keeps four rules while a file is read: no two items have the same name, a `path_id` names one path of a scene, the
+//! values that stay in memory are no more than [`limits::MAX_VALUES_IN_MEMORY`], and headings are radians.
 
 use crate::{DatasetItem, Episode, FormatError, heading_units::HeadingUnits, limits};
 use serde_json::{Map, Value};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::{SceneId, ViewpointId};
+
+/// What the paths of a scene have in common that have one `path_id`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum SharedPathId {
+    /// All their viewpoints.
+    WholePath,
+    /// Their start. REVERIE's own paths end at different viewpoints, each near its object.
+    Start,
+}
 
 /// The names and the number of values of a file so far.
 #[derive(Default)]
 pub(crate) struct ReadTally {
     names: BTreeSet<String>,
+    /// The first path of each `path_id` of a scene.
+    paths: BTreeMap<(SceneId, String), Vec<ViewpointId>>,
     values: usize,
     headings: HeadingUnits,
 }
@@ -26,6 +38,27 @@ impl ReadTally {
         }
         let problem = format!("{:?} was given to an earlier item", episode.id);
         Err(item.wrong_field(field, problem, "give each item its own name"))
+    }
+
+    /// Refuses a path whose `path_id` names another path of its scene, because texts are compared by path. Scenes may
+    /// use the same numbers.
+    pub(crate) fn claim_path(
+        &mut self,
+        item: &DatasetItem<'_>,
+        episode: &Episode,
+        shared: SharedPathId,
+    ) -> Result<(), FormatError> {
+        let Episode { scene, path_id, viewpoints, .. } = episode;
+        let first = self.paths.entry((scene.clone(), path_id.clone())).or_insert_with(|| viewpoints.clone());
+        let (fits, other) = match shared {
+            SharedPathId::WholePath => (first == viewpoints, "with another path"),
+            SharedPathId::Start => (first.first() == viewpoints.first(), "whose path starts at another viewpoint"),
+        };
+        if fits {
+            return Ok(());
+        }
+        let problem = format!("{path_id:?} was given to an earlier item of scan {scene}, {other}");
+        Err(item.wrong_field("path_id", problem, "correct the path, or give it a path_id of its own"))
     }
 
     /// Completes an episode with the fields of its item that its reader did not take.

@@ -3,7 +3,10 @@
 //! Fields: `id` ("path_objId"), `scan`, `path_id`, `path`, `objId`, `heading`, `instructions`. The first release adds
 //! `distance`, `ix` and `instructions_l` (R2R's text); they are kept as unknown fields are.
 
-use crate::{Episode, FormatError, input, item, matterport, output, read_tally::ReadTally};
+use crate::{
+    Episode, FormatError, input, item, matterport, output,
+    read_tally::{ReadTally, SharedPathId},
+};
 use matterport::PathNumbers;
 use serde_json::{Map, Value};
 use std::path::Path;
@@ -11,7 +14,8 @@ use std::path::Path;
 /// Reads a REVERIE file of either release, a list or JSON Lines, plain or gzip.
 ///
 /// # Errors
-/// When the file cannot be read or is not JSON, a field of an item is missing or wrong, or an id is given twice.
+/// When the file cannot be read or is not JSON, a field of an item is missing or wrong, an id is given twice, or two
+/// paths of a scan with one `path_id` start at different viewpoints.
 pub fn read_reverie_file(file: &Path) -> Result<Vec<Episode>, FormatError> {
     let mut episodes = Vec::new();
     let mut tally = ReadTally::default();
@@ -19,6 +23,7 @@ pub fn read_reverie_file(file: &Path) -> Result<Vec<Episode>, FormatError> {
         let name = matterport::name_field(&item, "id");
         let mut episode = matterport::take_path(&mut item, name)?;
         tally.claim_name(&item, name, &episode)?;
+        tally.claim_path(&item, &episode, SharedPathId::Start)?;
         // Items of test splits, and those with a free target, have no object.
         if let Some(object) = item.take_optional("objId").filter(|object| !object.is_null()) {
             episode.target_object = Some(item.checked_object("objId", &object)?);

@@ -3,7 +3,10 @@
 //! Fields: `split`, `instruction_id`, `annotator_id`, `language`, `path_id`, `scan`, `path`, `heading`, `instruction`,
 //! `timed_instruction` (`word`, and where known `start_time`, `end_time`), `edit_distance`.
 
-use crate::{DatasetItem, Episode, FormatError, input, limits, matterport, output, read_tally::ReadTally};
+use crate::{
+    DatasetItem, Episode, FormatError, input, limits, matterport, output,
+    read_tally::{ReadTally, SharedPathId},
+};
 use matterport::{FreeNumbers, PathNumbers, number_of};
 use serde_json::{Map, Value, json};
 use std::{collections::BTreeSet, path::Path};
@@ -14,14 +17,15 @@ const TEXT_FIELDS: [&str; 4] = ["annotator_id", "language", "timed_instruction",
 /// Reads a file of guide annotations.
 ///
 /// # Errors
-/// When the file cannot be read or is not JSON, a field of a line is missing or wrong, or an `instruction_id` is given
-/// twice.
+/// When the file cannot be read or is not JSON, a field of a line is missing or wrong, an `instruction_id` is given twice,
+/// or a `path_id` of a scan is given to two different paths.
 pub fn read_rxr_file(file: &Path) -> Result<Vec<Episode>, FormatError> {
     let mut episodes = Vec::new();
     let mut tally = ReadTally::default();
     input::each_line_or_item(file, |mut item| {
         let mut episode = matterport::take_path(&mut item, "instruction_id")?;
         tally.claim_name(&item, "instruction_id", &episode)?;
+        tally.claim_path(&item, &episode, SharedPathId::WholePath)?;
         let instruction = item.take_field("instruction")?;
         episode.instructions = vec![item.checked_instruction("instruction", &instruction)?];
         episode.remember_spelling("instruction", instruction);
@@ -69,7 +73,8 @@ fn check_timed_words(item: &DatasetItem<'_>, field: &str, value: &Value) -> Resu
 /// A text that differs from the one that was read gets `language` "en-US", the `annotator_id` 0 (no annotator wrote
 /// it), an `edit_distance` of 0 (it is no transcription) and words without times, like some of RxR's own words.
 /// Instructions get new numbers where an item has several, or where its id is not a number or is used already. A path
-/// with a name that is not a number gets one, and keeps its name in `path_name`. An item without a split gets "train".
+/// with a name that is not a number gets one, and keeps its name in `path_name`; so does the second of two different
+/// paths of a scan with one name (REVERIE's, for several objects). An item without a split gets "train".
 ///
 /// # Errors
 /// When a path names no viewpoints, or the file cannot be written.
@@ -117,7 +122,7 @@ fn line_fields(
     fields.insert("instruction_id".to_owned(), id);
     fields.insert("annotator_id".to_owned(), text_field("annotator_id", 0.into()));
     fields.insert("language".to_owned(), text_field("language", "en-US".into()));
-    paths.put_path_id(&mut fields, episode);
+    paths.put_own_path_id(&mut fields, episode);
     fields.insert("scan".to_owned(), episode.scene.as_str().into());
     fields.insert("path".to_owned(), matterport::path_field(file, episode)?);
     fields.insert("heading".to_owned(), episode.heading_field());

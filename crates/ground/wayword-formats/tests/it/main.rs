@@ -12,4 +12,5 @@ mod real_files;
 mod records;
 mod refusals;
 mod round_trip;
+mod shared_paths;
 mod submissions;
