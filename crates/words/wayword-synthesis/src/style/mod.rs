@@ -9,9 +9,10 @@ pub mod way;
 mod wording;
 
 use sha2::{Digest, Sha256};
-use wayword_core::{InstructionStyle, StyleConstraints, hex_text};
+use wayword_core::{InstructionStyle, StyleConstraints, WordingPolicy, hex_text};
 
 pub use profile::StyleProfile;
+use wording::MAX_SHARP_POWER;
 pub use wording::{PlaceWording, WordingShares};
 
 /// The built-in styles: name, and text of the TOML file.
@@ -27,7 +28,7 @@ const MAX_REFERENCES: usize = 100_000;
 const MAX_REFERENCE_BYTES: usize = 4000;
 
 /// Why a style cannot be used.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StyleError {
     /// A name that is not built in.
     #[error("there is no style {0:?}: name r2r, reverie, or a file that ends in .toml")]
@@ -51,6 +52,18 @@ pub enum StyleError {
         "style {0} has more than {MAX_REFERENCES} reference texts, or one of more than {MAX_REFERENCE_BYTES} bytes: give fewer or shorter ones"
     )]
     TooLarge(String),
+    /// A number of its table `choice` is outside its range.
+    #[error("style {name}: `choice.{field}` is {found}: write a number from 0 to {most}")]
+    ChoiceOutOfRange {
+        /// The style.
+        name: String,
+        /// The field of `choice`.
+        field: &'static str,
+        /// What it says.
+        found: String,
+        /// The greatest number that it takes.
+        most: f64,
+    },
     /// No text can keep its rules.
     #[error("style {name}: no text can keep its rules: {reason}")]
     Contradictory {
@@ -103,14 +116,17 @@ pub fn parse_style_with(name: &str, text: &str, more: Vec<String>) -> Result<Ins
         StyleError::Unnamed => unreadable("its `name` is empty: give it one".into()),
         StyleError::NoReferences(_) => StyleError::NoReferences(name.to_owned()),
         StyleError::TooLarge(_) => StyleError::TooLarge(name.to_owned()),
+        StyleError::ChoiceOutOfRange { field, found, most, .. } => {
+            StyleError::ChoiceOutOfRange { name: name.to_owned(), field, found, most }
+        }
         other => other,
     })
 }
 
-/// Checks that a style can be used: it has a name and references, and is not too large.
+/// Checks that a style can be used: it has a name and references, is not too large, and its numbers are in their ranges.
 ///
 /// # Errors
-/// When it has no name, or no or too many references.
+/// When it has no name, no or too many references, or a choice outside its range, or no text can keep its rules.
 pub fn validate_style(style: InstructionStyle) -> Result<InstructionStyle, StyleError> {
     if style.name.trim().is_empty() {
         return Err(StyleError::Unnamed);
@@ -120,6 +136,13 @@ pub fn validate_style(style: InstructionStyle) -> Result<InstructionStyle, Style
     }
     if style.references.len() > MAX_REFERENCES || style.references.iter().any(|text| text.len() > MAX_REFERENCE_BYTES) {
         return Err(StyleError::TooLarge(style.name));
+    }
+    let WordingPolicy { sure, sharp } = style.choice;
+    for (field, chosen, most) in [("sure", sure, 1.0), ("sharp", sharp, MAX_SHARP_POWER)] {
+        // NaN is in no range.
+        if let Some(found) = chosen.filter(|chosen| !(0.0..=most).contains(chosen)) {
+            return Err(StyleError::ChoiceOutOfRange { name: style.name, field, found: format!("{found:?}"), most });
+        }
     }
     match contradiction_in(&style) {
         Some(reason) => Err(StyleError::Contradictory { name: style.name, reason }),
@@ -211,6 +234,20 @@ mod tests {
         let text = "name = \"x\"\nreferences = [\"Stop.\"]\nwords = [8, 12]\n[constraints]\nfewer_words_than = 8";
         assert!(parse_style("x.toml", text).unwrap_err().to_string().contains("every number in `words` is 8 or more"));
         assert!(parse_style("x.toml", &text.replace("= 8", "= 9")).is_ok());
+        for (rules, told) in [
+            ("sure = nan", "`choice.sure` is NaN: write a number from 0 to 1"),
+            ("sure = inf", "`choice.sure` is inf"),
+            ("sure = 7", "`choice.sure` is 7.0"),
+            ("sure = -0.1", "`choice.sure` is -0.1"),
+            ("sharp = 1e308", "`choice.sharp` is 1e308: write a number from 0 to 10"),
+            ("sure = 1\nsharp = -inf", "`choice.sharp` is -inf"),
+        ] {
+            let text = format!("name = \"x\"\nreferences = [\"Stop.\"]\n[choice]\n{rules}");
+            let error = parse_style("mine.toml", &text).unwrap_err().to_string();
+            assert!(error.starts_with("style mine.toml: ") && error.contains(told), "{error}");
+        }
+        let ends = "name = \"x\"\nreferences = [\"Stop.\"]\n[choice]\nsure = 0\nsharp = 10";
+        assert!(parse_style("x.toml", ends).is_ok());
         let long = format!("name = \"x\"\nreferences = [\"{}\"]", "a".repeat(4001));
         let long = parse_style("x.toml", &long).unwrap_err().to_string();
         assert!(

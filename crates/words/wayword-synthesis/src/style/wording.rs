@@ -101,7 +101,7 @@ impl PlaceWording {
     /// people use them.
     #[must_use]
     pub fn sharp_power(&self) -> f64 {
-        self.choice("sharp").clamp(0.0, 10.0)
+        self.choice("sharp").clamp(0.0, MAX_SHARP_POWER)
     }
 
     /// The share of texts in which the target has to be singled out, if that is possible. The other texts mention as
@@ -182,6 +182,8 @@ impl PlaceWording {
     }
 }
 
+/// The greatest exponent that a style may choose.
+pub(super) const MAX_SHARP_POWER: f64 = 10.0;
 /// The prefix of the tables of verbs, before the name of a kind or a class.
 pub(super) const VERB_TABLE_PREFIX: &str = "do ";
 /// The prefix of the tables of words for rooms and things.
