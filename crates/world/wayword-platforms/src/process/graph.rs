@@ -2,7 +2,11 @@
 //! places that the child proposes: it is asked for the neighbours of each place, or whether one can walk straight between
 //! two of them.
 
-use super::{child_keeper::ChildKeeper, labels::plausible_position, protocol::WorldOffer};
+use super::{
+    child_keeper::ChildKeeper,
+    labels::{plausible_level, plausible_position},
+    protocol::WorldOffer,
+};
 use serde::Deserialize;
 use serde_json::json;
 use std::collections::BTreeSet;
@@ -91,7 +95,10 @@ fn ask_whole_graph(keeper: &ChildKeeper, scene: &SceneId) -> Result<ViewpointGra
         return Err(keeper.misfit_error("graph", reason));
     }
     let mut graph = graph_without_edges(&viewpoints).map_err(|reason| keeper.misfit_error("graph", reason))?;
-    for (a, b) in &edges {
+    for (index, (a, b)) in edges.iter().enumerate() {
+        if a == b {
+            return Err(keeper.misfit_error("graph", format!("`edges[{index}]` leads from viewpoint {a} to itself")));
+        }
         graph.join_viewpoints(a, b).map_err(|error| keeper.misfit_error("graph", error.to_string()))?;
     }
     Ok(graph)
@@ -126,7 +133,8 @@ fn graph_without_edges(places: &[ChildWaypoint]) -> Result<ViewpointGraph, Strin
     for (index, here) in places.iter().enumerate() {
         let id = here.id.clone().ok_or_else(|| format!("viewpoint {index} has no `id`"))?;
         let position = plausible_position(here.position).map_err(|reason| format!("viewpoint {id}: {reason}"))?;
-        graph.add_viewpoint(id, position, here.level.filter(|level| *level > 0)).map_err(|error| error.to_string())?;
+        let level = plausible_level(here.level).map_err(|reason| format!("viewpoint {id}: {reason}"))?;
+        graph.add_viewpoint(id, position, level).map_err(|error| error.to_string())?;
     }
     Ok(graph)
 }
@@ -158,8 +166,9 @@ fn graph_by_walking(
 /// Drops places that are less than `spacing_m` from an earlier one, and gives the rest names if they have none.
 fn thin_out(points: Vec<ChildWaypoint>, spacing_m: f64) -> Result<Vec<ChildWaypoint>, String> {
     let mut kept: Vec<ChildWaypoint> = Vec::new();
-    for point in points {
+    for (index, point) in points.into_iter().enumerate() {
         let here = plausible_position(point.position)?;
+        plausible_level(point.level).map_err(|reason| format!("`points[{index}]`: {reason}"))?;
         if kept.iter().all(|other| DVec3::from_array(other.position).distance(here) >= spacing_m) {
             let name = || ViewpointId::new(format!("p{}", kept.len())).map_err(|error| error.to_string());
             let id = point.id.clone().map_or_else(name, Ok)?;
@@ -195,11 +204,7 @@ fn largest_connected_part(points: &[ChildWaypoint], open: &[(usize, usize)]) -> 
     let mut graph = ViewpointGraph::default();
     for (point, number) in points.iter().zip(&part) {
         if let (Some(id), true) = (&point.id, Some(*number) == largest) {
-            graph.add_viewpoint(
-                id.clone(),
-                DVec3::from_array(point.position),
-                point.level.filter(|level| *level > 0),
-            )?;
+            graph.add_viewpoint(id.clone(), DVec3::from_array(point.position), point.level)?;
         }
     }
     let id_of = |point: &usize| points.get(*point)?.id.as_ref();
@@ -251,6 +256,15 @@ mod tests {
         let graph = largest_connected_part(&points, &open).unwrap();
         assert_eq!((graph.len(), graph.count_components()), (5, 1));
         assert!(graph.viewpoints().all(|id| id.as_str() < "p5"));
+    }
+
+    #[test]
+    fn a_level_that_is_no_storey_is_refused() {
+        let places = |level| vec![ChildWaypoint { id: ViewpointId::new("a").ok(), level: Some(level), ..at(0.0, 0.0) }];
+        assert!(graph_without_edges(&places(2)).is_ok() && thin_out(places(2), 1.0).is_ok());
+        let told = graph_without_edges(&places(0)).unwrap_err();
+        assert!(told.starts_with("viewpoint a: `level` is 0, expected 1"), "{told}");
+        assert!(thin_out(places(99_999), 1.0).unwrap_err().starts_with("`points[0]`: `level` is 99999"));
     }
 
     proptest! {

@@ -2,12 +2,19 @@
 
 use super::{picture::SentPicture, protocol};
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use wayword_core::{DVec3, Heading, ObjectId, ObjectLabel, ViewGaze};
 
 /// Most objects in one answer.
 const MAX_LABELS: usize = 5000;
 /// Largest absolute value of a coordinate or a distance, metres.
 pub(crate) const MAX_COORDINATE_M: f64 = 1e6;
+/// Two positions of one object in a view are the same centre if they are at most this far apart, metres.
+const SAME_CENTRE_M: f64 = 0.1;
+/// Largest absolute value of a heading, radians: 2^53. Beyond it, two numbers in a row are 2 radians apart or more.
+const MAX_HEADING_RAD: f64 = 9_007_199_254_740_992.0;
+/// Largest storey.
+const MAX_LEVEL: u32 = 1000;
 /// How far a box may reach out of its picture because of rounding, pixels.
 const BOX_SLACK_PX: f64 = 1.0;
 
@@ -52,7 +59,32 @@ pub(crate) fn labels_of_answer(
     if seen.len() > MAX_LABELS {
         return Err(format!("{} labels, expected at most {MAX_LABELS}", seen.len()));
     }
-    seen.into_iter().map(|seen| seen.into_label(eye, gaze, size_px)).collect()
+    let labels: Vec<ObjectLabel> =
+        seen.into_iter().map(|seen| seen.into_label(eye, gaze, size_px)).collect::<Result<_, _>>()?;
+    refuse_two_in_one(&labels)?;
+    Ok(labels)
+}
+
+/// Refuses labels that give one object two names or two centres.
+fn refuse_two_in_one(labels: &[ObjectLabel]) -> Result<(), String> {
+    let mut first: BTreeMap<&ObjectId, &ObjectLabel> = BTreeMap::new();
+    for label in labels {
+        let other = *first.entry(&label.object).or_insert(label);
+        let object = label.object.as_str();
+        if other.name != label.name {
+            return Err(format!(
+                "object {object:?} has two `name`s in one view, {:?} and {:?}",
+                other.name, label.name
+            ));
+        }
+        let apart_m = other.position.zip(label.position).map(|(one, two)| one.distance(two));
+        if apart_m.is_some_and(|apart_m| apart_m > SAME_CENTRE_M) {
+            return Err(format!(
+                "object {object:?} has two `position`s in one view; give each object an id of its own"
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// The labels of objects that have their centre within the width of a view.
@@ -68,6 +100,22 @@ pub(crate) fn plausible_position(position: [f64; 3]) -> Result<DVec3, String> {
     near.then_some(place).ok_or_else(|| format!("{position:?} is not a plausible position"))
 }
 
+/// A heading, if it is finite and at most [`MAX_HEADING_RAD`].
+pub(crate) fn plausible_heading(heading_rad: f64) -> Result<Heading, String> {
+    let heading_rad = bounded_number("heading_rad", heading_rad, MAX_HEADING_RAD)?;
+    Heading::new(heading_rad).map_err(|error| format!("`heading_rad`: {error}"))
+}
+
+/// A storey, if one is given: from 1, the lowest, to [`MAX_LEVEL`].
+pub(crate) fn plausible_level(level: Option<u32>) -> Result<Option<u32>, String> {
+    match level {
+        Some(level) if !(1..=MAX_LEVEL).contains(&level) => {
+            Err(format!("`level` is {level}, expected 1 (the lowest storey) to {MAX_LEVEL}"))
+        }
+        level => Ok(level),
+    }
+}
+
 impl ObservedObject {
     fn into_label(self, eye: DVec3, gaze: ViewGaze, size_px: (u32, u32)) -> Result<ObjectLabel, String> {
         let object = self.object.to_string();
@@ -80,13 +128,10 @@ impl ObservedObject {
         let (heading, elevation_rad) = match (position, self.heading_rad) {
             // An object straight above the eye has no heading, so any will do.
             (Some(centre), _) => (Heading::towards(eye, centre).unwrap_or(gaze.heading), elevation_rad(eye, centre)),
-            (None, Some(heading)) => {
-                let heading = Heading::new(heading).map_err(|error| format!("`heading_rad`: {error}"))?;
-                (
-                    heading,
-                    bounded_number("elevation_rad", self.elevation_rad.unwrap_or(0.0), std::f64::consts::FRAC_PI_2)?,
-                )
-            }
+            (None, Some(heading)) => (
+                plausible_heading(heading)?,
+                bounded_number("elevation_rad", self.elevation_rad.unwrap_or(0.0), std::f64::consts::FRAC_PI_2)?,
+            ),
             (None, None) => return Err("has neither `position` nor `heading_rad`".into()),
         };
         let reported_m = self.distance_m.map(|far| bounded_number("distance_m", far, MAX_COORDINATE_M)).transpose()?;
@@ -116,7 +161,7 @@ fn elevation_rad(eye: DVec3, centre: DVec3) -> f64 {
 /// A number that is finite and at most `max` in size; the error names the field.
 fn bounded_number(field: &str, number: f64, max: f64) -> Result<f64, String> {
     let fits = number.is_finite() && number.abs() <= max;
-    fits.then_some(number).ok_or_else(|| format!("`{field}` is {number}, which is more than {max} in size"))
+    fits.then_some(number).ok_or_else(|| format!("`{field}` is {number:?}, which is more than {max} in size"))
 }
 
 /// A box, cut to its picture; an error if it does not lie within the picture.
@@ -177,9 +222,31 @@ mod tests {
             (json!({"object": "7", "name": "lamp", "heading_rad": 0, "distance_m": -1}), "negative"),
             (json!({"object": "7", "name": "lamp", "heading_rad": 0, "box_px": [600, 0, 100, 10]}), "640 x 480"),
             (json!({"object": "7", "name": "lamp", "heading_rad": 0, "elevation_rad": 3}), "elevation_rad"),
+            (json!({"object": "7", "name": "lamp", "heading_rad": 1e308}), "`heading_rad` is 1e308"),
+            (json!({"object": "7", "name": "lamp", "heading_rad": -1e17}), "`heading_rad` is -1e17"),
         ] {
             let error = labels(json!([bad])).unwrap_err();
             assert!(error.contains(says), "{bad}: {error}");
+        }
+    }
+
+    #[test]
+    fn one_object_has_one_name_and_one_centre_in_a_view() {
+        let lamp = |name: &str, x: f64| json!({"object": "7", "name": name, "position": [x, 5.0, 1.5]});
+        for (second, says) in [(lamp("chair", 1.0), "\"lamp\" and \"chair\""), (lamp("lamp", 2.0), "two `position`s")] {
+            let error = labels(json!([lamp("lamp", 1.0), second])).unwrap_err();
+            assert!(error.contains("object \"7\"") && error.contains(says), "{error}");
+        }
+        // A thing of which two parts are seen.
+        assert_eq!(labels(json!([lamp("lamp", 1.0), lamp("lamp", 1.01)])).unwrap().len(), 2);
+        assert!(plausible_heading(7.0 * std::f64::consts::TAU).is_ok());
+    }
+
+    #[test]
+    fn a_level_is_a_storey_from_1() {
+        assert_eq!((plausible_level(None), plausible_level(Some(1))), (Ok(None), Ok(Some(1))));
+        for level in [0, 99_999] {
+            assert!(plausible_level(Some(level)).unwrap_err().starts_with(&format!("`level` is {level}, ")));
         }
     }
 

@@ -1,10 +1,13 @@
 //! Asks a child for a random path, if it offers to choose paths itself, and checks the path.
 
-use super::{child_keeper::ChildKeeper, labels::plausible_position};
+use super::{
+    child_keeper::ChildKeeper,
+    labels::{plausible_heading, plausible_level, plausible_position},
+};
 use serde::Deserialize;
 use serde_json::json;
 use wayword_core::{
-    Heading, ObjectId, Path, PathMotion, PathRequest, Platform, PlatformError, SceneId, ViewpointGraph, ViewpointId,
+    ObjectId, Path, PathMotion, PathRequest, Platform, PlatformError, SceneId, ViewpointGraph, ViewpointId,
     path::PathStop,
 };
 use wayword_world::{episode_path, graph_walk};
@@ -73,13 +76,17 @@ pub(crate) fn ask_random_path(
     let graph = if on_graph { Some(platform.graph_for_scene(scene)?) } else { None };
     let stops: Result<Vec<PathStop>, String> =
         walk.stops.into_iter().map(|given| given.into_stop(graph.as_deref())).collect();
-    let heading = walk.heading_rad.map(Heading::new).transpose().map_err(|error| misfit(error.to_string()))?;
+    let heading = walk.heading_rad.map(plausible_heading).transpose().map_err(misfit)?;
     let frames = Path::frames_along(stops.map_err(misfit)?, heading);
     let mut path =
         Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, motion: PathMotion::Known, target: None };
     check_fit(&path, request).map_err(misfit)?;
     if let (Some(object), Some(last)) = (&walk.target, path.frames.last()) {
-        path.target = episode_path::target_for_object(platform, scene, last, object)?;
+        let target = episode_path::target_for_object(platform, scene, last, object)?;
+        path.target = Some(target.ok_or_else(|| {
+            let reason = format!("`target` {:?} is not known: no label and no `object_name` has it", object.as_str());
+            misfit(format!("{reason}; send the id of an object of the scene, or leave `target` out"))
+        })?);
     }
     Ok(path)
 }
@@ -92,10 +99,11 @@ impl ChildStop {
                 let level = graph.level_of(&id);
                 Ok(PathStop { position, viewpoint: Some(id), level })
             }
-            (_, Some(position), _) => {
-                let level = self.level.filter(|level| *level > 0);
-                Ok(PathStop { position: plausible_position(position)?, viewpoint: None, level })
-            }
+            (_, Some(position), _) => Ok(PathStop {
+                position: plausible_position(position)?,
+                viewpoint: None,
+                level: plausible_level(self.level)?,
+            }),
             _ => Err("a stop must have a `viewpoint` or a `position`".into()),
         }
     }

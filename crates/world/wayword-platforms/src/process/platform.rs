@@ -239,8 +239,10 @@ impl Platform for ProcessPlatform {
             return Err(self.keeper.misfit_error("scenes", format!("more than {MAX_SCENES} scenes")));
         }
         scenes.sort();
-        scenes.dedup();
-        Ok(scenes)
+        match scenes.array_windows().find(|[scene, next]| scene == next) {
+            Some([scene, _]) => Err(self.keeper.misfit_error("scenes", format!("`scenes` lists {scene} twice"))),
+            None => Ok(scenes),
+        }
     }
 
     fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {

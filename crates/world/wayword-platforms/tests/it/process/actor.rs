@@ -53,7 +53,13 @@ impl Actor {
         let params = &request["params"];
         let result = match request["method"].as_str().unwrap() {
             "hello" => self.greeting(),
+            "scenes" if self.role == "repeats" => json!({"scenes": ["good", "bad", "good"]}),
             "scenes" => json!({"scenes": ["good", "bad"]}),
+            "graph" if self.role == "loops" => {
+                let mut graph = graph();
+                graph["edges"][1] = json!(["b", "b"]);
+                graph
+            }
             "graph" => graph(),
             "points" => json!({"points": self.points()}),
             "neighbours" => json!({"viewpoints": neighbours(params["viewpoint"].as_str().unwrap())}),
@@ -115,6 +121,11 @@ impl Actor {
             }
             "draws places" => {
                 json!({"path": {"stops": [{"position": [0, 0, 1.5]}, {"position": [3, 4, 1.5], "level": 1}]}})
+            }
+            "draws a ghost" => json!({"path": {"stops": stops(&["a", "b", "c"]), "target": "ghost"}}),
+            "draws a spin" => json!({"path": {"stops": stops(&["a", "b", "c"]), "heading_rad": 1e308}}),
+            "draws a tower" => {
+                json!({"path": {"stops": [{"position": [0, 0, 1.5]}, {"position": [3, 4, 1.5], "level": 99_999}]}})
             }
             "draws strangers" => json!({"path": {"stops": stops(&["a", "nobody"])}}),
             "draws stubs" => json!({"path": {"stops": stops(&["a"])}}),

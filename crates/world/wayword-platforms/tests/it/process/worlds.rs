@@ -70,12 +70,23 @@ fn a_world_may_draw_its_own_paths_if_they_fit_the_request() {
         ("draws viewpoints", &long, "metres: 4.000; expected 2 to 3 hops and 6 to 7 metres"),
         ("draws places", &long, "metres: 5.000"),
         ("draws strangers", &request(), "nobody is not in the graph"),
+        ("draws a ghost", &request(), "`target` \"ghost\" is not known"),
+        ("draws a spin", &request(), "`heading_rad` is 1e308"),
+        ("draws a tower", &request(), "`level` is 99999, expected 1"),
         ("draws stubs", &request(), "`stops` has length 1"),
         ("draws nothing", &request(), "has no path with 2 to 3 hops"),
     ] {
         let error = drawn(role, request).unwrap_err();
         assert!(error.contains(says), "{role}: {error}");
     }
+}
+
+#[test]
+fn a_list_or_a_graph_that_repeats_itself_is_refused() {
+    let twice = started("repeats").unwrap().list_scenes().unwrap_err().to_string();
+    assert!(twice.contains("`scenes` lists good twice"), "{twice}");
+    let to_itself = started("loops").unwrap().graph_for_scene(&scene("good")).unwrap_err().to_string();
+    assert!(to_itself.contains("`edges[1]` leads from viewpoint b to itself"), "{to_itself}");
 }
 
 #[test]
