@@ -4,7 +4,7 @@
 //! `distance`, `ix` and `instructions_l` (R2R's text); they are kept as unknown fields are.
 
 use crate::{
-    Episode, FormatError, input, item, matterport, output,
+    DatasetItem, Episode, FormatError, input, item, matterport, output,
     read_tally::{ReadTally, SharedPathId},
 };
 use matterport::PathNumbers;
@@ -15,10 +15,11 @@ use std::path::Path;
 ///
 /// # Errors
 /// When the file cannot be read or is not JSON, a field of an item is missing or wrong, an id is given twice, or two
-/// paths of a scan with one `path_id` start at different viewpoints.
+/// paths of a scan with one `path_id` start at different viewpoints, or an `id` is not "path_objId" although others are.
 pub fn read_reverie_file(file: &Path) -> Result<Vec<Episode>, FormatError> {
     let mut episodes = Vec::new();
     let mut tally = ReadTally::default();
+    let mut item_names = ItemNames::default();
     input::each_item(file, |mut item| {
         let name = matterport::name_field(&item, "id");
         let mut episode = matterport::take_path(&mut item, name)?;
@@ -29,11 +30,43 @@ pub fn read_reverie_file(file: &Path) -> Result<Vec<Episode>, FormatError> {
             episode.target_object = Some(item.checked_object("objId", &object)?);
             episode.remember_spelling("objId", object);
         }
+        if name == "id" {
+            item_names.note_name(&item, &episode);
+        }
         episode.instructions = matterport::take_instructions(&mut item)?;
         episodes.push(tally.finish_episode(episode, item)?);
         Ok(())
     })?;
+    item_names.refuse_mixture()?;
     tally.finish_file(episodes)
+}
+
+/// How a file names its items. REVERIE's own name is "path_objId". Files that others made may have names of another kind
+/// throughout, but where only some differ, one of the three fields is wrong.
+#[derive(Default)]
+struct ItemNames {
+    /// Whether an item is named by its path and object.
+    has_usual: bool,
+    /// The first item that is not, as an error about it.
+    first_other: Option<FormatError>,
+}
+
+impl ItemNames {
+    /// Takes in the name of an item that has an object.
+    fn note_name(&mut self, item: &DatasetItem<'_>, episode: &Episode) {
+        let Some(object) = &episode.target_object else { return };
+        let usual = format!("{}_{object}", episode.path_id);
+        self.has_usual |= episode.id == usual;
+        if episode.id != usual && self.first_other.is_none() {
+            let problem = format!("it is {:?}, but path_id and objId give {usual:?}, as in other items", episode.id);
+            self.first_other = Some(item.wrong_field("id", problem, "correct id, path_id or objId"));
+        }
+    }
+
+    /// Refuses a file in which only some items are named by path and object.
+    fn refuse_mixture(self) -> Result<(), FormatError> {
+        self.first_other.filter(|_| self.has_usual).map_or(Ok(()), Err)
+    }
 }
 
 /// Writes a REVERIE file (2022 release; fields of the first release are kept where an item has them).

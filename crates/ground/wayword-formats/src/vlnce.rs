@@ -98,6 +98,10 @@ fn take_episode(item: &mut DatasetItem<'_>, tokens: &mut BTreeMap<String, Vec<u6
         if !info.is_object() && !info.is_null() {
             return Err(item.wrong_field("info", "expected an object", "leave it out where there is nothing to say"));
         }
+        if let Some(metres) = info.get("geodesic_distance").and_then(Value::as_f64).filter(|metres| *metres < 0.0) {
+            let problem = format!("it is {metres:?}, and a distance is not negative");
+            return Err(item.wrong_field("info.geodesic_distance", problem, "write metres, or leave it out"));
+        }
         episode.remember_spelling("info", info);
     }
     Ok(episode)
@@ -137,13 +141,30 @@ fn take_positions(item: &mut DatasetItem<'_>, episode: &mut Episode) -> Result<(
     let floors = if path.is_null() {
         std::iter::once(start_floor).chain(goal_floors.into_iter().take(1)).collect()
     } else {
-        checked_positions(item, "reference_path", &path)?
+        let floors = checked_positions(item, "reference_path", &path)?;
+        refuse_far_ends(item, &floors, start_floor, &goal_floors)?;
+        floors
     };
     episode.floor_positions = floors.into_iter().map(wayword_from_habitat).collect();
     for (field, value) in
         [("start_position", start), ("start_rotation", rotation), ("goals", goals), ("reference_path", path)]
     {
         episode.remember_spelling(field, value);
+    }
+    Ok(())
+}
+
+/// Refuses a start or goals that lie farther from the path's ends than an agent may stop from a goal.
+fn refuse_far_ends(item: &DatasetItem<'_>, floors: &[DVec3], start: DVec3, goals: &[DVec3]) -> Result<(), FormatError> {
+    let (Some(first), Some(last)) = (floors.first(), floors.last()) else { return Ok(()) };
+    let nearest_goal_m = goals.iter().map(|goal| goal.distance(*last)).min_by(f64::total_cmp);
+    for (field, away_m, end) in
+        [("start_position", Some(first.distance(start)), "beginning"), ("goals[0].position", nearest_goal_m, "end")]
+    {
+        if let Some(away_m) = away_m.filter(|away_m| *away_m > GOAL_RADIUS_M) {
+            let problem = format!("it is {away_m:.1} m from the {end} of reference_path");
+            return Err(item.wrong_field(field, problem, "correct the one that is wrong"));
+        }
     }
     Ok(())
 }

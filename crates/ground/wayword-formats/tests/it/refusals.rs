@@ -48,6 +48,58 @@ fn a_refusal_names_file_item_and_field() {
 }
 
 #[test]
+fn an_item_that_contradicts_itself_is_refused() {
+    for (field, value, told) in [
+        (
+            "/start_position",
+            json!([9, 0, 0]),
+            "field \"start_position\": it is 7.9 m from the beginning of reference_path",
+        ),
+        ("/goals/0/position", json!([50, 0, 50]), "field \"goals[0].position\": it is 69.8 m from the end of"),
+        ("/goals/0/position", json!([1.5, 9, -2.5]), "m from the end of reference_path"),
+        ("/info/geodesic_distance", json!(-5), "field \"info.geodesic_distance\": it is -5.0"),
+    ] {
+        let told_instead = refusal_of(DatasetFormat::Vlnce, field, value);
+        assert!(
+            told_instead.starts_with("data.json: item 1 (id 1): ") && told_instead.contains(told),
+            "{told_instead}"
+        );
+    }
+    for (field, value, told) in [
+        ("/id", json!("9_66"), "it is \"9_66\", but path_id and objId give \"1_66\""),
+        ("/objId", json!(67), "it is \"1_66\", but path_id and objId give \"1_67\""),
+        ("/path_id", json!(5), "correct id, path_id or objId"),
+    ] {
+        let told_instead = refusal_of(DatasetFormat::Reverie, field, value);
+        assert!(told_instead.contains("field \"id\"") && told_instead.contains(told), "{told_instead}");
+    }
+}
+
+#[test]
+fn ends_near_the_path_and_names_of_another_kind_are_read() {
+    let accepts = |format: DatasetFormat, items: &[Value]| {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("data.json");
+        std::fs::write(&file, crate::common::text(format, items)).unwrap();
+        format.read_file(&file).unwrap().len()
+    };
+    let mut episodes = crate::common::items(DatasetFormat::Vlnce);
+    episodes[0]["start_position"] = json!([1.5, 0.125, 0.4]);
+    episodes[1]["goals"] = json!([{"position": [40.0, 0.0, 0.0]}, {"position": [4.0, 0.0, -5.0]}]);
+    episodes[2]["info"]["geodesic_distance"] = json!(0);
+    assert_eq!(accepts(DatasetFormat::Vlnce, &episodes), 3);
+    let mut items = crate::common::items(DatasetFormat::Reverie);
+    for (number, item) in items.iter_mut().enumerate() {
+        item["id"] = json!(format!("augmented-{number}"));
+    }
+    assert_eq!(accepts(DatasetFormat::Reverie, &items), 3);
+    let mut items = crate::common::items(DatasetFormat::Reverie);
+    items[0]["id"] = json!("0");
+    items[0].as_object_mut().unwrap().remove("objId");
+    assert_eq!(accepts(DatasetFormat::Reverie, &items), 3, "an item without an object has no part in this");
+}
+
+#[test]
 fn broken_json_is_refused_at_the_place_where_it_breaks() {
     let text = crate::common::text(DatasetFormat::R2r, &crate::common::items(DatasetFormat::R2r));
     let at = text.rfind("1.5").unwrap();
