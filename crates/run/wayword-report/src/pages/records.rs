@@ -18,7 +18,7 @@ use wayword_run::{
     run_folder::{
         FailedItem, RejectedText, WalkRecord, file,
         lines::{self, RecordLine},
-        read_run_settings,
+        read_run_settings, refuse_edited_lines,
     },
     settings::RunSettings,
 };
@@ -88,8 +88,10 @@ impl ReportRecords {
     /// # Errors
     /// When it is not a run folder, a file cannot be read, or a line is not of its kind.
     pub(super) fn read_run(run: &Path, most_items: usize) -> Result<Self, CommandError> {
+        let settings = read_run_settings(run)?;
+        refuse_edited_lines(run)?;
         let mut records = Self {
-            settings: read_run_settings(run)?,
+            settings,
             items: Vec::new(),
             left_out: 0,
             failed: Vec::new(),

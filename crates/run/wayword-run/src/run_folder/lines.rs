@@ -56,6 +56,11 @@ impl RecordLine<'_> {
         self.bytes.len()
     }
 
+    /// Its number in the file, from 1.
+    pub fn number(&self) -> usize {
+        self.number
+    }
+
     /// The value that the line holds.
     ///
     /// # Errors
@@ -74,6 +79,15 @@ impl RecordLine<'_> {
         CommandError::usage(
             problem,
             "the file was changed by hand or by another program: give another --out for a new run",
+        )
+    }
+
+    /// The error about a line that can be read, and contradicts itself or another line.
+    pub fn edited_line(&self, problem: impl Display) -> CommandError {
+        let problem = format!("{}: line {}: {problem}", self.path.display(), self.number);
+        CommandError::usage(
+            problem,
+            "the file was changed by hand or by another program: undo the change, or delete the line",
         )
     }
 }

@@ -10,6 +10,7 @@
 mod config;
 mod folder_lock;
 mod journal;
+mod line_check;
 pub mod lines;
 mod record;
 mod world_data;
@@ -34,6 +35,7 @@ pub use config::{
 pub use config::{continued_settings, is_begun, read_run_settings};
 pub use folder_lock::{FolderLock, lock_folder};
 pub use journal::{Journal, read_lines};
+pub use line_check::refuse_edited_lines;
 pub use record::{FailedItem, ItemCalls, PathMap, RejectedText, WalkRecord, extra_fields, text_file_name, text_name};
 pub use world_data::WorldData;
 pub(crate) use world_data::scene_hashes;
@@ -108,6 +110,7 @@ impl RunFolder {
     /// Opens the files of a folder after a check of its settings.
     fn with_lock(folder: &Path, settings: &RunSettings, held: Option<FolderLock>) -> Result<Self, CommandError> {
         keep_settings(folder, settings)?;
+        refuse_edited_lines(folder)?;
         let walks = folder.join(file::WALKS);
         Ok(Self {
             failed_before: failed_item_ids(&folder.join(file::ERRORS))?,
