@@ -15,7 +15,7 @@ use wayword_experiments::{
     episodes,
     judge::{SubmissionScores as Figures, SubmissionScoring, TrajectoryJudge as Episodes, TrajectoryProblems},
 };
-use wayword_formats::submission;
+use wayword_formats::{Episode, submission};
 use wayword_metrics::{TrajectoryMetric, TrajectorySuccessRule};
 use wayword_run::{
     error::CommandError,
@@ -24,7 +24,11 @@ use wayword_run::{
 
 /// The episodes that trajectories are scored by.
 #[pyclass(frozen, module = "wayword._wayword")]
-pub(crate) struct Judge(Episodes);
+pub(crate) struct Judge {
+    prepared: Episodes,
+    /// As they were read: a file may name their instructions in a way of its own.
+    episodes: Vec<Episode>,
+}
 
 #[pymethods]
 impl Judge {
@@ -39,29 +43,35 @@ impl Judge {
         island: Option<usize>,
         connectivity: Option<PathBuf>,
     ) -> PyResult<Self> {
-        let judge = run_patiently(py, || -> Result<Episodes, CommandError> {
+        let judge = run_patiently(py, || -> Result<Self, CommandError> {
             let (data, connectivity) = (data.as_deref(), connectivity.as_deref());
             let platform = platforms::open_at(platform, PlatformPlace { data, at, island, connectivity })?;
-            Episodes::new(&episodes::read_episodes(&episodes, platform.as_ref())?, platform.as_ref())
+            let episodes = episodes::read_episodes(&episodes, platform.as_ref())?;
+            Ok(Self { prepared: Episodes::new(&episodes, platform.as_ref())?, episodes })
         })?;
-        judge.map(Self).map_err(|error| exception_for(py, error))
+        judge.map_err(|error| exception_for(py, error))
     }
 
     /// How many instructions there are.
     fn __len__(&self) -> usize {
-        self.0.instruction_count()
+        self.prepared.instruction_count()
     }
 
-    /// The figures of the trajectories in a file.
+    /// The figures of the trajectories in a file, which may name instructions in any way that `evaluate` reads.
     fn score_file(&self, py: Python<'_>, file: PathBuf, partial: bool) -> PyResult<Scores> {
-        let scored = py.detach(|| self.0.score_all(&submission::read_submission(&file), &BTreeSet::new(), partial));
+        let scored = py.detach(|| {
+            let mut reading = submission::read_submission(&file);
+            // Python has no line for the way, and the names of the scores are those of the episodes.
+            let _ = submission::name_as_episodes(&mut reading, &self.episodes);
+            self.prepared.score_all(&reading, &BTreeSet::new(), partial)
+        });
         scored.map(|(scores, _)| Scores(scores)).map_err(|problems| problems_error(py, &problems))
     }
 
     /// The figures of trajectories: a list of `{"instr_id", "trajectory", "predObjId"}`, or a mapping from instructions to
     /// trajectories.
     fn score(&self, py: Python<'_>, submission: &Bound<'_, PyAny>, partial: bool) -> PyResult<Scores> {
-        let mut scoring = self.0.begin_submission();
+        let mut scoring = self.prepared.begin_submission();
         let mut handed = TrajectoryPart::default();
         each_trajectory(submission, |name, trajectory, object| {
             handed.take_trajectory(name, trajectory, object)?;
