@@ -344,7 +344,8 @@ impl SceneFiles for RecordingPlatform {
         let more = wrong.len().saturating_sub(MAX_LISTED_ERRORS);
         let more = if more > 0 { format!("\n  and {more} more") } else { String::new() };
         let reason = format!(
-            "{} of {} recordings cannot be read; move them away, or name the others with --scan:{listed}{more}",
+            "{} of {} recordings cannot be read; name the others with --scan, or move away those that are files or \
+             folders of their own:{listed}{more}",
             wrong.len(),
             all.len()
         );
@@ -405,14 +406,22 @@ fn describe_choice(scene: &SceneId, recording: &Recording, choice: &FrameChoice)
         0 => String::new(),
         pictures => format!("; {} without a pose", count(pictures, "picture")),
     };
+    let tally = recording.track.as_ref().map(CameraTrack::tally).unwrap_or_default();
+    let poses_that = |poses: usize, what: &str| match poses {
+        0 => String::new(),
+        poses => format!("; {} {what}", count(poses, "pose")),
+    };
     let gaps = match choice.breaks.len() {
         0 => String::new(),
         gaps => format!("; {} that no path crosses", count(gaps, "gap")),
     };
     format!(
-        "recording {scene}: {}, {}{poses}{without_pose}{}{}{}{gaps}",
+        "recording {scene}: {}, {}{poses}{}{}{}{without_pose}{}{}{}{gaps}",
         count(recording.reel.times_s().len(), "picture"),
         count(choice.stops.len(), "frame"),
+        poses_that(tally.invalid, "left out because the place or the time is not a valid number"),
+        poses_that(tally.repeated, "left out because another has the same time"),
+        poses_that(tally.late, "moved because of an earlier time than the one before"),
         left_out(choice.blurred, "the pictures are blurred"),
         left_out(choice.alike, "the picture shows the same as the one before"),
         left_out(choice.turned_away, "the camera looked away from the path"),

@@ -3,7 +3,7 @@
 use wayword_core::{DVec3, Heading};
 
 /// Longest time between two fixes over which the track is interpolated on a straight line, seconds.
-const MAX_GAP_S: f64 = 2.0;
+pub(crate) const MAX_GAP_S: f64 = 2.0;
 /// A fix also counts for times this far before the first fix, after the last, or into a gap, seconds: cameras and
 /// trackers do not start together.
 const MAX_BEYOND_S: f64 = 0.1;
@@ -25,21 +25,50 @@ pub(crate) struct TrackFix {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct CameraTrack {
     fixes: Vec<TrackFix>,
+    tally: PoseTally,
     /// A warning about the fixes for the user, if there is one.
     doubt: Option<String>,
 }
 
+/// Poses of a recording that do not count as they stand in it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct PoseTally {
+    /// Left out, because their place or their time is not a valid number.
+    pub(crate) invalid: usize,
+    /// Left out, because another pose has their time.
+    pub(crate) repeated: usize,
+    /// Moved to their time, although they stand after later ones.
+    pub(crate) late: usize,
+}
+
 impl CameraTrack {
     /// A track from fixes in any order; `None` where no fix is left. Fixes without a valid position or time are
-    /// dropped, and of several fixes at one time the first counts.
+    /// dropped, and of several fixes at one time the first counts. The tally counts both.
     pub(crate) fn new(mut fixes: Vec<TrackFix>) -> Option<Self> {
-        fixes.retain(|fix| {
-            let place = fix.position;
-            fix.time_s.is_finite() && place.is_finite() && place.abs().max_element() <= MAX_COORDINATE_M
-        });
+        let all = fixes.len();
+        fixes.retain(|fix| fix.time_s.is_finite() && is_valid_place(fix.position));
+        let mut tally = PoseTally { invalid: all - fixes.len(), ..PoseTally::default() };
         fixes.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
-        fixes.dedup_by(|later, first| later.time_s == first.time_s);
-        (!fixes.is_empty()).then_some(Self { fixes, doubt: None })
+        fixes.dedup_by(|later, first| {
+            let is_repeated = later.time_s == first.time_s;
+            // A pose that was only recorded twice loses nothing.
+            tally.repeated += usize::from(is_repeated && later != first);
+            is_repeated
+        });
+        (!fixes.is_empty()).then_some(Self { fixes, tally, doubt: None })
+    }
+
+    /// The same track with more poses that do not count.
+    pub(crate) fn with_tally(mut self, more: PoseTally) -> Self {
+        self.tally.invalid += more.invalid;
+        self.tally.repeated += more.repeated;
+        self.tally.late += more.late;
+        self
+    }
+
+    /// The poses that do not count.
+    pub(crate) fn tally(&self) -> PoseTally {
+        self.tally
     }
 
     /// The same track with a warning.
@@ -75,6 +104,11 @@ impl CameraTrack {
         })?;
         ((nearest.time_s - time_s).abs() <= MAX_BEYOND_S).then_some(TrackFix { time_s, ..nearest })
     }
+}
+
+/// Whether a position, in metres, can be one.
+pub(crate) fn is_valid_place(position: DVec3) -> bool {
+    position.is_finite() && position.abs().max_element() <= MAX_COORDINATE_M
 }
 
 /// The pose at a time between two fixes, on the straight line and the short turn from one to the other.
@@ -118,6 +152,16 @@ mod tests {
     fn track_drops_fixes_without_a_valid_position() {
         assert!(CameraTrack::new(vec![fix(0.0, f64::NAN, 0.0), fix(f64::NAN, 0.0, 0.0), fix(0.0, 1e9, 0.0)]).is_none());
         assert!(CameraTrack::new(vec![fix(0.0, 5.4e6, 0.0)]).is_some());
+    }
+
+    #[test]
+    fn track_counts_the_fixes_that_it_drops() {
+        let bad = [fix(1.0, f64::NAN, 0.0), fix(f64::NAN, 1.0, 0.0), fix(2.0, 1e308, 0.0)];
+        let twice = [fix(0.0, 1.0, 0.0), fix(0.0, 1.0, 0.0), fix(0.0, 1.1, 0.0)];
+        let track = CameraTrack::new([bad, twice].concat()).unwrap();
+        assert_eq!(track.tally(), PoseTally { invalid: 3, repeated: 1, late: 0 });
+        let late = PoseTally { late: 2, invalid: 1, repeated: 0 };
+        assert_eq!(track.with_tally(late).tally(), PoseTally { invalid: 4, repeated: 1, late: 2 });
     }
 
     proptest! {

@@ -29,6 +29,7 @@ pub(super) fn read_colmap(text: &str) -> Result<PoseRows, String> {
             return Err(wrong(EXPECTED_LINE));
         };
         Ok(PoseRow {
+            at: at + 1,
             key: PoseKey::Picture(name.to_owned()),
             position: DVec3::new(tx, ty, tz),
             facing: PoseFacing::Quaternion([w, x, y, z]),

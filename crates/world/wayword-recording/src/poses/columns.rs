@@ -129,8 +129,16 @@ impl PoseColumns {
         !matches!(self.facing, FacingColumns::Yaw { per_unit_rad: None, .. })
     }
 
-    /// The pose of a row, whose cells `cell` gives.
-    pub(super) fn read_row<'a>(&self, cell: &dyn Fn(usize) -> Result<&'a str, String>) -> Result<PoseRow, String> {
+    /// The pose of a row, whose cells `cell` gives. `at` is the number of its line.
+    pub(super) fn read_row<'a>(
+        &self,
+        at: usize,
+        cell: &dyn Fn(usize) -> Result<&'a str, String>,
+    ) -> Result<PoseRow, String> {
+        self.read_cells(at, cell).map_err(|reason| format!("line {at}: {reason}"))
+    }
+
+    fn read_cells<'a>(&self, at: usize, cell: &dyn Fn(usize) -> Result<&'a str, String>) -> Result<PoseRow, String> {
         let value = |column: usize| parse_number(cell(column)?);
         let key = match self.key {
             KeyColumn::Time { column, unit } => PoseKey::Time(seconds_in_unit(value(column)?, unit)),
@@ -154,7 +162,7 @@ impl PoseColumns {
             }
             FacingColumns::Heading { column, per_unit_rad } => PoseFacing::Heading(value(column)? * per_unit_rad),
         };
-        Ok(PoseRow { key, position, facing })
+        Ok(PoseRow { at, key, position, facing })
     }
 
     /// The number in the column that counts pictures, beside a time; `None` if there is none.

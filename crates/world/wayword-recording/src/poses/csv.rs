@@ -27,7 +27,7 @@ pub(super) fn read_csv(text: &str) -> Result<PoseRows, String> {
     for (at, line) in lines.filter(|(_, line)| !line.starts_with('#')) {
         let cells = CsvCells::from_line(line);
         let cell = |column: usize| cells.get(column);
-        rows.push(columns.read_row(&cell).map_err(|reason| format!("line {}: {reason}", at + 1))?);
+        rows.push(columns.read_row(at + 1, &cell)?);
         frames = frames.zip(columns.read_frame(&cell)).map(|(mut all, frame)| {
             all.push(frame);
             all

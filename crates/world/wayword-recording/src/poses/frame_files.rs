@@ -2,7 +2,7 @@
 
 use super::{
     matrix::row_from_matrix,
-    rows::{KnownConventions, PoseKey, PoseRow, PoseRows, parse_number, picture_stem},
+    rows::{KnownConventions, PoseKey, PoseRow, PoseRows, RowKind, parse_number, picture_stem},
 };
 use crate::{
     axes::{PoseAxes, PoseBody, WorldUpAxis},
@@ -83,7 +83,8 @@ impl FramePoseFiles {
             row.ok_or_else(|| wrong(format!("holds no pose, but {count} numbers")))
         });
         let usual = PoseAxes { world: self.world, ..PoseAxes::for_body(PoseBody::Optical) };
-        Ok(PoseRows::new(usual, KnownConventions::BODY_ONLY, rows.collect::<Result<_, _>>()?))
+        let rows = PoseRows::new(usual, KnownConventions::BODY_ONLY, rows.collect::<Result<_, _>>()?);
+        Ok(PoseRows { kind: RowKind::File, ..rows })
     }
 }
 

@@ -1,6 +1,8 @@
 //! Reads poses from JSON: Wayword's own list of poses, NeRF's `transforms.json`, or the `metadata` of Record3D (a phone's app).
 
-use super::rows::{KnownConventions, PoseFacing, PoseKey, PoseRow, PoseRows, pose_from_matrix, seconds_in_unit};
+use super::rows::{
+    KnownConventions, PoseFacing, PoseKey, PoseRow, PoseRows, RowKind, pose_from_matrix, seconds_in_unit,
+};
 use crate::axes::{PoseAxes, PoseBody, WorldUpAxis};
 use serde::Deserialize;
 use wayword_core::DVec3;
@@ -57,21 +59,21 @@ pub(super) fn read_json(text: &str) -> Result<PoseRows, String> {
     let value: serde_json::Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
     match PoseFile::deserialize(value).map_err(|_| EXPECTED_JSON.to_owned())? {
         PoseFile::Transforms { frames } => {
-            let rows = frames.into_iter().enumerate().map(|(at, frame)| frame.into_row().ok_or((at, "frame")));
-            collect_rows(PoseAxes::for_body(PoseBody::OpenGl), KnownConventions::BODY_ONLY, rows)
+            let rows = frames.into_iter().enumerate().map(|(at, frame)| frame.into_row(at).ok_or((at, "frame")));
+            collect_rows(PoseAxes::for_body(PoseBody::OpenGl), KnownConventions::BODY_ONLY, RowKind::Frame, rows)
         }
         PoseFile::Record3D { poses } => {
             let rows = poses.into_iter().enumerate().map(|(at, [qx, qy, qz, qw, x, y, z])| {
                 let facing = PoseFacing::Quaternion([qx, qy, qz, qw]);
-                Ok(PoseRow { key: PoseKey::Number(at), position: DVec3::new(x, y, z), facing })
+                Ok(PoseRow { at, key: PoseKey::Number(at), position: DVec3::new(x, y, z), facing })
             });
             let arkit = PoseAxes { world: WorldUpAxis::YUp, ..PoseAxes::for_body(PoseBody::OpenGl) };
-            collect_rows(arkit, KnownConventions::ALL, rows)
+            collect_rows(arkit, KnownConventions::ALL, RowKind::Pose, rows)
         }
         PoseFile::Poses { poses } | PoseFile::List(poses) => {
-            let rows = poses.into_iter().enumerate().map(|(at, pose)| pose.into_row().ok_or((at, "pose")));
+            let rows = poses.into_iter().enumerate().map(|(at, pose)| pose.into_row(at).ok_or((at, "pose")));
             let known = KnownConventions { angle_unit: true, ..KnownConventions::BODY_ONLY };
-            collect_rows(PoseAxes::for_body(PoseBody::Robot), known, rows)
+            collect_rows(PoseAxes::for_body(PoseBody::Robot), known, RowKind::Pose, rows)
         }
     }
 }
@@ -80,24 +82,25 @@ pub(super) fn read_json(text: &str) -> Result<PoseRows, String> {
 fn collect_rows(
     usual: PoseAxes,
     known: KnownConventions,
+    kind: RowKind,
     rows: impl Iterator<Item = Result<PoseRow, (usize, &'static str)>>,
 ) -> Result<PoseRows, String> {
     let rows = rows.collect::<Result<_, _>>().map_err(|(at, what)| format!("{what} {at}: {EXPECTED_JSON}"))?;
-    Ok(PoseRows::new(usual, known, rows))
+    Ok(PoseRows { kind, ..PoseRows::new(usual, known, rows) })
 }
 
 impl NerfFrame {
-    fn into_row(self) -> Option<PoseRow> {
+    fn into_row(self, at: usize) -> Option<PoseRow> {
         let [[ax, ay, az, x], [bx, by, bz, y], [cx, cy, cz, z], ..] = *self.transform_matrix.as_slice() else {
             return None;
         };
         let (position, columns) = pose_from_matrix([ax, ay, az, x, bx, by, bz, y, cx, cy, cz, z]);
-        Some(PoseRow { key: PoseKey::Picture(self.file_path), position, facing: PoseFacing::Columns(columns) })
+        Some(PoseRow { at, key: PoseKey::Picture(self.file_path), position, facing: PoseFacing::Columns(columns) })
     }
 }
 
 impl JsonPose {
-    fn into_row(self) -> Option<PoseRow> {
+    fn into_row(self, at: usize) -> Option<PoseRow> {
         let key = match (self.image, self.time_s) {
             (Some(image), _) => PoseKey::Picture(image),
             (None, Some(time_s)) => PoseKey::Time(seconds_in_unit(time_s, Some("s"))),
@@ -109,6 +112,6 @@ impl JsonPose {
             (.., Some(rad)) => PoseFacing::Yaw(rad),
             _ => PoseFacing::Unknown,
         };
-        Some(PoseRow { key, position: DVec3::from_array(self.position), facing })
+        Some(PoseRow { at, key, position: DVec3::from_array(self.position), facing })
     }
 }

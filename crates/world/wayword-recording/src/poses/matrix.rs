@@ -29,7 +29,7 @@ pub(super) fn read_matrix(text: &str) -> Result<PoseRows, String> {
     if let Some((header, columns)) = named_columns(text, width) {
         let rows = lines.iter().map(|line| {
             let cell = |column: usize| line.words.get(column).copied().ok_or_else(|| "has too few numbers".to_owned());
-            columns.read_row(&cell).map_err(|reason| format!("line {}: {reason}", line.at))
+            columns.read_row(line.at, &cell)
         });
         let is_euroc = is_euroc_header(header);
         let known = KnownConventions {
@@ -45,6 +45,7 @@ pub(super) fn read_matrix(text: &str) -> Result<PoseRows, String> {
     for line in &lines {
         let fits = line.numbers.len() == width;
         let row = if fits { row_from_numbers(&line.numbers, rows.len()) } else { None };
+        let row = row.map(|row| PoseRow { at: line.at, ..row });
         rows.push(row.ok_or_else(|| {
             let count = line.numbers.len();
             let more = if count > MOST_NUMBERS { "more than ".to_owned() } else { String::new() };
@@ -74,7 +75,7 @@ pub(super) fn read_axis_angles(text: &str) -> Result<PoseRows, String> {
         let half = axis.normalize_or_zero() * libm::sin(angle_rad / 2.0);
         let columns = rotation_columns([half.x, half.y, half.z, libm::cos(angle_rad / 2.0)]);
         let facing = columns.map_or(PoseFacing::Unknown, PoseFacing::Columns);
-        Ok(PoseRow { key: PoseKey::Time(time), position: DVec3::new(x, y, z), facing })
+        Ok(PoseRow { at: line.at, key: PoseKey::Time(time), position: DVec3::new(x, y, z), facing })
     });
     let usual_numbers = NumberReading { direction: TransformDirection::WorldToCamera, ..NumberReading::default() };
     let rows =
@@ -146,7 +147,7 @@ fn row_from_numbers(numbers: &[f64], at: usize) -> Option<PoseRow> {
 
 fn row_from_quaternion(time: f64, position: DVec3, quaternion: [f64; 4]) -> PoseRow {
     let key = PoseKey::Time(seconds_in_unit(time, None));
-    PoseRow { key, position, facing: PoseFacing::Quaternion(quaternion) }
+    PoseRow { at: 0, key, position, facing: PoseFacing::Quaternion(quaternion) }
 }
 
 /// The pose of a 3 x 4 or 4 x 4 matrix, row by row; `None` for other numbers, such as a matrix column by column.
@@ -155,5 +156,5 @@ pub(super) fn row_from_matrix(key: PoseKey, numbers: &[f64]) -> Option<PoseRow> 
     // A scanner that lost its place writes -inf everywhere.
     let is_last_row = last.is_empty() || *last == [0.0, 0.0, 0.0, 1.0] || last.iter().any(|number| !number.is_finite());
     let (position, columns) = pose_from_matrix(*matrix);
-    is_last_row.then_some(PoseRow { key, position, facing: PoseFacing::Columns(columns) })
+    is_last_row.then_some(PoseRow { at: 0, key, position, facing: PoseFacing::Columns(columns) })
 }

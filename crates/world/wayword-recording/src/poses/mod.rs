@@ -8,6 +8,7 @@ mod find;
 mod frame_files;
 mod json;
 mod matrix;
+mod row_faults;
 mod rows;
 mod scale;
 mod sensor_file;
@@ -23,10 +24,10 @@ use crate::{
     describe::{DESCRIPTION_HINT, RecordingDescription},
     pose_plausibility::{self, PoseDoubt, RecordedWalk},
     pose_reading::{NumberReading, QuaternionOrder, TransformDirection},
-    track::CameraTrack,
+    track::{CameraTrack, PoseTally, TrackFix},
 };
 use clock::{FrameCount, PictureClock};
-use rows::{PoseFacing, PoseKey, PoseRows};
+use rows::{PoseFacing, PoseKey, PoseRow, PoseRows};
 use std::path::Path;
 use wayword_core::PlatformError;
 use wayword_world::files;
@@ -120,17 +121,31 @@ impl TrackMaker<'_> {
         let numbers = self.described.numbers_or_usual(self.rows.usual_numbers);
         let metres_per_unit = self.described.metres_per_unit();
         self.apply_angle_unit(axes)?;
+        if self.rows.rows.is_empty() {
+            return Err(self.wrong("holds no poses".into()));
+        }
+        let invalid = self.rows.remove_invalid(metres_per_unit);
+        if let Some(reason) = row_faults::find_no_rotation(&self.rows) {
+            return Err(files::file_error(self.origin, reason, row_faults::ROTATION_HINT));
+        }
+        let late = if self.frame_count() == FrameCount::Other {
+            let late = row_faults::count_late_rows(&self.rows);
+            late.map_err(|reason| files::file_error(self.origin, reason, row_faults::RESTART_HINT))?
+        } else {
+            0
+        };
         if !self.rows.known.unit && self.described.unit.is_none() && metres_per_unit == 1.0 {
             self.ask(scale::find_unit_doubt(&self.rows, self.described.world.is_none()))?;
         }
         let doubt = self.find_doubt(axes, numbers, metres_per_unit);
         if !axes.world.has_yaw() && self.rows.has_facing(|facing| matches!(facing, PoseFacing::Yaw(_))) {
-            return Err(self.wrong("a yaw turns about z, so `world` must be z-up, unity or unreal".into()));
+            return Err(self.wrong("a yaw turns about z, so `world` must be z-up, unity, unreal or ned".into()));
         }
+        let track = self.place_in_time((numbers, axes, metres_per_unit))?;
         if let Some(PoseDoubt::Misread(reason)) = doubt {
             return Err(self.question(reason));
         }
-        let track = self.place_in_time((numbers, axes, metres_per_unit))?;
+        let track = track.with_tally(PoseTally { invalid, late, ..PoseTally::default() });
         Ok(match doubt {
             Some(PoseDoubt::Odd(words)) => track.in_doubt(format!("{}: {words}", self.origin.display())),
             _ => track,
@@ -216,10 +231,7 @@ impl TrackMaker<'_> {
 
     /// The track on the clock of the pictures.
     fn place_in_time(&self, reading: (NumberReading, PoseAxes, f64)) -> Result<CameraTrack, PlatformError> {
-        let count = match self.described.pose_time_offset_s {
-            Some(_) => FrameCount::Other,
-            None => self.clock.frame_count(&self.rows),
-        };
+        let count = self.frame_count();
         let first = self.track_by(reading, count == FrameCount::Certain)?;
         if self.meets_pictures(&first) {
             return Ok(first);
@@ -233,6 +245,14 @@ impl TrackMaker<'_> {
         Err(self.wrong("no picture has a pose".into()))
     }
 
+    /// How the numbers in a column `frame` relate to the pictures. They do not count where the user places the times.
+    fn frame_count(&self) -> FrameCount {
+        match self.described.pose_time_offset_s {
+            Some(_) => FrameCount::Other,
+            None => self.clock.frame_count(&self.rows),
+        }
+    }
+
     fn meets_pictures(&self, track: &CameraTrack) -> bool {
         self.clock.times_s.iter().any(|time_s| track.fix_at(*time_s).is_some())
     }
@@ -242,13 +262,14 @@ impl TrackMaker<'_> {
         let offset_s = self.described.pose_time_offset_s.unwrap_or(0.0);
         let times = self.clock.times_of_rows(&self.rows, offset_s, by_frames);
         let rows = self.rows.rows.iter().zip(times);
-        let fixes = rows.filter_map(|(row, time_s)| Some(self.rows.fix_at(row, time_s?, reading)));
-        CameraTrack::new(fixes.collect()).ok_or_else(|| {
-            let why_none = if self.rows.rows.is_empty() {
-                "holds no poses"
-            } else {
-                "has no usable pose: the pictures that it names or counts are not here, or its positions are not valid"
-            };
+        let fixes = rows.filter_map(|(row, time_s)| Some((row, self.rows.fix_at(row, time_s?, reading))));
+        let fixes: Vec<(&PoseRow, TrackFix)> = fixes.collect();
+        if let Some(reason) = row_faults::find_contradiction(&self.rows, &fixes, self.clock.times_s) {
+            return Err(files::file_error(self.origin, reason, row_faults::LEAP_HINT));
+        }
+        CameraTrack::new(fixes.into_iter().map(|(_, fix)| fix).collect()).ok_or_else(|| {
+            let why_none =
+                "has no usable pose: the pictures that it names or counts are not here, or its positions are not valid";
             self.wrong(why_none.into())
         })
     }

@@ -4,7 +4,7 @@ use crate::{
     axes::{PoseAxes, rotation_columns},
     pose_plausibility::PoseSample,
     pose_reading::{NumberReading, TransformDirection},
-    track::TrackFix,
+    track::{TrackFix, is_valid_place},
 };
 use std::path::Path;
 use wayword_core::{DVec3, Heading};
@@ -15,11 +15,25 @@ pub(super) struct PoseRows {
     pub(super) usual: PoseAxes,
     pub(super) usual_numbers: NumberReading,
     pub(super) known: KnownConventions,
+    pub(super) kind: RowKind,
     pub(super) rows: Vec<PoseRow>,
     /// The number in a column `frame` for each row, if there is such a column.
     pub(super) frames: Option<Vec<usize>>,
     /// Where the camera is on the body to which the poses belong, if that is known.
     pub(super) mounting: Option<CameraMounting>,
+}
+
+/// What the rows of a file are, for messages that name one of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum RowKind {
+    /// Lines, counted from 1.
+    Line,
+    /// Items of a list of poses, counted from 0.
+    Pose,
+    /// Items of a list of frames, counted from 0.
+    Frame,
+    /// Files, one for each picture.
+    File,
 }
 
 /// What a file or its format says itself, so that it is not questioned.
@@ -47,6 +61,8 @@ pub(super) struct CameraMounting {
 /// A pose as it was recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PoseRow {
+    /// Its number, counted as its [`RowKind`] is.
+    pub(super) at: usize,
     pub(super) key: PoseKey,
     pub(super) position: DVec3,
     pub(super) facing: PoseFacing,
@@ -121,7 +137,33 @@ impl PoseRow {
 impl PoseRows {
     /// Rows of a format with usual axes and nothing else to say.
     pub(super) fn new(usual: PoseAxes, known: KnownConventions, rows: Vec<PoseRow>) -> Self {
-        Self { usual, usual_numbers: NumberReading::default(), known, rows, frames: None, mounting: None }
+        let (usual_numbers, kind) = (NumberReading::default(), RowKind::Line);
+        Self { usual, usual_numbers, known, kind, rows, frames: None, mounting: None }
+    }
+
+    /// A row in words: `line 5`.
+    pub(super) fn name_row(&self, row: &PoseRow) -> String {
+        match (self.kind, &row.key) {
+            (RowKind::Line, _) => format!("line {}", row.at),
+            (RowKind::Frame, _) => format!("frame {}", row.at),
+            (RowKind::File, PoseKey::Picture(picture)) => format!("the file for {picture}"),
+            (RowKind::Pose | RowKind::File, _) => format!("pose {}", row.at),
+        }
+    }
+
+    /// Removes the rows without a valid place or time, and returns how many these are.
+    pub(super) fn remove_invalid(&mut self, metres_per_unit: f64) -> usize {
+        let is_valid = |row: &PoseRow| {
+            let is_time = !matches!(row.key, PoseKey::Time(time_s) if !time_s.is_finite());
+            is_time && is_valid_place(row.position * metres_per_unit)
+        };
+        let all = self.rows.len();
+        let mut valid = self.rows.iter().map(is_valid);
+        if let Some(frames) = &mut self.frames {
+            frames.retain(|_| valid.next().unwrap_or(false));
+        }
+        self.rows.retain(is_valid);
+        all - self.rows.len()
     }
 
     /// The positions of the camera and its orientations, in metres in the frame of the recording.
