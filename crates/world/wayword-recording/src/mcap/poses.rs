@@ -15,6 +15,8 @@ const GOAL_WORDS: [&str; 4] = ["goal", "initialpose", "target", "plan"];
 const MAX_TOLD_TOPICS: usize = 4;
 const NAME_POSES_HINT: &str =
     "write `poses = \"TOPIC\"` into a file NAME.toml beside NAME.mcap, or into recording.toml";
+const FAULTY_TREE_HINT: &str = "leave the wrong publisher out of the recording, or name a topic with odometry: \
+                                `poses = \"TOPIC\"` in a .toml file beside it";
 
 /// All poses of a file.
 #[derive(Debug)]
@@ -90,6 +92,10 @@ impl RecordedPoses {
         &self,
         named: Option<(&str, MessageKind)>,
     ) -> Result<Option<TransformChain<'_>>, UnclearReason> {
+        let is_tree = matches!(named, None | Some((_, MessageKind::Transforms)));
+        if let Some(fault) = self.tree.find_fault().filter(|_| is_tree) {
+            return Err((fault, FAULTY_TREE_HINT));
+        }
         match named {
             Some((topic, MessageKind::Transforms)) => {
                 let chain = self
@@ -98,7 +104,14 @@ impl RecordedPoses {
                     .map(|edges| Some(TransformChain { edges, starts_at_camera: true, has_rotations: true }));
                 chain.ok_or_else(|| (self.describe_incomplete(topic), "name another topic as `poses`, or leave it out"))
             }
-            Some((topic, _)) => Ok(self.topics.get(topic).map(|poses| self.chain_for_topic(poses))),
+            Some((topic, _)) => {
+                let chain = self.topics.get(topic).map(|poses| self.chain_for_topic(poses));
+                let mut edges = chain.iter().flat_map(|chain| &chain.edges);
+                match edges.find_map(|edge| edge.describe_parents()) {
+                    Some(fault) => Err((fault, FAULTY_TREE_HINT)),
+                    None => Ok(chain),
+                }
+            }
             None => self.obvious_chain(),
         }
     }

@@ -13,6 +13,9 @@ use wayword_world::files;
 
 /// Largest message of a picture: 64 megapixels of four bytes.
 const MAX_MESSAGE_BYTES: u64 = 257 << 20;
+const REPAIR_HINT: &str = "repair the file with `mcap recover`, or leave this part out";
+const NO_PICTURE_HINT: &str = "the file itself is whole, but this message cannot be read as a picture: leave its time out with \
+                               `mcap filter`, or name another camera";
 
 /// Pictures that are read from the file on demand.
 pub(crate) struct TopicReel {
@@ -71,19 +74,24 @@ impl TopicReel {
         // its start.
         let mut records = RecordReader::new(&file, 0, length).map_err(|why| files::file_error(path, why, MCAP_HINT))?;
         for &number in numbers {
-            let place = self.places.get(number).ok_or_else(|| "there is no such picture".to_owned());
-            let picture = place.and_then(|place| self.read_picture(&mut records, place.place)).map_err(|why| {
-                let reason = format!("picture {number} of {}: {why}", self.topic);
-                files::file_error(path, reason, "repair the file with `mcap recover`, or leave this part out")
+            let place = self.places.get(number).ok_or_else(|| ("there is no such picture".to_owned(), MCAP_HINT));
+            let picture = place.and_then(|place| self.read_picture(&mut records, place.place));
+            let picture = picture.map_err(|(why, hint)| {
+                files::file_error(path, format!("picture {number} of {}: {why}", self.topic), hint)
             })?;
             take(number, picture)?;
         }
         Ok(())
     }
 
-    fn read_picture(&self, records: &mut RecordReader<'_>, place: RecordPlace) -> Result<Image, String> {
+    /// Reads a picture. The error has a way out.
+    fn read_picture(
+        &self,
+        records: &mut RecordReader<'_>,
+        place: RecordPlace,
+    ) -> Result<Image, (String, &'static str)> {
         let mut picture = Err("the message is no longer there".to_owned());
-        records.go_to(place)?;
+        records.go_to(place).map_err(|why| (why, REPAIR_HINT))?;
         let read = records.each_record(&|_| MAX_MESSAGE_BYTES, &mut |found| {
             if found.place == place
                 && let Record::Message { data, .. } = found.parse_record()?
@@ -92,6 +100,7 @@ impl TopicReel {
             }
             Ok(if found.place < place { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
         });
-        read.and(picture.map_err(|why| format!("message at {place}: {why}")))
+        read.map_err(|why| (why, REPAIR_HINT))
+            .and(picture.map_err(|why| (format!("message at {place}: {why}"), NO_PICTURE_HINT)))
     }
 }

@@ -20,6 +20,8 @@ pub(crate) struct TransformEdge {
     pub(crate) frame: String,
     /// The frame in which it is placed.
     pub(crate) parent: String,
+    /// Another frame in which it is placed too, if there is one: tf2 allows only one parent.
+    pub(crate) other_parent: Option<String>,
     /// Whether it never moves.
     pub(crate) fixed: bool,
     /// In the order of the file.
@@ -30,6 +32,12 @@ impl TransformEdge {
     /// Whether the frame moves in its parent.
     pub(crate) fn is_moving(&self) -> bool {
         !self.fixed && self.samples.len() > 1
+    }
+
+    /// The two parents of its frame, if it has two.
+    pub(crate) fn describe_parents(&self) -> Option<String> {
+        let other = self.other_parent.as_ref()?;
+        Some(format!("the transforms place the frame {} both in {} and in {other}", self.frame, self.parent))
     }
 
     /// Whether a frame of the ground is placed, such as `odom` in `map`, and not a robot.
@@ -137,8 +145,9 @@ impl TransformTree {
             fixed,
             ..TransformEdge::default()
         });
-        // If a frame changes its parent, only the first parent counts.
-        if edge.parent == placed.head.frame {
+        if edge.parent != placed.head.frame {
+            edge.other_parent.get_or_insert(placed.head.frame);
+        } else {
             edge.fixed = fixed;
             if fixed {
                 edge.samples.clear();
@@ -159,6 +168,21 @@ impl TransformTree {
             self.edges.retain(|frame, _| kept.contains(frame));
             self.kept = Some(kept);
         }
+    }
+
+    /// What is wrong with the way from the camera's frame up: a frame with two parents, or a circle.
+    pub(crate) fn find_fault(&self) -> Option<String> {
+        let above = self.frames_above(&self.camera);
+        let edges = || above.iter().filter_map(|frame| self.edges.get(*frame));
+        if let Some(fault) = edges().find_map(TransformEdge::describe_parents) {
+            return Some(fault);
+        }
+        let last = above.last().and_then(|frame| self.edges.get(*frame))?;
+        Some(if last.parent == last.frame {
+            format!("the transforms place the frame {} in itself", last.frame)
+        } else {
+            format!("the transforms go round in a circle: {} in {}", above.join(" in "), last.parent)
+        })
     }
 
     /// A frame, its parent, and so on up to the root.
@@ -264,5 +288,20 @@ mod tests {
         // Two frames that are placed in each other do not make an endless loop.
         let round = [("b", "cam", 1, 0.0, false), ("cam", "b", 1, 0.0, false), ("b", "cam", 2, 0.0, false)];
         assert!(tree(&round).edges_to_fixed_frame(false).is_none());
+    }
+
+    #[test]
+    fn find_fault_names_two_parents_and_circles() {
+        let good = [("base", "cam", 0, 0.0, true), ("odom", "base", 1, 0.0, false), ("odom", "base", 2, 1.0, false)];
+        assert_eq!(tree(&good).find_fault(), None);
+        let fault = |more: &[(&str, &str, i64, f64, bool)]| tree(&[&good[..], more].concat()).find_fault();
+        let two = fault(&[("map", "base", 3, 0.0, false)]).unwrap();
+        assert_eq!(two, "the transforms place the frame base both in odom and in map");
+        // Not on the way up.
+        assert_eq!(fault(&[("base", "arm", 3, 0.0, false), ("cam", "arm", 3, 0.0, false)]), None);
+        let round = tree(&[("b", "cam", 1, 0.0, false), ("cam", "b", 1, 0.0, false)]).find_fault().unwrap();
+        assert_eq!(round, "the transforms go round in a circle: cam in b in cam");
+        let own = tree(&[("b", "cam", 1, 0.0, false), ("b", "b", 1, 0.0, false)]).find_fault().unwrap();
+        assert_eq!(own, "the transforms place the frame b in itself");
     }
 }
