@@ -18,6 +18,8 @@ use openh264::{
 use std::collections::BTreeSet;
 
 const START_CODE: [u8; 4] = [0, 0, 0, 1];
+/// The error of OpenH264 itself has only a number.
+const CANNOT_DECODE: &str = "cannot be decoded; it may be damaged";
 /// Types of NAL units (ITU-T H.264, table 7-1).
 const IDR_UNIT: u8 = 5;
 const SPS_UNIT: u8 = 7;
@@ -122,7 +124,7 @@ impl H264Decoder {
         // Flushing after each picture would give the pictures in the order of decoding, and lose some.
         let config = DecoderConfig::new().flush_after_decode(Flush::NoFlush);
         let decoder = Decoder::with_api_config(OpenH264API::from_source(), config);
-        let decoder = decoder.map_err(|error| format!("cannot be decoded: {error}"))?;
+        let decoder = decoder.map_err(|_| "cannot be decoded: OpenH264 did not start")?;
         Ok(Self { setup: setup.clone(), decoder, inside: BTreeSet::new(), has_begun: false })
     }
 
@@ -148,7 +150,7 @@ impl SampleDecoder for H264Decoder {
     fn feed(&mut self, coded: CodedSample<'_>, out: &mut TakePlanes<'_>) -> Result<(), String> {
         let stream = self.add_start_codes(coded.bytes)?;
         self.inside.insert((coded.shown, coded.sample));
-        let decoded = self.decoder.decode(&stream).map_err(|error| format!("cannot be decoded: {error}"))?;
+        let decoded = self.decoder.decode(&stream).map_err(|_| CANNOT_DECODE)?;
         match decoded {
             Some(decoded) => hand_out(&mut self.inside, self.setup.colour, &decoded, out),
             None => Ok(()),
@@ -156,7 +158,7 @@ impl SampleDecoder for H264Decoder {
     }
 
     fn finish(&mut self, out: &mut TakePlanes<'_>) -> Result<(), String> {
-        let rest = self.decoder.flush_remaining().map_err(|error| format!("cannot be decoded: {error}"))?;
+        let rest = self.decoder.flush_remaining().map_err(|_| CANNOT_DECODE)?;
         for decoded in &rest {
             hand_out(&mut self.inside, self.setup.colour, decoded, out)?;
         }

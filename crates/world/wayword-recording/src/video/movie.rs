@@ -24,6 +24,7 @@ const MAX_BOXES: u64 = 2 * tables::MAX_SAMPLES;
 /// The advice for a video that cannot be read.
 pub(super) const VIDEO_HINT: &str = crate::file_kind::ENCODE_HINT;
 const CAMERA_HINT: &str = "write `camera = \"NUMBER\"` into the .toml file beside it";
+const NO_VIDEO_HINT: &str = "give a file with a video; `ffprobe FILE` lists what a file holds";
 
 /// A video track.
 #[derive(Debug)]
@@ -45,7 +46,8 @@ impl Mp4Movie {
         for trak in boxes_in(&parts.moov).filter(|found| found.kind == *b"trak") {
             tracks.extend(VideoTrack::read(trak.body)?);
         }
-        let track = choose_track(&tracks, camera).map_err(|reason| Mp4Error { reason, hint: CAMERA_HINT })?;
+        let hint = if tracks.is_empty() { NO_VIDEO_HINT } else { CAMERA_HINT };
+        let track = choose_track(&tracks, camera).map_err(|reason| Mp4Error { reason, hint })?;
         Ok(track.read_movie(&parts, file_bytes).map_err(|reason| format!("track {} {reason}", track.number))?)
     }
 }
@@ -217,8 +219,8 @@ fn choose_track<'a, 'b>(tracks: &'b [VideoTrack<'a>], camera: Option<&str>) -> R
     });
     match (fitting.next(), fitting.next(), wanted) {
         (Some(track), None, _) => Ok(track),
+        _ if tracks.is_empty() => Err("holds no track that says it is a video".to_owned()),
         (_, _, Some(wanted)) => Err(format!("has no video track {wanted:?}; it has {}", names())),
-        _ if tracks.is_empty() => Err("holds no video".to_owned()),
         _ => Err(format!("holds several video tracks: {}", names())),
     }
 }
