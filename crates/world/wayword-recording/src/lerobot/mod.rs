@@ -62,7 +62,9 @@ impl LeRobotDataset {
         let camera = camera::choose_camera(root, &info, described.camera.as_deref())?;
         let pose_feature = PoseFeature::find_feature(root, &info, &described)?;
         let is_unclear = pose_feature.is_none() && described.poses.is_none();
-        let remark = PoseFeature::describe_candidates(&info).filter(|_| is_unclear);
+        let remark = PoseFeature::describe_candidates(&info)
+            .or_else(|| PoseFeature::describe_unclear(&info))
+            .filter(|_| is_unclear);
         let remark = remark.map(|remark| format!("{}: {remark}", root.display()));
         let name = scene_id_for_path(root)?;
         let named = |episode: DatasetEpisode| {

@@ -131,6 +131,20 @@ impl PoseFeature {
             .then(|| format!("{} into a recording.toml in the dataset's folder", candidates.join("; ")))
     }
 
+    /// A line for the user about the first feature with two elements that may be its x or its y; `None` if there is none.
+    pub(super) fn describe_unclear(info: &DatasetInfo) -> Option<String> {
+        info.features.iter().filter(|(key, _)| may_be_robot(key)).find_map(|(key, feature)| {
+            let reason = Self::pose_in_feature(key, feature).err()?;
+            let names = feature.element_names()?;
+            let is_double = |wanted: &ElementRole| {
+                names.iter().filter(|name| element_role(name).as_ref() == Some(wanted)).count() > 1
+            };
+            [ElementRole::X, ElementRole::Y].iter().any(is_double).then(|| {
+                format!("{key:?} is not read as poses, because {reason}: rename the wrong one in meta/info.json")
+            })
+        })
+    }
+
     /// The same feature with the unit of its yaw, if that was not known: by the path of an episode, whose numbers are those of
     /// [`PoseFeature::elements`] for each row. A line tells the user if it is degrees.
     ///

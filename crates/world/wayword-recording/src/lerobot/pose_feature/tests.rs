@@ -45,6 +45,17 @@ fn speeds_beside_a_pose_do_not_hide_it() {
 }
 
 #[test]
+fn describe_unclear_names_two_elements_that_may_be_one() {
+    let told = |key, names| PoseFeature::describe_unclear(&info(&[(key, names)]));
+    for names in [&["x", "x", "theta"][..], &["left.x", "left.y", "right.x", "right.y"], &["x", "y", "pos_y", "yaw"]] {
+        let words = told("observation.state", names).unwrap();
+        assert!(words.contains("may be the one: rename the wrong one"), "{words}");
+    }
+    assert_eq!(told("observation.state", &["x", "y", "theta"]), None);
+    assert_eq!(told("action", &["x", "x", "theta"]), None);
+}
+
+#[test]
 fn a_feature_that_could_be_the_poses_is_named() {
     let told = |key, names| PoseFeature::describe_candidates(&info(&[(key, names)]));
     let state = told("observation.state", &["x", "y", "z", "qx", "qy", "qz", "qw"]).unwrap();
