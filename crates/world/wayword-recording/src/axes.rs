@@ -18,6 +18,8 @@ pub(crate) enum WorldUpAxis {
     Unity,
     /// Unreal Engine's: left-handed, x ahead, y right, z up; usually in centimetres.
     Unreal,
+    /// North-east-down, of aircraft and AirSim: x north, y east, z down.
+    Ned,
 }
 
 /// The body to which the orientation of a pose belongs.
@@ -32,6 +34,8 @@ pub(crate) enum PoseBody {
     OpenGl,
     /// A camera of Unity: z ahead, x right, y up.
     Unity,
+    /// The body in a north-east-down world: x ahead (forward), y right, z down.
+    Frd,
 }
 
 /// The conventions by which the poses of a recording are read.
@@ -59,6 +63,7 @@ impl PoseAxes {
             // These two are mirrored, because Wayword's frame is right-handed.
             WorldUpAxis::Unity => DVec3::new(x, z, y),
             WorldUpAxis::Unreal => DVec3::new(y, x, z),
+            WorldUpAxis::Ned => DVec3::new(y, x, -z),
         }
     }
 
@@ -77,9 +82,9 @@ impl PoseAxes {
     }
 
     /// As [`PoseAxes::heading_by_quaternion`], by a yaw in radians: counter-clockwise from the recorded +x, as in ROS; in
-    /// left-handed worlds clockwise from the world's axis that points ahead.
+    /// left-handed worlds, and where z points down, clockwise from the world's axis that points ahead.
     pub(crate) fn heading_by_yaw(self, yaw_rad: f64) -> Option<Heading> {
-        let clockwise_rad = if self.world.is_left_handed() { yaw_rad } else { FRAC_PI_2 - yaw_rad };
+        let clockwise_rad = if self.world.has_clockwise_yaw() { yaw_rad } else { FRAC_PI_2 - yaw_rad };
         Heading::new(clockwise_rad + self.mount_rad).ok()
     }
 
@@ -87,6 +92,7 @@ impl PoseAxes {
     pub(crate) fn body_up(self) -> DVec3 {
         match self.body {
             PoseBody::Robot => DVec3::Z,
+            PoseBody::Frd => DVec3::NEG_Z,
             PoseBody::Optical => DVec3::NEG_Y,
             PoseBody::OpenGl | PoseBody::Unity => DVec3::Y,
         }
@@ -95,7 +101,7 @@ impl PoseAxes {
     /// The body's direction ahead, in its own frame.
     pub(crate) fn body_ahead(self) -> DVec3 {
         match self.body {
-            PoseBody::Robot => DVec3::X,
+            PoseBody::Robot | PoseBody::Frd => DVec3::X,
             PoseBody::Optical | PoseBody::Unity => DVec3::Z,
             PoseBody::OpenGl => DVec3::NEG_Z,
         }
@@ -118,6 +124,7 @@ impl WorldUpAxis {
             Self::YDown => "y-down",
             Self::Unity => "unity",
             Self::Unreal => "unreal",
+            Self::Ned => "ned",
         }
     }
 
@@ -127,6 +134,7 @@ impl WorldUpAxis {
             Self::ZUp | Self::Unreal => DVec3::Z,
             Self::YUp | Self::Unity => DVec3::Y,
             Self::YDown => DVec3::NEG_Y,
+            Self::Ned => DVec3::NEG_Z,
         }
     }
 
@@ -135,9 +143,14 @@ impl WorldUpAxis {
         matches!(self, Self::Unity | Self::Unreal)
     }
 
+    /// Whether a yaw in it grows clockwise, seen from above.
+    const fn has_clockwise_yaw(self) -> bool {
+        self.is_left_handed() || matches!(self, Self::Ned)
+    }
+
     /// Whether a turn about its vertical axis can be given as a yaw.
     pub(crate) const fn has_yaw(self) -> bool {
-        matches!(self, Self::ZUp | Self::Unity | Self::Unreal)
+        matches!(self, Self::ZUp | Self::Unity | Self::Unreal | Self::Ned)
     }
 
     /// The body that poses of such a world have, if the world decides it. Of a body only the directions ahead and up count, so a
@@ -146,6 +159,7 @@ impl WorldUpAxis {
         match self {
             Self::Unity => Some(PoseBody::Unity),
             Self::Unreal => Some(PoseBody::Robot),
+            Self::Ned => Some(PoseBody::Frd),
             Self::ZUp | Self::YUp | Self::YDown => None,
         }
     }
@@ -159,6 +173,7 @@ impl PoseBody {
             Self::Optical => "optical",
             Self::OpenGl => "open-gl",
             Self::Unity => "unity",
+            Self::Frd => "frd",
         }
     }
 }
@@ -233,6 +248,17 @@ mod tests {
         assert_eq!(unreal.wayword_from_recorded(DVec3::new(1.0, 2.0, 3.0)), DVec3::new(2.0, 1.0, 3.0));
         assert_eq!(deg(unreal, [0.0, 0.0, 0.0, 1.0]) % 360.0, 0.0);
         assert_eq!(deg(unreal, [0.0, 0.0, FRAC_1_SQRT_2, FRAC_1_SQRT_2]), 90.0);
+    }
+
+    #[test]
+    fn heading_by_yaw_is_clockwise_from_north_where_z_points_down() {
+        let axes = PoseAxes { world: WorldUpAxis::Ned, ..PoseAxes::for_body(PoseBody::Frd) };
+        // x north, y east, z down; a quarter about z turns to the right.
+        assert_eq!(axes.wayword_from_recorded(DVec3::new(1.0, 2.0, -3.0)), DVec3::new(2.0, 1.0, 3.0));
+        assert_eq!(deg(axes, [0.0, 0.0, 0.0, 1.0]) % 360.0, 0.0);
+        assert_eq!(deg(axes, [0.0, 0.0, FRAC_1_SQRT_2, FRAC_1_SQRT_2]), 90.0);
+        assert_eq!(axes.heading_by_yaw(1.0).unwrap().rad(), 1.0);
+        assert_eq!(axes.world.up().dot(axes.body_up()), 1.0);
     }
 
     #[test]

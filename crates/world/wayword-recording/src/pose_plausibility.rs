@@ -237,9 +237,9 @@ fn candidate_axes(present: PoseAxes) -> impl Iterator<Item = PoseAxes> {
     let right_handed = [WorldUpAxis::ZUp, WorldUpAxis::YUp, WorldUpAxis::YDown].into_iter();
     let right_handed =
         right_handed.flat_map(|world| [PoseBody::Robot, PoseBody::Optical, PoseBody::OpenGl].map(|body| (world, body)));
-    let unity = (WorldUpAxis::Unity, PoseBody::Unity);
+    let own_bodies = [(WorldUpAxis::Unity, PoseBody::Unity), (WorldUpAxis::Ned, PoseBody::Frd)];
     let own = (present.world, present.body);
-    let all = right_handed.chain([unity]).chain((present.world == WorldUpAxis::Unreal).then_some(own));
+    let all = right_handed.chain(own_bodies).chain((present.world == WorldUpAxis::Unreal).then_some(own));
     all.map(move |(world, body)| PoseAxes { world, body, ..present })
 }
 
@@ -250,6 +250,7 @@ const fn axis_words(axes: PoseAxes) -> &'static str {
         WorldUpAxis::YUp => "y points up",
         WorldUpAxis::YDown => "y points down",
         WorldUpAxis::Unity => "left-handed, y points up: Unity",
+        WorldUpAxis::Ned => "z points down: north-east-down",
         WorldUpAxis::Unreal => "left-handed, z points up: Unreal Engine",
     }
 }

@@ -73,6 +73,7 @@ fn recorded_pose(pose: &TruePose, convention: Convention) -> (DVec3, [DVec3; 3])
         WorldUpAxis::YDown => DVec3::new(x, -z, y),
         WorldUpAxis::Unity => DVec3::new(x, z, y),
         WorldUpAxis::Unreal => DVec3::new(y, x, z),
+        WorldUpAxis::Ned => DVec3::new(y, x, -z),
     };
     let body = match (axes.body, axes.world) {
         (PoseBody::Robot, WorldUpAxis::Unreal) => [pose.ahead, pose.right, pose.up],
@@ -80,6 +81,7 @@ fn recorded_pose(pose: &TruePose, convention: Convention) -> (DVec3, [DVec3; 3])
         (PoseBody::Optical, _) => [pose.right, -pose.up, pose.ahead],
         (PoseBody::OpenGl, _) => [pose.right, pose.up, -pose.ahead],
         (PoseBody::Unity, _) => [pose.right, pose.up, pose.ahead],
+        (PoseBody::Frd, _) => [pose.ahead, pose.right, -pose.up],
     };
     // The inverse of a transform is turned round by the same function.
     numbers.direction.world_from_camera(to_recorded(pose.position) / convention.metres_per_unit, body.map(to_recorded))
@@ -171,6 +173,7 @@ fn all_conventions() -> Vec<Convention> {
         .flat_map(|world| bodies.map(|body| PoseAxes { world, ..PoseAxes::for_body(body) }))
         .collect();
     axes.push(PoseAxes { world: WorldUpAxis::Unity, ..PoseAxes::for_body(PoseBody::Unity) });
+    axes.push(PoseAxes { world: WorldUpAxis::Ned, ..PoseAxes::for_body(PoseBody::Frd) });
     axes.push(PoseAxes { world: WorldUpAxis::Unreal, ..PoseAxes::for_body(PoseBody::Robot) });
     let mut all = Vec::new();
     for axes in axes {
@@ -258,6 +261,8 @@ fn a_walk_in_any_convention_is_right_or_a_question_that_names_the_convention() {
                     Ok(track) if is_true(&track, &walk) => {}
                     // Nothing in a matrix file tells Unity's world from the usual one, in which up is down.
                     Ok(_) if format == "kitti" && convention.reading.axes.world == WorldUpAxis::Unity => {}
+                    // A robot's poses in a world with z up look the same, turned over.
+                    Ok(_) if matches!(format, "csv" | "json") && convention.reading.axes.world == WorldUpAxis::Ned => {}
                     Ok(track) => wrong.push(format!("SILENT {} {:?}", case(), track.doubt())),
                     Err(error) => {
                         let names = error.contains(&wanted_advice(format, convention, names_order));
