@@ -240,30 +240,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_message_refuses_a_chunk_with_a_wrong_checksum() {
-        for name in ["messages_zstd", "odometry_lz4"] {
-            let path = format!("{}/fixtures/mcap/{name}.mcap", env!("CARGO_MANIFEST_DIR"));
-            let mut bytes = std::fs::read(path).unwrap();
-            let read = |bytes: &[u8]| {
-                let copy = tempfile::NamedTempFile::new().unwrap();
-                std::fs::write(copy.path(), bytes).unwrap();
-                let file = File::open(copy.path()).unwrap();
-                let contents = McapContents::from_file(&file).unwrap();
-                let wanted = contents.channels_where(|_, _| true);
-                contents.each_message(&file, &wanted, &mut |_| Ok(ControlFlow::Continue(())))
-            };
-            assert_eq!(read(&bytes), Ok(()), "{name}");
-            let mut at = MAGIC.len();
-            while bytes[at] != op::CHUNK {
-                at += 9 + u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize;
-            }
-            // After its head, two times and a length.
-            bytes[at + 9 + 24] ^= 1;
-            assert!(read(&bytes).unwrap_err().contains(&format!("chunk at byte {at}")), "{name}");
-        }
-    }
-
-    #[test]
     fn the_summaries_of_other_programs_are_believed() {
         for name in ["messages_zstd", "odometry_lz4", "odometry_zstd", "poses_zstd", "tree_chunks"] {
             let path = format!("{}/fixtures/mcap/{name}.mcap", env!("CARGO_MANIFEST_DIR"));

@@ -158,10 +158,7 @@ impl<'a> RecordReader<'a> {
         self.file.seek_relative(back).map_err(|error| self.broken_at(&error))?;
         let record_bytes = unpacked_bytes.clamp(UNPACKED_RECORD.0, UNPACKED_RECORD.1);
         let record_bytes = usize::try_from(record_bytes).unwrap_or(usize::MAX);
-        let options = LinearReaderOptions::default()
-            .with_skip_start_magic(true)
-            .with_skip_end_magic(true)
-            .with_validate_chunk_crcs(true);
+        let options = LinearReaderOptions::default().with_skip_start_magic(true).with_skip_end_magic(true);
         let reader = LinearReader::new_with_options(options.with_record_length_limit(record_bytes));
         self.packed = Some(PackedChunk { reader, from, end, left: packed_bytes, at: 0 });
         Ok(())
