@@ -94,17 +94,17 @@ fn contents_by_item(item: &Map<String, Value>) -> FileContents {
         let is_prediction = has("path") && !has("scan") && !has("instruction");
         return if is_prediction { FileContents::OtherPredictions } else { FileContents::Dataset(DatasetFormat::Rxr) };
     }
-    if has("unobstructed") || has("image_id") {
+    if has("unobstructed") && has("image_id") {
         return FileContents::Other("the viewpoint graph of a scene");
     }
     if has("dialog_history") || has("inst_idx") {
         return FileContents::Other("CVDN's dialogues");
     }
-    if has("bboxes") || has("bbox") {
-        return FileContents::Other("SOON's dataset");
-    }
     if is_reverie(item) {
         return FileContents::Dataset(DatasetFormat::Reverie);
+    }
+    if has("bboxes") {
+        return FileContents::Other("SOON's dataset");
     }
     if is_path || has("path_id") {
         return FileContents::Dataset(DatasetFormat::R2r);

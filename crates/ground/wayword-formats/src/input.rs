@@ -17,9 +17,6 @@ use std::{
     path::Path,
 };
 
-const TOO_LARGE: &str = "it is larger than 1 GiB";
-const SPLIT_HINT: &str = "split it into parts";
-
 /// Most bytes of a file that are read at a time.
 const BUFFER_BYTES: usize = 1 << 16;
 /// Most fields of a file's outer object beside the one with the list of items; a file with more is refused.
@@ -37,7 +34,7 @@ pub(crate) fn open_input(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
     }
     let opened = File::open(file).map_err(failed)?;
     if meta.len() > limits::MAX_FILE_BYTES {
-        return Err(FormatError::for_document(file, TOO_LARGE, SPLIT_HINT));
+        return Err(FormatError::for_document(file, limits::TOO_LARGE, limits::SPLIT_HINT));
     }
     let mut plain = BufReader::with_capacity(BUFFER_BYTES, opened);
     let is_gzip =
@@ -83,7 +80,7 @@ struct BoundedReader<R> {
 impl<R: Read> Read for BoundedReader<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.inner.read(buffer)?;
-        self.left = self.left.checked_sub(count as u64).ok_or_else(|| io::Error::other(TOO_LARGE))?;
+        self.left = self.left.checked_sub(count as u64).ok_or_else(|| io::Error::other(limits::TOO_LARGE))?;
         Ok(count)
     }
 }
@@ -189,7 +186,7 @@ fn each_line_value(
         }
         if number > limits::MAX_ITEMS {
             let problem = format!("it has more than {} lines", limits::group_digits(limits::MAX_ITEMS));
-            return Err(FormatError::for_document(file, problem, SPLIT_HINT));
+            return Err(FormatError::for_document(file, problem, limits::SPLIT_HINT));
         }
         if line.len() > limits::MAX_LINE_BYTES {
             let problem = format!("line {number} is longer than {} MiB", limits::MAX_LINE_BYTES >> 20);
@@ -273,7 +270,7 @@ impl<'a> ItemList<'a> {
         let progress = &mut *self.progress.borrow_mut();
         if progress.index >= limits::MAX_ITEMS {
             let problem = format!("it has more than {} items", limits::group_digits(limits::MAX_ITEMS));
-            return Err(FormatError::for_document(self.file, problem, SPLIT_HINT));
+            return Err(FormatError::for_document(self.file, problem, limits::SPLIT_HINT));
         }
         (progress.take)(ItemPlace::Item(progress.index), value)?;
         progress.index += 1;

@@ -1,6 +1,6 @@
 //! What is wrong with the JSON of a file, in words, and what to do about it.
 
-use crate::bounded_tokens;
+use crate::{bounded_tokens, limits};
 use serde_json::error::Category;
 
 /// Advice where a value is wrong, and the file whole.
@@ -31,6 +31,7 @@ impl JsonFault {
                 (message, "write a number there; null only where a value may be missing")
             }
             (Category::Io, bounded_tokens::TOO_LONG) => (message, "shorten it, or leave it out"),
+            (Category::Io, limits::TOO_LARGE) => (message, limits::SPLIT_HINT),
             (Category::Io, _) => (message, CUT_OFF),
             _ => (message, CORRECT_IT),
         };

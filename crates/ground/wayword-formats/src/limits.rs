@@ -34,3 +34,8 @@ pub(crate) fn group_digits(limit: usize) -> String {
     let groups: Vec<_> = digits.as_bytes().rchunks(3).rev().map(String::from_utf8_lossy).collect();
     groups.join(",")
 }
+
+/// What is said of a file with more than [`MAX_FILE_BYTES`], packed or unpacked.
+pub(crate) const TOO_LARGE: &str = "it is larger than 1 GiB";
+/// What to do about it.
+pub(crate) const SPLIT_HINT: &str = "split it into parts";

@@ -238,6 +238,8 @@ fn time_in_name(name: &str) -> Option<f64> {
     }
     // ARKitScenes: the number of the scene, and the seconds.
     let (digits, stem) = match stem.split_once('_') {
+        // A date before a time of day is no scene.
+        Some((date, _)) if date.len() == 8 && (date.starts_with("19") || date.starts_with("20")) => return None,
         Some((scene, time)) if time.contains('.') && scene.bytes().all(|byte| byte.is_ascii_digit()) => (false, time),
         _ => (digits, stem),
     };

@@ -231,7 +231,8 @@ fn open_bag(folder: &Path) -> Result<Option<Box<dyn RecordingSource>>, PlatformE
     if let [file] = files.as_slice() {
         return open_mcap(file).map(Some);
     }
-    let described = RecordingDescription::read(&folder.join(crate::describe::FOLDER_FILE))?;
+    let file = folder.join(crate::describe::FOLDER_FILE);
+    let described = RecordingDescription::read(&file)?.refuse_pose_file_settings(&file)?;
     Ok(Some(Box::new(crate::mcap::McapFile::open_bag(folder, files, described)?)))
 }
 

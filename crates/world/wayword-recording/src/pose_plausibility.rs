@@ -181,7 +181,8 @@ impl PoseReview<'_> {
     /// clearly worse than the best. Those that differ least from the present one come first.
     fn fitting_readings(&self, is_wanted: impl Fn(&PoseReading) -> bool) -> Vec<PoseReading> {
         let mut fitting = Vec::new();
-        for (numbers, walk) in self.walks {
+        // Read the other way round, a walk around a thing hardly moves, and would fit by chance.
+        for (numbers, walk) in self.walks.iter().filter(|(_, walk)| walk.length_m() >= MIN_PATH_M) {
             let all = candidate_axes(self.present.axes).map(|axes| PoseReading { numbers: *numbers, axes });
             for other in all.filter(|other| *other != self.present && is_wanted(other)) {
                 let (up, ahead) = (walk.mean_up(other.axes), walk.ahead_share(other.axes));

@@ -30,6 +30,8 @@ pub(super) struct ObjectNames {
     of_file: Option<BTreeSet<String>>,
     /// Whether it was told that the file mixes names.
     is_told: bool,
+    /// Whether it was told that another field seems to name the object.
+    is_doubt_told: bool,
 }
 
 impl ObjectNames {
@@ -41,7 +43,7 @@ impl ObjectNames {
     pub(super) fn take_object(&mut self, item: &mut DatasetItem<'_>) -> Result<Option<ObjectId>, FormatError> {
         let names: BTreeSet<String> = item.field_names().filter(|name| bare(name) == bare(OFFICIAL)).cloned().collect();
         let Some(first) = names.first() else {
-            return refuse_doubtful(item).map(|()| None);
+            return self.refuse_doubtful(item).map(|()| None);
         };
         self.refuse_mixture(item, &names)?;
         let mut found = None;
@@ -68,17 +70,18 @@ impl ObjectNames {
         let problem = format!("earlier items name the object by {}, this one by {}", listed(of_file), listed(names));
         Err(item.wrong_field(names.first().map_or(OFFICIAL, String::as_str), problem, ONE_NAME_HINT))
     }
-}
 
-/// Refuses an item in which only a field that may be meant for something else seems to name the object.
-fn refuse_doubtful(item: &DatasetItem<'_>) -> Result<(), FormatError> {
-    match item.field_names().find(|name| DOUBTFUL.contains(&bare(name).as_str())) {
-        Some(name) => Err(item.wrong_field(
-            &name.clone(),
-            "it seems to name the object, which is read from \"predObjId\", and the item has none",
-            "rename it to \"predObjId\"; leave it out if the agent did not choose it",
-        )),
-        None => Ok(()),
+    /// Refuses an item in which only a field that may be meant for something else seems to name the object, once for the file.
+    fn refuse_doubtful(&mut self, item: &DatasetItem<'_>) -> Result<(), FormatError> {
+        let doubtful = item.field_names().find(|name| DOUBTFUL.contains(&bare(name).as_str()));
+        match doubtful.filter(|_| !std::mem::replace(&mut self.is_doubt_told, true)) {
+            Some(name) => Err(item.wrong_field(
+                &name.clone(),
+                "it seems to name the object, which is read from \"predObjId\", and the item has none",
+                "rename it to \"predObjId\" in all items; leave it out if the agent did not choose it",
+            )),
+            None => Ok(()),
+        }
     }
 }
 

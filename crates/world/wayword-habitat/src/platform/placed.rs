@@ -39,6 +39,7 @@ impl PlacedStage {
         let model = if placement.stage == stage {
             model
         } else {
+            drop(model);
             read(&placement.stage.asset, placement.stage.habitat_from_asset)?
         };
         check_model_size(&model, &NavMeshSettings::default())

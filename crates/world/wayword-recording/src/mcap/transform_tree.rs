@@ -31,7 +31,8 @@ pub(crate) struct TransformEdge {
 impl TransformEdge {
     /// Whether the frame moves in its parent.
     pub(crate) fn is_moving(&self) -> bool {
-        !self.fixed && self.samples.len() > 1
+        // A mounting may be sent again and again, with the stamp of the first time.
+        !self.fixed && self.samples.array_windows().any(|[(_, before), (_, after)]| before != after)
     }
 
     /// The two parents of its frame, if it has two.

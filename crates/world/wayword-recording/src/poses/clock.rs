@@ -33,7 +33,8 @@ impl PictureClock<'_> {
     /// The time of each row on the clock of the pictures, seconds; `None` for pictures that do not exist.
     pub(super) fn times_of_rows(self, rows: &PoseRows, offset_s: f64, by_frames: bool) -> Vec<Option<f64>> {
         if let Some(frames) = rows.frames.as_ref().filter(|_| by_frames) {
-            return frames.iter().map(|number| self.times_s.get(*number).copied()).collect();
+            let first = self.first_number(frames);
+            return frames.iter().map(|number| self.times_s.get(number.checked_sub(first)?).copied()).collect();
         }
         let mut named: Vec<(String, f64)> = Vec::new();
         if rows.rows.iter().any(|row| matches!(row.key, PoseKey::Picture(_))) {
@@ -53,16 +54,24 @@ impl PictureClock<'_> {
         rows.rows.iter().map(|row| time_of(&row.key)).collect()
     }
 
+    /// The number of the first picture in a column `frame`: 1 where its last number is that of the pictures and it has no 0.
+    fn first_number(self, frames: &[usize]) -> usize {
+        let begins_at_one = frames.first() == Some(&1) && frames.last() == Some(&self.times_s.len());
+        usize::from(begins_at_one)
+    }
+
     /// Whether the column `frame` counts the pictures.
     pub(super) fn frame_count(self, rows: &PoseRows) -> FrameCount {
         let Some(frames) = rows.frames.as_deref().filter(|frames| !frames.is_empty()) else { return FrameCount::Other };
-        let counted = frames.iter().filter(|number| **number < self.times_s.len()).count() as f64;
+        let first = self.first_number(frames);
+        let picture_s = |number: usize| self.times_s.get(number.checked_sub(first)?).copied();
+        let counted = frames.iter().filter(|number| picture_s(**number).is_some()).count() as f64;
         let ascends = frames.array_windows().all(|[before, after]| before < after);
         if !ascends || counted < LEAST_COUNTED_SHARE * frames.len() as f64 {
             return FrameCount::Other;
         }
         let pairs = frames.iter().zip(&rows.rows).filter_map(|(number, row)| match row.key {
-            PoseKey::Time(time_s) => Some((time_s, *self.times_s.get(*number)?)),
+            PoseKey::Time(time_s) => Some((time_s, picture_s(*number)?)),
             PoseKey::Picture(_) | PoseKey::Number(_) => None,
         });
         let pairs: Vec<(f64, f64)> = pairs.collect();

@@ -12,6 +12,11 @@ const HEADER_HINT: &str = "the header needs a column `time_s` or `image`, and `x
 /// The columns of the file that Stray Scanner (a phone's app) writes beside a video: ARKit's world, and an optical frame.
 const STRAY_COLUMNS: [&str; 9] = ["timestamp", "frame", "x", "y", "z", "qx", "qy", "qz", "qw"];
 
+/// Whether a header begins with Stray Scanner's columns. Its newer versions append the camera's intrinsics.
+fn is_stray_header(names: &[String]) -> bool {
+    names.len() >= STRAY_COLUMNS.len() && names.iter().zip(STRAY_COLUMNS).all(|(name, column)| name == column)
+}
+
 /// Reads the rows of a CSV file.
 pub(super) fn read_csv(text: &str) -> Result<PoseRows, String> {
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
@@ -33,7 +38,7 @@ pub(super) fn read_csv(text: &str) -> Result<PoseRows, String> {
             all
         });
     }
-    let (is_euroc, is_stray) = (is_euroc_header(header), names == STRAY_COLUMNS);
+    let (is_euroc, is_stray) = (is_euroc_header(header), is_stray_header(&names));
     let body = if is_euroc || is_stray { PoseBody::Optical } else { PoseBody::Robot };
     let world = if is_stray { WorldUpAxis::YUp } else { WorldUpAxis::ZUp };
     let known = KnownConventions {
