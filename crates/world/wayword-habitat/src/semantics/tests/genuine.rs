@@ -28,7 +28,7 @@ fn genuine_views(folder: &Path) -> Vec<(PinholeCamera, Vec<u16>)> {
         let number = |at: usize| view["position"][at].as_f64().unwrap();
         let eye = wayword_from_habitat(DVec3::new(number(0), number(1), number(2))) + DVec3::Z * EYE_M;
         let half_yaw = view["yaw_rad"].as_f64().unwrap() / 2.0;
-        let forward = forward_from_habitat_rotation([half_yaw.cos(), 0.0, half_yaw.sin(), 0.0]);
+        let forward = forward_from_habitat_rotation([libm::cos(half_yaw), 0.0, libm::sin(half_yaw), 0.0]);
         let ids = image::open(folder.join(view["ids"].as_str().unwrap())).unwrap().into_luma16();
         // 90 degrees wide and high.
         let camera = PinholeCamera::looking_along(eye, forward, 90.0_f64.to_radians(), ids.width(), ids.height());
