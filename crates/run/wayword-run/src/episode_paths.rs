@@ -1,5 +1,7 @@
 //! Turns an episode of a dataset into a path, by its viewpoints or by its positions on the floor.
 
+use crate::error::CommandError;
+use std::path::Path as FilePath;
 use wayword_core::{Path, PathMotion, Platform, PlatformError};
 use wayword_formats::Episode;
 use wayword_world::{episode_path::target_for_object, frames_over_floor, path_over_viewpoints};
@@ -19,4 +21,15 @@ pub fn path_for_episode(platform: &dyn Platform, episode: &Episode) -> Result<Pa
         _ => None,
     };
     Ok(Path { id: episode.id.clone(), scene: scene.clone(), frames, motion: PathMotion::Known, target })
+}
+
+/// The error of a path that does not fit its scene, with its file and its item. Other errors stay as they are.
+pub fn unusable_path(file: &FilePath, item: &str) -> impl FnOnce(PlatformError) -> CommandError {
+    move |error| match error {
+        PlatformError::Graph { .. } | PlatformError::UnknownViewpoint { .. } => CommandError::usage(
+            format!("{}: item {item}: {error}", file.display()),
+            "correct the path of this item, or leave the item out; check that --data holds the scene that the file is about",
+        ),
+        error => error.into(),
+    }
 }

@@ -13,12 +13,15 @@ use wayword_core::{ObjectId, ViewpointId};
 ///
 /// - The start is the goal and the agent stays: the references divide zero by zero; here the SPL is 1. An agent that moves
 ///   although the start is the goal has SPL 0, as in the references.
-/// - Neither the annotated path nor the trajectory moves: CLS divides zero by zero in the reference; here it is 1.
+/// - The goal cannot be reached from the start: the references fail; here there are no errors, no success by distance,
+///   and every SPL and RGSPL is 0, because there is no shortest path.
+/// - Neither the annotated path nor the trajectory moves: CLS divides zero by zero in the reference; here it is 1. An
+///   annotated path with a hop that cannot be made has nDTW and CLS 0.
 /// - The same viewpoint twice in a row is a stay: it adds no length, and to nDTW what any other viewpoint adds.
 ///
 /// # Errors
-/// Each problem of the episode's path, when it does not follow the edges of the scene's graph, and of the trajectory,
-/// when it does not start at the episode's start, or does not follow the edges.
+/// Each problem of the trajectory, when it does not start at the episode's start, or does not follow the edges of the
+/// scene's graph.
 pub fn score_trajectory(
     distances: &SceneDistances,
     demand: &EpisodeDemand,

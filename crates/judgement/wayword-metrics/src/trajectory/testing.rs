@@ -50,15 +50,18 @@ fn walk(graph: &ViewpointGraph, start: usize, choices: &[usize]) -> Vec<Viewpoin
     taken
 }
 
-/// A graph, an episode on it, and a trajectory that can be scored.
+/// A graph, an episode on it, and a trajectory that can be scored. Sometimes the goal cannot be reached.
 pub(super) fn any_case() -> impl Strategy<Value = (ViewpointGraph, EpisodeDemand, AgentTrajectory)> {
     let choices = || prop::collection::vec(0..20usize, 0..12);
     let seen = prop::collection::btree_set(0..14usize, 0..8);
-    (any_graph(), 0..14usize, choices(), choices(), seen, any::<bool>(), any::<bool>()).prop_map(
-        |(graph, start, on_path, taken, seen, names_it, is_named)| {
+    let far_goal = prop::option::weighted(0.2, 0..14usize);
+    (any_graph(), 0..14usize, choices(), choices(), seen, far_goal, any::<bool>(), any::<bool>()).prop_map(
+        |(graph, start, on_path, taken, seen, far_goal, names_it, is_named)| {
             let start = start % graph.len();
+            let mut reference = walk(&graph, start, &on_path);
+            reference.extend(far_goal.map(|goal| id(goal % graph.len())));
             let demand = EpisodeDemand {
-                reference: walk(&graph, start, &on_path),
+                reference,
                 object: is_named.then(|| object("lamp")),
                 visible_from: Some(seen.into_iter().map(id).collect()),
             };

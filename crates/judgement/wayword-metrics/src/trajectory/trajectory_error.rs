@@ -52,18 +52,6 @@ pub enum TrajectoryError {
         /// Its name.
         viewpoint: ViewpointId,
     },
-    /// Two viewpoints of the episode's path, one after the other, that are neither the same nor joined.
-    #[error(
-        "there is no edge from {from} to {to} (step {step} of the episode's path): correct the episode's path, and check that the episodes and the viewpoint graph are of the same release"
-    )]
-    NoEdgeInReference {
-        /// The step of the second one.
-        step: usize,
-        /// The first one.
-        from: ViewpointId,
-        /// The second one.
-        to: ViewpointId,
-    },
 }
 
 /// All problems that make it impossible to score a trajectory; empty if it can be scored.
@@ -91,30 +79,12 @@ pub(super) fn reference_places(
     let mut problems = Vec::new();
     let mut places = Vec::with_capacity(demand.reference.len());
     for (step, viewpoint) in demand.reference.iter().enumerate() {
-        let place = distances.place_number(viewpoint.as_str());
-        if place.is_none() {
-            problems.push(TrajectoryError::UnknownInReference { step, viewpoint: viewpoint.clone() });
+        match distances.place_number(viewpoint.as_str()) {
+            Some(place) => places.push(place),
+            None => problems.push(TrajectoryError::UnknownInReference { step, viewpoint: viewpoint.clone() }),
         }
-        places.push(place.unwrap_or(UNKNOWN_PLACE));
     }
-    problems.extend(broken_hops(distances, &places).map(|(step, from, to)| TrajectoryError::NoEdgeInReference {
-        step,
-        from: from.clone(),
-        to: to.clone(),
-    }));
     if problems.is_empty() { Ok(places) } else { Err(problems) }
-}
-
-/// The hops between places in a row that no edge joins: the step of the second place, and both names. Hops to unknown
-/// places are left out, because these are problems of their own.
-fn broken_hops<'d>(
-    distances: &'d SceneDistances,
-    places: &[usize],
-) -> impl Iterator<Item = (usize, &'d ViewpointId, &'d ViewpointId)> {
-    places.windows(2).enumerate().filter_map(|(at, hop)| {
-        let is_broken = !hop.contains(&UNKNOWN_PLACE) && hop[0] != hop[1] && !distances.are_joined(hop[0], hop[1]);
-        is_broken.then(|| (at + 1, distances.place_name(hop[0]), distances.place_name(hop[1])))
-    })
 }
 
 /// The places of a trajectory; never empty, and the first is `start`, where that is known.
@@ -128,7 +98,8 @@ pub(super) fn trajectory_places<'n>(
         (Some(first), Some(start)) => *first == start,
         (first, _) => first.is_some(),
     };
-    if starts_right && !places.contains(&UNKNOWN_PLACE) && broken_hops(distances, &places).next().is_none() {
+    let is_broken = |hop: &[usize]| hop[0] != hop[1] && !distances.are_joined(hop[0], hop[1]);
+    if starts_right && !places.contains(&UNKNOWN_PLACE) && !places.windows(2).any(is_broken) {
         return Ok(places);
     }
     Err(list_problems(distances, start, &places, &names.collect::<Vec<_>>()))
@@ -154,11 +125,14 @@ fn list_problems(
         }
         _ => {}
     }
-    problems.extend(broken_hops(distances, places).map(|(step, from, to)| TrajectoryError::NoEdge {
-        step,
-        from: from.clone(),
-        to: to.clone(),
-    }));
+    for (at, hop) in places.windows(2).enumerate() {
+        // Unknown viewpoints are already in the list, so their hops are not reported again.
+        let is_reported = hop.contains(&UNKNOWN_PLACE);
+        if !is_reported && hop[0] != hop[1] && !distances.are_joined(hop[0], hop[1]) {
+            let [from, to] = [hop[0], hop[1]].map(|place| distances.place_name(place).clone());
+            problems.push(TrajectoryError::NoEdge { step: at + 1, from, to });
+        }
+    }
     problems
 }
 

@@ -12,12 +12,14 @@ use crate::{
 use figures::{SubmissionReport, SubmissionResampling};
 use refusal::{SubmissionRefusal, wrong_file_error};
 use std::{collections::BTreeSet, fs, path::Path};
+use wayword_core::{Platform, PlatformError, graph::GraphError};
 use wayword_formats::{
-    Episode,
+    DatasetFormat, Episode, detect_format,
     submission::{self, InstructionNaming, instr_id, name_as_episodes},
 };
 use wayword_metrics::TrajectorySuccessRule;
 use wayword_run::{
+    episode_paths::unusable_path,
     error::{CommandError, Exit},
     output::CommandOutput,
     platforms,
@@ -53,6 +55,7 @@ pub fn run_evaluate(args: &Args, output: &CommandOutput) -> Result<Exit, Command
     let limit = args.limit.map_or(usize::MAX, |limit| limit as usize).min(all_episodes.len());
     all_episodes.extend(hidden);
     let (episodes, ignored_episodes) = all_episodes.split_at(limit);
+    refuse_jumps(&args.episodes, episodes, platform.as_ref())?;
     let mut reading = submission::read_submission(&args.submission);
     if let Some(error) = wrong_file_error(&args.submission, &reading) {
         return Err(error);
@@ -92,6 +95,23 @@ pub fn run_evaluate(args: &Args, output: &CommandOutput) -> Result<Exit, Command
     let report = SubmissionReport::new(args, &scores, covered, &rules, drawn);
     output.print_result(&report, &report);
     Ok(Exit::Done)
+}
+
+/// Refuses episodes whose own way jumps between viewpoints that no edge joins: an agent that walks it could not be right. The ways of a
+/// run's paths, and of positions, were put onto the graph, so viewpoints in a row need no edge there. Viewpoints that the scene lacks
+/// are problems of the submission's list.
+fn refuse_jumps(file: &Path, episodes: &[Episode], platform: &dyn Platform) -> Result<(), CommandError> {
+    if detect_format(file)? == DatasetFormat::Wayword {
+        return Ok(());
+    }
+    for episode in episodes.iter().filter(|episode| episode.floor_positions.is_empty()) {
+        let graph = platform.graph_for_scene(&episode.scene)?;
+        if let Err(source @ GraphError::NoEdge(..)) = graph.path_frames(&episode.viewpoints, None) {
+            let jump = PlatformError::Graph { scene: episode.scene.clone(), source };
+            return Err(unusable_path(file, &episode.id)(jump));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses a `--per-item` file that is one of the inputs, under whatever name.

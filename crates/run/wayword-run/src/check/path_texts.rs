@@ -1,6 +1,10 @@
 //! The texts of a file, gathered by the path that they are about.
 
-use crate::{count::count_phrase, episode_paths::path_for_episode, error::CommandError};
+use crate::{
+    count::count_phrase,
+    episode_paths::{path_for_episode, unusable_path},
+    error::CommandError,
+};
 use std::{collections::BTreeMap, path::Path as FilePath};
 use wayword_core::{Path, Platform, PlatformError, SceneId, TextProvenance, ViewpointId};
 use wayword_formats::{
@@ -124,17 +128,6 @@ impl PathTextIndex {
             Some(walk) => walk.texts.push(text),
             None => self.all.push(PathTexts { path, texts: vec![text] }),
         }
-    }
-}
-
-/// Names the file and the item of a path that does not fit its scene.
-fn unusable_path(file: &FilePath, item: &str) -> impl FnOnce(PlatformError) -> CommandError {
-    move |error| match error {
-        PlatformError::Graph { .. } | PlatformError::UnknownViewpoint { .. } => CommandError::usage(
-            format!("{}: item {item}: {error}", file.display()),
-            "correct the path of this item, or leave the item out; check that --data holds the scene that the file is about",
-        ),
-        error => error.into(),
     }
 }
 

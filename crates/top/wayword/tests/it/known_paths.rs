@@ -156,3 +156,17 @@ fn check_refuses_items_without_instructions() {
     let said = on_building(&building, &["check", "bare.json"]);
     assert!(said.refused().contains("bare.json: 10 items without an instruction"), "{said:?}");
 }
+
+#[test]
+fn an_episode_whose_own_way_jumps_is_named_and_scores_nobody() {
+    let building = Building::new();
+    let submitted = annotated(&building, R2R);
+    let mut items: Vec<Value> = serde_json::from_slice(&fs::read(building.r2r()).unwrap()).unwrap();
+    items[1]["path"] = json!([wayword_testkit::viewpoint_id(5), wayword_testkit::viewpoint_id(2)]);
+    building.write("jump.json", Value::from(items).to_string());
+    let jumped = on_building(&building, &["check", "jump.json"]);
+    for said in [evaluate(&building, &submitted, "jump.json", &[]).refused(), jumped.refused()] {
+        assert!(said.contains("jump.json: item") && said.contains("there is no edge from"), "{said}");
+        assert!(said.contains("leave the item out"), "{said}");
+    }
+}
