@@ -318,15 +318,17 @@ fn hostile_frames_and_spans_do_no_harm() {
     wild.map.edges.push([usize::MAX, 0]);
     wild.path.frames[1].pose.position.x = 1e308;
     wild.observations.truncate(1);
-    let mut bad = good();
-    bad.mentions = vec![
-        TextMention { span: [usize::MAX, 0], kind: MentionKind::Room, frame: 0 },
-        TextMention { span: [0, 4], kind: MentionKind::Room, frame: usize::MAX },
-    ];
-    let run = run_of(&wild, &bad);
+    let run = run_of(&wild, &good());
     let (page, _) = page_of(run.path(), 100);
     assert!(page.contains("The positions of this path cannot be drawn as a map."));
     assert!(page.contains("Pass the mirror and turn right. Stop at the lamp."));
+    for (span, frame) in [([usize::MAX, 0], 0), ([0, 4], usize::MAX)] {
+        let mut bad = good();
+        bad.mentions = vec![TextMention { span, kind: MentionKind::Room, frame }];
+        let run = run_of(&wild, &bad);
+        let refused = write_report(run.path(), &run.path().join(file::REPORT), 100).unwrap_err().to_string();
+        assert!(refused.contains("line 1: mentions[0] points outside"), "{refused}");
+    }
 }
 
 #[test]

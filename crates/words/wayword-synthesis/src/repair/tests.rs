@@ -240,7 +240,8 @@ fn a_path_of_one_viewpoint_gets_a_text_without_movement() {
                 let writers = WriterPair { writer: &RulesWriter, finisher: None };
                 let outcome = write_and_repair(writers, observers, order).unwrap();
                 let WritingOutcome::Accepted(instruction) = outcome else { panic!("{outcome:?}") };
-                assert_eq!(instruction.verdict, Verdict::Pass, "{instruction:?}");
+                // A path of one place decides nothing of a text.
+                assert_eq!(instruction.verdict, Verdict::Unverified, "{instruction:?}");
                 for word in ["go", "walk", "head", "enter", "straight", "move", "proceed", "step"] {
                     assert!(
                         !wayword_language::text::split_words(&instruction.text).contains(&word.to_owned()),
