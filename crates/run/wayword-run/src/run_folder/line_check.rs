@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn lines_of_their_own_are_accepted() {
         let second = json!({"item": "a", "style": "r2r", "number": 1});
-        let rejected = [json!({"item": "a", "style": "r2r"}), second.clone(), json!({"item": "b", "style": "r2r"})];
+        let rejected = [json!({"item": "a", "style": "r2r"}), second, json!({"item": "b", "style": "r2r"})];
         let texts = [text("a", "Walk to door."), text("b", "Walk to door.")];
         assert_eq!(refusal(&[walk("a"), walk("b")], &texts, &rejected), None);
         assert_eq!(refusal(&[], &[], &[]), None);
