@@ -49,7 +49,7 @@ const STAGE_CONFIG_ENDING: &str = ".stage_config.json";
 
 impl HabitatStage {
     /// The stage of a file: a configuration, or a GLB or glTF file, which may have a configuration in its folder. If it tells
-    /// no axes, those of [`default_axes`] are read.
+    /// no axes, those of Habitat's rule are read.
     ///
     /// # Errors
     /// If there is a configuration and it cannot be read, or if the given configuration does not exist.
