@@ -262,6 +262,12 @@ mod tests {
     use super::*;
     use image::{Rgb, RgbImage};
 
+    #[test]
+    fn a_date_before_a_time_of_day_is_no_scene_with_seconds() {
+        assert_eq!(time_in_name("20230101_120000.123.jpg"), None);
+        assert_eq!(time_in_name("41069021_3298.501.png"), Some(3298.501));
+    }
+
     /// A folder with pictures; the red of each is its number.
     fn folder(names: &[&str]) -> tempfile::TempDir {
         let folder = tempfile::tempdir().unwrap();

@@ -100,3 +100,17 @@ pub(super) fn describe_clocks((from_s, to_s): (f64, f64), times_s: &[f64]) -> St
          into a recording.toml beside it"
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_column_of_frames_may_count_from_one() {
+        let clock = PictureClock { times_s: &[0.0, 1.0, 2.0], name: &|at| format!("{at}.png") };
+        assert_eq!(clock.first_number(&[1, 2, 3]), 1);
+        for from_zero in [&[0, 1, 2][..], &[1, 2], &[]] {
+            assert_eq!(clock.first_number(from_zero), 0, "{from_zero:?}");
+        }
+    }
+}

@@ -76,3 +76,16 @@ impl<'a> CsvCells<'a> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn newer_scans_of_stray_scanner_have_more_columns() {
+        let header = |columns: &str| columns.split(", ").map(str::to_owned).collect::<Vec<_>>();
+        let old = "timestamp, frame, x, y, z, qx, qy, qz, qw";
+        assert!(is_stray_header(&header(old)) && is_stray_header(&header(&format!("{old}, fx, fy, cx, cy"))));
+        assert!(!is_stray_header(&header("timestamp, x, y, z, qx, qy, qz, qw, frame")));
+    }
+}
