@@ -74,11 +74,8 @@ fn fill_condition(
         None => {}
     }
     drop(model);
-    let semantics = files.semantic_files(&stage);
-    let broken = semantics::describe_broken_lines(&semantics)?;
-    condition.lacks.extend(broken.map(|what| SceneLack { what, hint: "correct these lines to have them".to_owned() }));
-    let found = semantics::check_semantics(&semantics, stage.habitat_from_asset)?;
-    let Some(SemanticFindings { has_labels, rooms, lack }) = found else {
+    let found = semantics::check_semantics(&files.semantic_files(&stage), stage.habitat_from_asset)?;
+    let Some(SemanticFindings { has_labels, rooms, broken_lines, lack }) = found else {
         condition.lacks.push(SceneLack {
             what: "no labels and no rooms: there are no semantic files beside it".to_owned(),
             hint: "put NAME.semantic.glb with NAME.semantic.txt, or NAME_semantic.ply with NAME.house, beside the \
@@ -89,6 +86,8 @@ fn fill_condition(
     };
     condition.has_labels = has_labels;
     condition.rooms = rooms;
+    let hint = "correct these lines to have them";
+    condition.lacks.extend(broken_lines.map(|what| SceneLack { what, hint: hint.to_owned() }));
     condition.lacks.extend(lack);
     Ok(())
 }

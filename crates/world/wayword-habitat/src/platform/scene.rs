@@ -56,9 +56,8 @@ impl HabitatScene {
                 (Some(walkable), graph)
             }
         };
-        let semantic_files = files.semantic_files(&stage);
-        let semantics = semantics::load_semantics(&semantic_files, stage.habitat_from_asset)?;
-        notes.extend(semantics::describe_broken_lines(&semantic_files)?);
+        let semantics = semantics::load_semantics(&files.semantic_files(&stage), stage.habitat_from_asset)?;
+        notes.extend(semantics.as_ref().and_then(|semantics| semantics.broken_lines.clone()));
         let lack = semantics.as_ref().and_then(|semantics| semantics.lack.clone());
         let semantics = semantics.filter(|semantics| semantics.has_labels);
         let scene =

@@ -4,7 +4,7 @@
 //! A header, then `id,RRGGBB,"category",region` on each line; a category may contain commas (HM3D's semantics, version
 //! 0.2).
 
-use super::SemanticThing;
+use super::{SemanticThing, broken_lines::refuse_if_most_broken};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::ObjectId;
 
@@ -47,14 +47,6 @@ pub(super) fn parse_annotations(text: &str) -> Result<Hm3dAnnotations, String> {
     }
     refuse_if_most_broken(&annotations.broken_lines, annotations.things.len())?;
     Ok(annotations)
-}
-
-/// Returns the first broken line as an error if most of the lines are broken.
-pub(super) fn refuse_if_most_broken(broken_lines: &[String], read_lines: usize) -> Result<(), String> {
-    match broken_lines.first() {
-        Some(first) if broken_lines.len() > read_lines => Err(first.clone()),
-        _ => Ok(()),
-    }
 }
 
 /// The colour and the thing of a line.

@@ -4,7 +4,7 @@
 //! Format: Matterport3D's `data_organization.md`. This reader uses the lines `R` (regions with their boxes), `O` (objects)
 //! and `C` (categories), and skips the others.
 
-use super::{HouseRegion, SemanticThing, hm3d::refuse_if_most_broken};
+use super::{HouseRegion, SemanticThing, broken_lines::refuse_if_most_broken};
 use std::collections::BTreeMap;
 use wayword_core::{DVec3, ObjectId};
 

@@ -1,7 +1,9 @@
 //! Reads the semantic files of a scene: a mesh that is painted in the colours of its objects, or one with numbered faces.
 
 use super::{
-    SceneSemantics, SemanticThing, hm3d, house,
+    SceneSemantics, SemanticThing,
+    broken_lines::describe_broken_lines,
+    hm3d, house,
     paint::{PaintTally, TrianglePaint},
     ply,
     rooms::NumberedRooms,
@@ -22,8 +24,6 @@ use wayword_render::{Mesh, MeshMaterial, RenderScene, Texture, TextureFilter};
 /// Largest list of objects and largest mesh that are read, bytes; larger ones are errors.
 const MAX_TEXT_BYTES: u64 = 64 << 20;
 const MAX_MESH_BYTES: u64 = 4 << 30;
-/// Most lines that a warning lists.
-const MAX_TOLD_LINES: usize = 4;
 const HM3D_HINT: &str =
     "put HM3D's own .semantic.glb and .semantic.txt beside the scene, or neither to go without labels";
 const MATTERPORT_HINT: &str =
@@ -60,6 +60,8 @@ pub(crate) fn load_semantics(
 pub(crate) struct SemanticFindings {
     pub(crate) has_labels: bool,
     pub(crate) rooms: RoomNames,
+    /// The warning about lines that cannot be read.
+    pub(crate) broken_lines: Option<String>,
     /// The fault in the labels.
     pub(crate) lack: Option<SceneLack>,
 }
@@ -71,31 +73,12 @@ pub(crate) fn check_semantics(
 ) -> Result<Option<SemanticFindings>, FileError> {
     let rooms = if files.painted.is_some() { RoomNames::Rules } else { RoomNames::Dataset };
     let loaded = load_semantics(files, habitat_from_asset)?;
-    Ok(loaded.map(|SceneSemantics { has_labels, lack, .. }| SemanticFindings {
+    Ok(loaded.map(|SceneSemantics { has_labels, broken_lines, lack, .. }| SemanticFindings {
         has_labels,
+        broken_lines,
         rooms: if has_labels { rooms } else { RoomNames::Unknown },
         lack,
     }))
-}
-
-/// The warning about lines of these files that cannot be read; `None` if there are none.
-pub(crate) fn describe_broken_lines(files: &SemanticFiles) -> Result<Option<String>, FileError> {
-    let (text, lines) = match (&files.painted, &files.numbered) {
-        (Some((_, text)), _) => {
-            (text, hm3d::parse_annotations(&read_text(text, HM3D_HINT)?).map(|read| read.broken_lines))
-        }
-        (None, Some((_, text))) => {
-            (text, house::parse_house(&read_text(text, MATTERPORT_HINT)?).map(|read| read.broken_lines))
-        }
-        (None, None) => return Ok(None),
-    };
-    // A file that cannot be read at all is refused where it is used.
-    let lines = lines.unwrap_or_default();
-    let told: Vec<&str> = lines.iter().take(MAX_TOLD_LINES).map(String::as_str).collect();
-    let more = lines.len().saturating_sub(MAX_TOLD_LINES);
-    let rest = if more > 0 { format!("; and {more} more") } else { String::new() };
-    Ok((!lines.is_empty())
-        .then(|| format!("{}: what these lines tell is left out: {}{rest}", text.display(), told.join("; "))))
 }
 
 fn read_text(file: &Path, hint: &'static str) -> Result<String, FileError> {
@@ -105,7 +88,7 @@ fn read_text(file: &Path, hint: &'static str) -> Result<String, FileError> {
 
 /// Reads HM3D's files. The colour of a triangle's texture, or of its vertices, gives its thing.
 fn load_painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> Result<SceneSemantics, FileError> {
-    let hm3d::Hm3dAnnotations { mut things, by_colour, .. } =
+    let hm3d::Hm3dAnnotations { mut things, by_colour, broken_lines } =
         hm3d::parse_annotations(&read_text(annotations, HM3D_HINT)?)
             .map_err(|reason| FileError::new(annotations, reason, HM3D_HINT))?;
     // Nobody can export again what was downloaded.
@@ -160,13 +143,14 @@ fn load_painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> R
         rooms,
         has_labels: tally.knows_any(),
         lists_objects: tally.knows_most(),
+        broken_lines: describe_broken_lines(annotations, &broken_lines),
         lack: tally.lack(mesh, annotations),
     })
 }
 
 /// Reads Matterport3D's files. The number of a face gives its thing.
 fn load_numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result<SceneSemantics, FileError> {
-    let house::MatterportHouse { mut things, by_number, regions, .. } =
+    let house::MatterportHouse { mut things, by_number, regions, broken_lines } =
         house::parse_house(&read_text(house, MATTERPORT_HINT)?)
             .map_err(|reason| FileError::new(house, reason, MATTERPORT_HINT))?;
     let wrong = |reason: String| FileError::new(mesh, reason, MATTERPORT_HINT);
@@ -190,6 +174,7 @@ fn load_numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result
         rooms: NumberedRooms::default(),
         has_labels: true,
         lists_objects,
+        broken_lines: describe_broken_lines(house, &broken_lines),
         lack: (!lists_objects).then(|| SceneLack {
             what: format!("no face of {} belongs to an object of {}", mesh.display(), house.display()),
             hint: "put the .house beside the mesh that came with it to have objects".to_owned(),

@@ -10,6 +10,7 @@
     )
 )]
 
+mod broken_lines;
 mod hm3d;
 mod house;
 mod labels;
@@ -27,7 +28,7 @@ mod rooms;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use load::{SemanticFiles, SemanticFindings, check_semantics, describe_broken_lines, load_semantics};
+pub(crate) use load::{SemanticFiles, SemanticFindings, check_semantics, load_semantics};
 
 use rooms::{NumberedRooms, ShellPart};
 use std::collections::BTreeMap;
@@ -86,6 +87,8 @@ pub(crate) struct SceneSemantics {
     pub(crate) has_labels: bool,
     /// Whether so many are known that an object which is not seen is not there.
     pub(crate) lists_objects: bool,
+    /// The warning about lines of its list that cannot be read.
+    pub(crate) broken_lines: Option<String>,
     /// The fault in its colours.
     pub(crate) lack: Option<SceneLack>,
 }
