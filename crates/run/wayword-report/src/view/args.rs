@@ -17,7 +17,7 @@ pub struct ViewArgs {
 pub enum ViewCommand {
     /// Draw everything around a viewpoint, as one picture.
     Panorama(ViewPanorama),
-    /// Draw what is seen along a path: pictures in a folder, a GIF or a video.
+    /// Draw what is seen along a path: pictures in a folder or side by side, a GIF or a video.
     Path(ViewPath),
     /// Draw a storey from above: where one can walk and, if asked, a path.
     Map(ViewMap),
@@ -88,6 +88,7 @@ Examples:
   wayword view path --scan house2-7 --seed 3 --smooth 8 --out walk.mp4      (needs the feature full)
   wayword view path --platform habitat --data house.glb --metres 5..10 --smooth 8 --width 320 --out walk.gif
   wayword view path --episodes runs/houses/instructions.jsonl --item random-0-4 --out walk.gif
+  wayword view path --episodes runs/houses/instructions.jsonl --pictures 4 --width 320 --out walk.jpg      (side by side)
 
 Each frame of the path is shown once. With --smooth there are pictures between them: the walker turns on the spot and then
 walks, at an even pace. A frame without a picture is left out, and the program says so. A GIF with --smooth is
@@ -108,7 +109,10 @@ pub struct ViewPath {
     /// Width of the pictures. [default: that of the platform's pictures]
     #[arg(long, value_name = "PIXELS")]
     pub width: Option<u32>,
-    /// What to write: a folder for numbered PNG files, or a .gif or .mp4 file.
+    /// Number of frames that a .jpg or .png shows side by side, evenly spaced along the path. [default: 3]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=100))]
+    pub pictures: Option<u16>,
+    /// What to write: a folder for numbered PNG files, a .gif or .mp4 file, or a .jpg or .png with some frames side by side.
     #[arg(long, value_name = "PLACE")]
     pub out: PathBuf,
 }

@@ -1,9 +1,10 @@
-//! Writes pictures in order: as files in a folder, as a GIF or as a video. `--out` decides which.
+//! Writes pictures in order: as files in a folder, as a GIF, as a video, or side by side. `--out` decides which.
 
 mod folder;
 mod gif;
 #[cfg(feature = "video")]
 mod mp4;
+mod strip;
 
 use super::file_kind::{FileKind, check_foreign};
 use std::path::{Path, PathBuf};
@@ -29,6 +30,8 @@ pub(super) trait FilmWriter {
 #[derive(Debug)]
 pub(super) enum FilmPlace {
     Folder(PathBuf),
+    /// One picture, of this kind.
+    Strip(PathBuf, FileKind),
     Gif(PathBuf),
     #[cfg(feature = "video")]
     Mp4(PathBuf),
@@ -45,15 +48,17 @@ impl FilmPlace {
             check_foreign(out, data)?;
             return Ok(Self::Folder(out.to_owned()));
         }
-        let kind = FileKind::from_ending(out).filter(|kind| matches!(kind, FileKind::Gif | FileKind::Mp4)).ok_or_else(
-            || {
-                let problem = format!("--out {}: its ending does not say what to write", out.display());
-                CommandError::usage(problem, "end it in .gif or .mp4, or in / for a folder of numbered PNG files")
-            },
-        )?;
+        let kind = FileKind::from_ending(out).filter(|kind| *kind != FileKind::Svg).ok_or_else(|| {
+            let problem = format!("--out {}: its ending does not say what to write", out.display());
+            CommandError::usage(
+                problem,
+                "end it in .gif, .mp4, .jpg or .png, or in / for a folder of numbered PNG files",
+            )
+        })?;
         kind.check_free(out, data)?;
         match kind {
             FileKind::Gif => Ok(Self::Gif(out.to_owned())),
+            FileKind::Png | FileKind::Jpeg => Ok(Self::Strip(out.to_owned(), kind)),
             #[cfg(feature = "video")]
             _ => Ok(Self::Mp4(out.to_owned())),
             #[cfg(not(feature = "video"))]
@@ -64,6 +69,11 @@ impl FilmPlace {
         }
     }
 
+    /// Whether it is one picture, with some frames side by side.
+    pub(super) fn is_strip(&self) -> bool {
+        matches!(self, Self::Strip(..))
+    }
+
     /// Begins to write at most `most` pictures, `fps` for each second.
     ///
     /// # Errors
@@ -71,6 +81,7 @@ impl FilmPlace {
     pub(super) fn open_writer(self, fps: f64, most: usize) -> Result<Box<dyn FilmWriter>, CommandError> {
         Ok(match self {
             Self::Folder(folder) => Box::new(folder::FolderFilm::new(folder, most)?),
+            Self::Strip(file, kind) => Box::new(strip::PictureStrip::new(file, kind)),
             Self::Gif(file) => Box::new(gif::GifFilm::new(&file, fps)?),
             #[cfg(feature = "video")]
             Self::Mp4(file) => mp4::open_video(&file, fps)?,

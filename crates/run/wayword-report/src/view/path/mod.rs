@@ -1,4 +1,4 @@
-//! `wayword view path`: draws the view ahead along a path, as a folder of pictures, a GIF or a video.
+//! `wayword view path`: draws the view ahead along a path, as a folder of pictures, a strip, a GIF or a video.
 
 pub mod film_steps;
 
@@ -16,6 +16,8 @@ const MAX_PICTURES: usize = 20_000;
 const DEFAULT_FPS: [f64; 2] = [1.0, 12.0];
 /// The rates that can be asked for: a GIF counts in hundredths of a second.
 const FPS_RANGE: std::ops::RangeInclusive<f64> = 0.1..=50.0;
+/// Pictures of a strip, unless `--pictures` gives another number.
+const STRIP_PICTURES: usize = 3;
 /// Greatest width of the pictures, pixels. A wider one is refused.
 const MAX_WIDTH_PX: u32 = 8192;
 
@@ -30,7 +32,14 @@ pub(super) fn write_path(args: &ViewPath, output: &CommandOutput) -> Result<Writ
     let place = film::FilmPlace::from_out(&args.out, args.platform.data.as_deref())?;
     let platform = open_platform(&args.platform)?;
     let path = walk::choose_path(&args.walk, &args.platform, &*platform)?;
-    let steps = film_steps::film_steps(&path, args.smooth.unwrap_or(0))?;
+    let mut steps = film_steps::film_steps(&path, args.smooth.unwrap_or(0))?;
+    match (place.is_strip(), args.pictures) {
+        (true, asked) => steps = evenly_spaced(steps, asked.map_or(STRIP_PICTURES, usize::from)),
+        (false, Some(_)) => {
+            return Err(CommandError::usage("--pictures is for one picture", "end --out in .jpg or .png"));
+        }
+        (false, None) => {}
+    }
     if steps.len() > MAX_PICTURES {
         let problem = format!("the path would need {} pictures, but at most {MAX_PICTURES} are allowed", steps.len());
         return Err(CommandError::usage(problem, "ask for a shorter path, or a smaller --smooth"));
@@ -59,6 +68,16 @@ pub(super) fn write_path(args: &ViewPath, output: &CommandOutput) -> Result<Writ
         output.say(format_args!("no picture for {without} of {}; left out", count_phrase(steps.len(), "frame")));
     }
     Ok(WrittenView { scene: path.scene, files: film.finish()?, width, height, frames, islands: Vec::new() })
+}
+
+/// At most this many of the steps, evenly spaced, with the first and the last among them; a single one is the last.
+fn evenly_spaced(steps: Vec<FilmStep>, most: usize) -> Vec<FilmStep> {
+    let (last, gaps) = (steps.len().saturating_sub(1), most.saturating_sub(1));
+    if most > last {
+        return steps;
+    }
+    let chosen: Vec<usize> = (0..most).map(|at| if gaps == 0 { last } else { at * last / gaps }).collect();
+    steps.into_iter().enumerate().filter(|(at, _)| chosen.contains(at)).map(|(_, step)| step).collect()
 }
 
 /// The picture of the view ahead. If there is none, that is an error between two frames, and `None` at a frame of the path.
