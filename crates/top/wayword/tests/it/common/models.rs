@@ -16,8 +16,13 @@ pub(crate) const KEY: &str = "sk-test-7f3b19c2d4e5f6a7";
 
 /// A provider's behaviour with a careless cast behind two names.
 pub(crate) fn cast() -> ProviderBehaviour {
+    cast_as(["words", "eye"])
+}
+
+/// The same behind names of the caller's choice.
+pub(crate) fn cast_as<const N: usize>(models: [&str; N]) -> ProviderBehaviour {
     let cast = ScriptedCast::new(FlawedEye::new(PictureGallery::default(), 1, 0.15), 1, 0.2);
-    ProviderBehaviour::for_model("words", cast.clone()).and_model("eye", cast)
+    models.into_iter().fold(ProviderBehaviour::default(), |behaviour, model| behaviour.and_model(model, cast.clone()))
 }
 
 /// The building with pictures, and a provider.

@@ -3,38 +3,28 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+#[cfg(feature = "full")]
+mod reader_folder;
+
 use clap::{CommandFactory, Parser};
 use std::{collections::BTreeSet, path::Path};
 use wayword::cli::WaywordCli;
 use wayword_testkit::documents::{self, DocumentedCommand};
 
+#[cfg(feature = "full")]
+use reader_folder::{ReaderFolder, RunExtent};
+
 /// Commands that a test cannot run: a word by which to recognise them, and what they need. The test runs all others.
-const NEEDS: [(&str, &str); 13] = [
-    ("data/scene_datasets", "HM3D"),
-    ("--data SCENES", "scans, and viewpoint graphs for them"),
-    ("--platform matterport", "Matterport3D's files"),
-    ("runs/val_seen", "a run over Matterport3D's files"),
-    ("runs/table", "a comparison over Matterport3D's files"),
+const NEEDS: [(&str, &str); 8] = [
     ("--platform tdw", "ThreeDWorld's simulator"),
     ("--platform virtualhome", "VirtualHome's simulator"),
     ("--platform process", "Python and a simulator"),
-    ("--platform recording", "a recording of the reader's own"),
-    ("ollama/", "Ollama, with the model"),
-    ("openai/", "a key of OpenAI's"),
     ("hf/", "weights from the hub"),
     ("wayword_db", "PostgreSQL"),
+    ("s3://", "a bucket"),
+    ("similarity runs/", "the weights of a sentence encoder"),
+    ("--data NAME", "a recording of the reader's own"),
 ];
-
-/// Subcommands that a test cannot run with any arguments, and what they need.
-const COMMANDS_NEED: [(&str, &str); 4] = [
-    ("ledger", "a ledger, which calls of models make"),
-    ("runs", "workers that have made the whole run"),
-    ("similarity", "the weights of a sentence encoder"),
-    ("study", "runs, and people"),
-];
-
-/// The largest values that the test runs a command with, because a document's larger ones would take too long.
-const AT_MOST: [(&str, u32); 3] = [("--paths", 1), ("--views", 5), ("--smooth", 1)];
 
 /// The exit codes that a documented command may end with: done, or done with loss.
 const GOOD: [Option<i32>; 2] = [Some(0), Some(3)];
@@ -50,12 +40,7 @@ fn documented() -> Vec<DocumentedCommand> {
 /// The reason why a test cannot run a command; `None` for a command that the test runs.
 fn needs(command: &DocumentedCommand) -> Option<&'static (&'static str, &'static str)> {
     let line = format!("{} ", command.args.join(" "));
-    NEEDS.iter().find(|(word, _)| line.contains(word)).or_else(|| {
-        // Only the subcommand counts, because `--ledger FILE` is a flag of many commands.
-        let known = WaywordCli::command();
-        let subcommand = command.args.iter().find(|word| known.find_subcommand(word).is_some())?;
-        COMMANDS_NEED.iter().find(|(name, _)| name == subcommand)
-    })
+    NEEDS.iter().find(|(word, _)| line.contains(word))
 }
 
 /// Whether this is only a command's name within the text, as in "`wayword ledger export` writes", and not a command to
@@ -122,59 +107,66 @@ fn typed(help: &str) -> String {
 #[test]
 fn every_need_that_is_listed_is_some_command_s() {
     let used: BTreeSet<&str> = documented().iter().filter_map(needs).map(|(word, _)| *word).collect();
-    let idle: Vec<_> = NEEDS.iter().chain(&COMMANDS_NEED).filter(|(word, _)| !used.contains(word)).collect();
-    assert!(idle.is_empty(), "no command needs {idle:?}: take it out of NEEDS or COMMANDS_NEED");
+    let idle: Vec<_> = NEEDS.iter().filter(|(word, _)| !used.contains(word)).collect();
+    assert!(idle.is_empty(), "no command needs {idle:?}: take it out of NEEDS");
 }
 
-#[test]
-fn command_with_its_own_ledger_can_be_tested() {
-    let needs_of = |line: &str| {
-        let fenced = format!("```sh\n{line}\n```\n");
-        documents::commands_in_markdown("a test", &fenced).iter().any(|command| needs(command).is_some())
-    };
-    assert!(needs_of("wayword ledger show --limit 5"));
-    assert!(!needs_of("wayword generate --paths 1 --ledger calls.db --out runs/a"));
-}
-
-/// In one folder and in the order of the documents, because later commands use the results of earlier ones.
+#[cfg(feature = "full")]
 #[test]
 fn documented_commands_run_as_the_documents_describe() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut ran: BTreeSet<Vec<String>> = BTreeSet::new();
-    for command in documented() {
-        let args = quicker(&command.args);
-        let is_film = args.iter().any(|arg| arg.ends_with(".mp4"));
-        let is_table =
-            args.windows(2).any(|pair| pair[0] == "--format" && ["parquet", "hf"].contains(&pair[1].as_str()));
-        if is_a_name(&command)
-            || needs(&command).is_some()
-            || (is_film && !cfg!(feature = "video"))
-            || (is_table && !cfg!(feature = "parquet"))
-            || !ran.insert(args.clone())
+    let ran = run_documents(RunExtent::Quick);
+    assert!(ran > 60, "{ran}");
+}
+
+/// `ci/documents` runs this one.
+#[cfg(feature = "full")]
+#[test]
+#[ignore = "takes half an hour; `ci/documents` runs it"]
+fn documented_commands_run_with_the_numbers_of_the_documents() {
+    let ran = run_documents(RunExtent::Whole);
+    assert!(ran > 80, "{ran}");
+}
+
+/// The README's commands in one folder, then those of each document in a copy of it: in the order in which they stand,
+/// because later commands use the results of earlier ones. Returns how many ran.
+#[cfg(feature = "full")]
+fn run_documents(extent: RunExtent) -> usize {
+    let commands = documented();
+    let (readme, others): (Vec<_>, Vec<_>) = commands.iter().partition(|command| document(command) == "README.md");
+    let reader = ReaderFolder::new(extent);
+    let mut ran = run_all(&reader, &readme);
+    for page in others.chunk_by(|a, b| document(a) == document(b)) {
+        ran.extend(run_all(&reader.copy(), page));
+    }
+    println!("{} of {} documented commands ran", ran.len(), commands.len());
+    let faults: Vec<&String> = ran.iter().filter_map(|fault| fault.as_ref()).collect();
+    assert!(faults.is_empty(), "correct these, or say in NEEDS what they need: {faults:#?}");
+    ran.len()
+}
+
+/// The document of a command.
+fn document(command: &DocumentedCommand) -> &str {
+    command.place.split(':').next().unwrap_or_default()
+}
+
+/// Runs the commands that the test can run. For each: how it ended, where that is not as it should.
+#[cfg(feature = "full")]
+fn run_all(reader: &ReaderFolder, commands: &[&DocumentedCommand]) -> Vec<Option<String>> {
+    let (mut ran, mut faults) = (BTreeSet::new(), Vec::new());
+    for command in commands {
+        if is_a_name(command)
+            || needs(command).is_some()
+            || reader.is_a_form(command)
+            || reader.is_too_slow(command)
+            || !ran.insert(&command.args)
         {
             continue;
         }
-        let mut process = crate::common::command(&args);
-        process.current_dir(folder.path()).envs(command.variables.clone());
-        process.env("XDG_DATA_HOME", folder.path().join("data")).env("WAYWORD_OFFLINE", "1");
-        let ended = crate::common::run(&mut process);
-        assert!(
-            GOOD.contains(&ended.code),
-            "{}: {args:?}: correct it, or say in NEEDS what it needs: {ended:?}",
-            command.place
-        );
+        let started = std::time::Instant::now();
+        let ended = reader.run(command);
+        eprintln!("{:>5.1} s  {} {}", started.elapsed().as_secs_f64(), command.place, command.args.join(" "));
+        let fault = || format!("{}: {:?}: {ended:?}", command.place, command.args);
+        faults.push((!GOOD.contains(&ended.code)).then(fault));
     }
-    assert!(ran.len() > 5, "{ran:?}");
-}
-
-/// The command with smaller numbers.
-fn quicker(args: &[String]) -> Vec<String> {
-    let mut quicker = args.to_vec();
-    for at in 1..quicker.len() {
-        let most = AT_MOST.iter().find(|(flag, _)| *flag == quicker[at - 1]).map(|(_, most)| *most);
-        if let Some(most) = most.filter(|most| quicker[at].parse::<u32>().is_ok_and(|asked| asked > *most)) {
-            quicker[at] = most.to_string();
-        }
-    }
-    quicker
+    faults
 }
