@@ -129,7 +129,8 @@ mod tests {
         let world = platforms::open_named("matterport", Some(&building.data_folder()), None, None).unwrap();
         let first = run_items(&settings, world.as_ref()).unwrap().remove(0);
         let path = first.find_path(&settings, world.as_ref()).unwrap();
-        let made = MadeItem { walk: ObservedWalk::new(path, Vec::new()), outcomes, pictures: Vec::new(), used: None };
+        let walk = ObservedWalk::new(path, Vec::new());
+        let made = MadeItem { walk, outcomes, costs: Vec::new(), pictures: Vec::new(), used: None };
         let mut named = NamedObjectCounts::default();
         named.count_item(&made, world.as_ref()).unwrap();
         named

@@ -125,6 +125,9 @@ pub struct WrittenDraft {
     pub candidate: u32,
     /// Why it was not kept.
     pub reasons: Vec<String>,
+    /// The checks that it failed; empty where it was not kept for another reason. Spans are byte ranges of the text.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub findings: Vec<CheckFinding>,
 }
 
 /// A round of writing a text again after a follower walked by it.

@@ -26,7 +26,10 @@ pub struct CallAccount(Arc<AccountCounts>);
 /// The counts of an account. Money is counted in billionths of a dollar, so that the order of the answers changes nothing.
 #[derive(Debug, Default)]
 struct AccountCounts {
+    /// The account of the work that this work is a part of.
+    whole: Option<CallAccount>,
     answers: AtomicU64,
+    unpriced: AtomicU64,
     tokens_in: AtomicU64,
     tokens_out: AtomicU64,
     nano_usd: AtomicU64,
@@ -37,6 +40,8 @@ struct AccountCounts {
 pub struct AccountTotals {
     /// Answers.
     pub answers: u64,
+    /// Those of them whose price is not known.
+    pub unpriced: u64,
     /// Tokens that were sent for them.
     pub tokens_in: u64,
     /// Tokens of the answers.
@@ -46,13 +51,21 @@ pub struct AccountTotals {
 }
 
 impl CallAccount {
+    /// An account of a part of this thread's work: what it counts, the thread's present account counts too.
+    #[must_use]
+    pub fn of_part() -> Self {
+        let whole = ACCOUNT.with_borrow(Clone::clone);
+        Self(Arc::new(AccountCounts { whole, ..AccountCounts::default() }))
+    }
+
     /// What was counted so far.
     #[must_use]
     pub fn totals(&self) -> AccountTotals {
         let of = |count: &AtomicU64| count.load(Ordering::Relaxed);
-        let AccountCounts { answers, tokens_in, tokens_out, nano_usd } = &*self.0;
+        let AccountCounts { answers, unpriced, tokens_in, tokens_out, nano_usd, .. } = &*self.0;
         AccountTotals {
             answers: of(answers),
+            unpriced: of(unpriced),
             tokens_in: of(tokens_in),
             tokens_out: of(tokens_out),
             usd: of(nano_usd) as f64 / 1e9,
@@ -60,9 +73,11 @@ impl CallAccount {
     }
 
     fn count(&self, answer: &CallAnswer) {
-        let AccountCounts { answers, tokens_in, tokens_out, nano_usd } = &*self.0;
+        let AccountCounts { whole, answers, unpriced, tokens_in, tokens_out, nano_usd } = &*self.0;
+        whole.iter().for_each(|whole| whole.count(answer));
         for (count, more) in [
             (answers, 1),
+            (unpriced, u64::from(answer.usd.is_none())),
             (tokens_in, answer.tokens_in),
             (tokens_out, answer.tokens_out),
             (nano_usd, (answer.usd.unwrap_or(0.0).max(0.0) * 1e9).round() as u64),
@@ -190,6 +205,32 @@ mod tests {
             });
         });
         CallContext::count_answer(&answer);
-        assert_eq!(account.totals(), AccountTotals { answers: 2, tokens_in: 20, tokens_out: 4, usd: 0.5 });
+        assert_eq!(account.totals(), AccountTotals { answers: 2, unpriced: 0, tokens_in: 20, tokens_out: 4, usd: 0.5 });
+    }
+
+    #[test]
+    fn an_account_of_a_part_counts_for_the_whole_too() {
+        let answer = |usd: Option<f64>| CallAnswer {
+            text: String::new(),
+            finish: "stop".to_owned(),
+            tokens_in: 10,
+            tokens_out: 2,
+            usd,
+            latency_ms: 0,
+            attempts: 1,
+        };
+        let whole = CallAccount::default();
+        let part = CallContext::with_account(&whole, || {
+            CallContext::count_answer(&answer(Some(1.0)));
+            let part = CallAccount::of_part();
+            CallContext::with_account(&part, || CallContext::count_answer(&answer(None)));
+            part
+        });
+        let of_part = AccountTotals { answers: 1, unpriced: 1, tokens_in: 10, tokens_out: 2, usd: 0.0 };
+        assert_eq!(part.totals(), of_part);
+        assert_eq!(whole.totals(), AccountTotals { answers: 2, unpriced: 1, tokens_in: 20, tokens_out: 4, usd: 1.0 });
+        let alone = CallAccount::of_part();
+        CallContext::with_account(&alone, || CallContext::count_answer(&answer(None)));
+        assert_eq!(whole.totals().answers, 2, "outside of the work it is a part of nothing");
     }
 }

@@ -9,7 +9,7 @@ use crate::{
     parallel::make_in_parallel,
     pictures::{self, FrameJpeg},
     platforms::RememberingPlatform,
-    run_folder::{ItemCalls, WorldData},
+    run_folder::{ItemCalls, TextCost, WorldData},
     settings::{EvidenceSources, RunSettings, TargetMode},
     styles::MeasuredStyle,
     team::RoleTeam,
@@ -41,6 +41,8 @@ pub struct MadeItem {
     /// The outcomes of its texts, style by style in the order of the run's styles. Each style has as many as
     /// `--per-path` asks for.
     pub outcomes: Vec<WritingOutcome>,
+    /// What each of these texts cost, in the same order; `None` where no model took part.
+    pub costs: Vec<Option<TextCost>>,
     /// The picture ahead of each frame, if the platform has pictures.
     pub pictures: Vec<FrameJpeg>,
     /// The answers of models that it used.
@@ -75,6 +77,8 @@ pub struct WrittenItem {
     /// The outcomes of its texts, style by style in the order of the run's styles. Each style has as many as
     /// `--per-path` asks for.
     pub outcomes: Vec<WritingOutcome>,
+    /// What each of these texts cost.
+    costs: Vec<Option<TextCost>>,
     /// The view ahead of each frame.
     ahead: Vec<View>,
 }
@@ -94,9 +98,9 @@ pub fn make_item(
     let order = ItemTextOrder { styles, only: &BTreeMap::new() };
     let account = CallAccount::default();
     let written = CallContext::with_account(&account, || write_item(item, settings, world, team, order, threads));
-    let WrittenItem { walk, outcomes, ahead } = written?;
+    let WrittenItem { walk, outcomes, costs, ahead } = written?;
     let used = ItemCalls::of_account(&account);
-    Ok(MadeItem { walk, outcomes, pictures: pictures::encode_pictures(&ahead)?, used })
+    Ok(MadeItem { walk, outcomes, costs, pictures: pictures::encode_pictures(&ahead)?, used })
 }
 
 /// Writes an item's instructions. Up to `threads` views are described at the same time, and up to as many styles written; the
@@ -190,15 +194,15 @@ pub fn write_item(
         };
         write_texts(team, order, settings.per_path)
     };
-    let ends = |texts: &Result<Vec<WritingOutcome>, ModelError>| texts.as_ref().is_err_and(ModelError::ends_run);
-    let outcomes = make_in_parallel(styles, threads, write_style, ends).into_iter().collect::<Result<Vec<_>, _>>()?;
-    let mut outcomes: Vec<WritingOutcome> = outcomes.into_iter().flatten().collect();
+    let ends = |texts: &Result<Vec<CostedText>, ModelError>| texts.as_ref().is_err_and(ModelError::ends_run);
+    let texts = make_in_parallel(styles, threads, write_style, ends).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let (mut outcomes, costs): (Vec<WritingOutcome>, Vec<Option<TextCost>>) = texts.into_iter().flatten().unzip();
     for instruction in outcomes.iter_mut().filter_map(WritingOutcome::instruction_mut) {
         if instruction.parts.is_empty() {
             instruction.parts = follower.parts(instruction, walk.path.frames.len());
         }
     }
-    Ok(WrittenItem { walk, outcomes, ahead })
+    Ok(WrittenItem { walk, outcomes, costs, ahead })
 }
 
 /// Writes candidates at the same time, on so many threads.
@@ -211,21 +215,27 @@ impl WriteTogether for InParallel {
     }
 }
 
+/// The outcome of a text, with what it cost.
+type CostedText = (WritingOutcome, Option<TextCost>);
+
 /// The texts of one walk in one style. Each has to differ from those before it.
-fn write_texts(team: &RoleTeam, order: InstructionOrder<'_>, number: usize) -> Result<Vec<WritingOutcome>, ModelError> {
-    let (mut outcomes, mut earlier) = (Vec::new(), Vec::new());
+fn write_texts(team: &RoleTeam, order: InstructionOrder<'_>, number: usize) -> Result<Vec<CostedText>, ModelError> {
+    let (mut texts, mut earlier) = (Vec::new(), Vec::new());
     for _ in 0..number {
-        let outcome =
-            write_and_repair(team.writers(), team.observers(), InstructionOrder { earlier: &earlier, ..order })?;
+        let order = InstructionOrder { earlier: &earlier, ..order };
+        let account = CallAccount::of_part();
+        let write = || write_and_repair(team.writers(), team.observers(), order);
+        let outcome = CallContext::with_account(&account, write)?;
         earlier.push(match &outcome {
             WritingOutcome::Accepted(instruction) | WritingOutcome::Rejected { last: Some(instruction), .. } => {
                 instruction.text.clone()
             }
             WritingOutcome::Rejected { last: None, .. } => String::new(),
         });
-        outcomes.push(outcome);
+        let cost = TextCost::of_outcome(&account, &outcome);
+        texts.push((outcome, cost));
     }
-    Ok(outcomes)
+    Ok(texts)
 }
 
 /// The most pictures that a writer is shown. From a longer path these are the first, the last, and others at equal distances

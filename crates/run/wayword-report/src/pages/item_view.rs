@@ -78,7 +78,7 @@ impl ItemView {
 }
 
 fn used_words(used: &ItemCalls) -> String {
-    let ItemCalls { answers, tokens_in, tokens_out, usd } = used;
+    let ItemCalls { answers, tokens_in, tokens_out, usd, .. } = used;
     let usd = if *usd > 0.0 { format!(", ${usd:.4}") } else { String::new() };
     format!("{answers} answers of models: {tokens_in} tokens in, {tokens_out} out{usd}")
 }

@@ -137,6 +137,7 @@ fn run_of(first: &WalkRecord, instruction: &Instruction) -> tempfile::TempDir {
             last: Some(last),
             number: 0,
             drafts: Vec::new(),
+            cost: None,
         },
         RejectedText {
             item: "c".into(),
@@ -145,6 +146,7 @@ fn run_of(first: &WalkRecord, instruction: &Instruction) -> tempfile::TempDir {
             last: None,
             number: 0,
             drafts: Vec::new(),
+            cost: None,
         },
     ];
     let config = toml::to_string(&AskedSettings::default().resolve().unwrap()).unwrap();
@@ -362,6 +364,7 @@ fn long_run(items: usize, rejected: &[usize], unverified: &[usize]) -> tempfile:
                 last: Some(text),
                 number: 0,
                 drafts: Vec::new(),
+                cost: None,
             }));
             continue;
         }

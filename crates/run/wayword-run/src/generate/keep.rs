@@ -69,11 +69,12 @@ fn write_made_item(
     })?;
     let per_style = made.outcomes.len().div_ceil(styles.len().max(1));
     let names = styles.iter().flat_map(|MeasuredStyle { style, .. }| (0..per_style).map(move |number| (style, number)));
-    for (outcome, (style, number)) in made.outcomes.into_iter().zip(names) {
+    for ((outcome, cost), (style, number)) in made.outcomes.into_iter().zip(made.costs).zip(names) {
         match outcome {
             WritingOutcome::Accepted(instruction) => {
                 let mut record = InstructionRecord::new(world.platform.name(), made.walk.path.clone(), instruction);
                 record.extra = extra_fields(&item.path_id(), number);
+                cost.iter().for_each(|cost| cost.add_to(&mut record.extra));
                 run.instructions.append(&record)?;
             }
             WritingOutcome::Rejected { last, reason, drafts } => {
@@ -84,6 +85,7 @@ fn write_made_item(
                     last,
                     number,
                     drafts,
+                    cost,
                 })?;
             }
         }

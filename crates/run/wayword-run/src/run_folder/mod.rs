@@ -8,6 +8,7 @@
 //! the run was stopped.
 
 mod config;
+mod cost;
 mod folder_lock;
 mod journal;
 mod line_check;
@@ -33,10 +34,11 @@ pub use config::{
     config_text, differing_keys, is_comparison, keep_config, read_config, refuse_other_format, refuse_unmerged,
 };
 pub use config::{continued_settings, is_begun, read_run_settings};
+pub use cost::{ItemCalls, TextCost};
 pub use folder_lock::{FolderLock, lock_folder};
 pub use journal::{Journal, read_lines};
 pub use line_check::refuse_edited_lines;
-pub use record::{FailedItem, ItemCalls, PathMap, RejectedText, WalkRecord, extra_fields, text_file_name, text_name};
+pub use record::{FailedItem, PathMap, RejectedText, WalkRecord, extra_fields, text_file_name, text_name};
 pub use world_data::WorldData;
 pub(crate) use world_data::scene_hashes;
 

@@ -1,12 +1,12 @@
 //! The records of a run folder: a type for a line of each of its files, and the keys that identify the lines.
 
+use super::cost::{ItemCalls, TextCost};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map as JsonMap, Value};
 use wayword_core::{
     DVec3, FailureKind, FrameObservation, Instruction, Path, Platform, PlatformError, ViewpointGraph, WrittenDraft,
 };
 use wayword_formats::jsonl::InstructionRecord;
-use wayword_ledger::{AccountTotals, CallAccount};
 
 /// A path and what was seen along it: a line of `walks.jsonl`.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -26,28 +26,6 @@ pub struct WalkRecord {
     /// The answers of models that the item used, and what they cost when they were made, also if the ledger had them already.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub used: Option<ItemCalls>,
-}
-
-/// The answers of models that an item used.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ItemCalls {
-    /// How many.
-    pub answers: u64,
-    /// Tokens that were sent for them.
-    pub tokens_in: u64,
-    /// Tokens that came back.
-    pub tokens_out: u64,
-    /// US dollars; models without a known price count as 0.
-    pub usd: f64,
-}
-
-impl ItemCalls {
-    /// What an account counted; `None` where no model was asked.
-    #[must_use]
-    pub fn of_account(account: &CallAccount) -> Option<Self> {
-        let AccountTotals { answers, tokens_in, tokens_out, usd } = account.totals();
-        (answers > 0).then_some(Self { answers, tokens_in, tokens_out, usd })
-    }
 }
 
 /// The viewpoint graph around a path, from above.
@@ -82,6 +60,9 @@ pub struct RejectedText {
     /// The texts of a model before it, with the reasons.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub drafts: Vec<WrittenDraft>,
+    /// What its texts cost; `None` where no model took part, and in lines of older versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cost: Option<TextCost>,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]

@@ -111,20 +111,21 @@ impl<'a> WritingAttempts<'a> {
 
     /// Keeps a text that was not good enough, for the next prompt and for the user.
     fn complain(&mut self, instruction: &Instruction) {
-        self.keep_draft(&instruction.text, failed_reasons(&instruction.findings));
+        self.keep_draft(&instruction.text, failed_reasons(&instruction.findings), &instruction.findings);
         let (text, findings) = (instruction.text.clone(), instruction.findings.clone());
         self.complaints.push(TextComplaint { text, findings });
     }
 
     fn complain_about_reply(&mut self, text: String, reason: String) {
-        self.keep_draft(&text, vec![reason.clone()]);
-        self.complaints.push(unusable_complaint(text, reason));
+        let complaint = unusable_complaint(text, reason.clone());
+        self.keep_draft(&complaint.text, vec![reason], &complaint.findings);
+        self.complaints.push(complaint);
     }
 
-    /// Keeps a text of a model that is not the final one.
-    pub(super) fn keep_draft(&mut self, text: &str, reasons: Vec<String>) {
+    /// Keeps a text of a model that is not the final one. Of `findings` the draft has those that failed.
+    pub(super) fn keep_draft(&mut self, text: &str, reasons: Vec<String>, findings: &[CheckFinding]) {
         if !self.is_by_rules() {
-            self.drafts.push(WrittenDraft { text: text.to_owned(), candidate: self.candidate, reasons });
+            self.drafts.push(new_draft(text, self.candidate, reasons, findings));
         }
     }
 
@@ -134,6 +135,28 @@ impl<'a> WritingAttempts<'a> {
         let unusable = || self.complaints.last().map_or(&[][..], |complaint| &complaint.findings);
         failed_reasons(best.map_or_else(unusable, |instruction| &instruction.findings)).join("; ")
     }
+}
+
+/// Longest text of a draft, bytes. Of a longer reply its beginning is kept.
+const MAX_DRAFT_BYTES: usize = 4000;
+/// Most failed checks, and most reasons, of a draft.
+const MAX_DRAFT_FINDINGS: usize = 40;
+
+/// A draft of bounded size: a model may write anything.
+pub(super) fn new_draft(
+    text: &str,
+    candidate: u32,
+    mut reasons: Vec<String>,
+    findings: &[CheckFinding],
+) -> WrittenDraft {
+    let text = &text[..text.floor_char_boundary(MAX_DRAFT_BYTES)];
+    reasons.truncate(MAX_DRAFT_FINDINGS);
+    let failed = findings.iter().filter(|finding| finding.verdict == Verdict::Fail).take(MAX_DRAFT_FINDINGS);
+    let within = |finding: &CheckFinding| CheckFinding {
+        span: finding.span.filter(|[from, to]| text.get(*from..*to).is_some()),
+        ..finding.clone()
+    };
+    WrittenDraft { text: text.to_owned(), candidate, reasons, findings: failed.map(within).collect() }
 }
 
 /// The checks that a text fails, with the reasons.
@@ -149,5 +172,32 @@ impl From<WriteError> for ModelError {
             WriteError::Model(error) => error,
             other => Self::Failed { model: "the writer".to_owned(), reason: other.to_string() },
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayword_core::CheckKind;
+
+    #[test]
+    fn a_draft_keeps_what_failed_and_its_size_is_bounded() {
+        let finding = |verdict, span| CheckFinding { check: CheckKind::Landmarks, verdict, reason: "why".into(), span };
+        let findings = [
+            finding(Verdict::Pass, None),
+            finding(Verdict::Fail, Some([0, 3])),
+            finding(Verdict::Fail, Some([MAX_DRAFT_BYTES, MAX_DRAFT_BYTES + 4])),
+            finding(Verdict::Unverified, None),
+        ];
+        // Two bytes a letter, and one before them, so that the limit lies within a letter.
+        let long = format!("x{}", "\u{e9}".repeat(MAX_DRAFT_BYTES));
+        let draft = new_draft(&long, 2, failed_reasons(&findings), &findings);
+        assert_eq!((draft.text.len(), draft.candidate), (MAX_DRAFT_BYTES - 1, 2));
+        assert_eq!(draft.reasons, ["landmarks: why", "landmarks: why"]);
+        // A span that lies in the part that was cut off is left out.
+        assert_eq!(draft.findings.iter().map(|finding| finding.span).collect::<Vec<_>>(), [Some([0, 3]), None]);
+        let short = new_draft("Walk past the lamp.", 0, vec!["why".into(); 99], &vec![findings[1].clone(); 99]);
+        assert_eq!((short.reasons.len(), short.findings.len()), (MAX_DRAFT_FINDINGS, MAX_DRAFT_FINDINGS));
+        assert_eq!(short.findings[0].span, Some([0, 3]));
     }
 }

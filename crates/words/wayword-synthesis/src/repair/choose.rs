@@ -1,6 +1,6 @@
 //! Chooses among several candidate texts of one walk the one by which a follower finds the way most surely.
 
-use super::{InstructionOrder, WritingOutcome, refine::write_candidate};
+use super::{InstructionOrder, WritingOutcome, attempts::new_draft, refine::write_candidate};
 use crate::{
     observe::ObservationRoles,
     writer::{InstructionWriter, RulesWriter},
@@ -32,6 +32,9 @@ pub(super) fn write_best(
                 drafts.append(&mut instruction.provenance.drafts);
                 if accepted.iter().all(|other| other.instruction.text != instruction.text) {
                     accepted.push(TextCandidate { number, instruction });
+                } else if writer.name() != RulesWriter.name() {
+                    let reasons = vec!["another candidate has the same words".to_owned()];
+                    drafts.push(new_draft(&instruction.text, number, reasons, &[]));
                 }
             }
             WritingOutcome::Rejected { last, reason, drafts: mut earlier } => {
@@ -48,11 +51,7 @@ pub(super) fn write_best(
             if writer.name() != RulesWriter.name() {
                 let others = texts.into_iter().filter(|(other, _)| *other != number);
                 let reasons = vec!["another candidate was chosen".to_owned()];
-                drafts.extend(others.map(|(candidate, text)| WrittenDraft {
-                    text,
-                    candidate,
-                    reasons: reasons.clone(),
-                }));
+                drafts.extend(others.map(|(candidate, text)| new_draft(&text, candidate, reasons.clone(), &[])));
             }
             instruction.provenance.drafts = drafts;
             let chosen = TextSelection { among: order.candidates, passed, number, by };

@@ -64,7 +64,7 @@ fn refine_text(attempts: &mut WritingAttempts<'_>, mut best: Instruction) -> Res
         let kept = after.is_some_and(|after| after >= before + LEAST_GAIN);
         rounds.push(RefinedRound { before, after, kept });
         if kept {
-            attempts.keep_draft(&best.text, advice);
+            attempts.keep_draft(&best.text, advice, &[]);
             best = new;
         } else {
             let why = match after {
@@ -75,7 +75,7 @@ fn refine_text(attempts: &mut WritingAttempts<'_>, mut best: Instruction) -> Res
                 ),
                 None => "it fails checks that the kept text passes, or cannot be followed".to_owned(),
             };
-            attempts.keep_draft(&new.text, vec![why]);
+            attempts.keep_draft(&new.text, vec![why], &new.findings);
         }
     }
     best.provenance.refined = rounds;
