@@ -185,8 +185,8 @@ impl FitErrors<'_> {
     /// The sum of parameters weighted by `direction`, with its standard error and interval.
     fn fitted_term(&self, direction: &[f64]) -> Result<FittedTerm, NoStrength> {
         let parts = self.variance_parts(direction);
-        let quantile = quantile::student_quantile(0.5 + self.level / 2.0, parts.fewest_groups() - 1);
-        let t = quantile.filter(|_| is_level(self.level)).ok_or(NoStrength::OneSource)?;
+        let quantile = quantile::student_quantile(0.5 + self.level / 2.0, parts.fewest_groups().saturating_sub(1));
+        let t = quantile.filter(|_| is_level(self.level) && parts.is_sample()).ok_or(NoStrength::OneSource)?;
         let (value, se) = (self.fit.value_along(direction), parts.variance().sqrt());
         Ok(FittedTerm { value, se, interval: ConfidenceInterval { low: value - t * se, high: value + t * se } })
     }

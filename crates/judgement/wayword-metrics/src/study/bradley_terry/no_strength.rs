@@ -37,7 +37,7 @@ pub enum NoStrength {
     /// The likelihood has no maximum, or Newton's method did not reach it: the sides or ties explain too much of the choices.
     #[error("no strengths are most likely: the sides and ties of these few choices explain them without end")]
     Endless,
-    /// All choices are of one person about one item.
-    #[error("one person's choices about one item show nothing beyond them")]
+    /// All choices are of one person, or about one item.
+    #[error("the choices of one person, or about one item, show nothing beyond them")]
     OneSource,
 }

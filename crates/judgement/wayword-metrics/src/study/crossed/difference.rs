@@ -16,7 +16,7 @@ pub struct FigureDifference {
     pub value: f64,
     /// Its interval, where one can be made.
     pub interval: Option<ConfidenceInterval>,
-    /// Its standard error, where it is above 0.
+    /// Its standard error, where it is above 0 and both conditions have several persons and items.
     pub se: Option<f64>,
     /// How the interval was made.
     pub method: IntervalMethod,
@@ -87,15 +87,16 @@ impl ConditionPair {
             find_shared(first, second, &figures, |answer| &answer.item, |figure| figure.items),
         ];
         let is_apart = !shares_persons && !shares_items;
-        let several = [person_count, item_count].into_iter().filter(|count| *count > 1);
-        let fewest = several.min().unwrap_or(1);
+        let fewest = person_count.min(item_count);
         let squares = figures.each_ref().map(|figure| figure.se.map_or(0.0, |se| se * se));
         let independent_variance = squares[0] + squares[1];
         let variance = if is_apart { independent_variance } else { groups.variance_parts(&all, 2).variance() };
         let product = 2.0 * (squares[0] * squares[1]).sqrt();
         let correlation =
             if product > 0.0 { ((independent_variance - variance) / product).clamp(-1.0, 1.0) } else { 0.0 };
-        Self { figures, se: Some(variance.sqrt()).filter(|se| *se > 0.0), correlation, is_apart, fewest }
+        // A condition of one person or one item is no sample, also where the other condition has several.
+        let is_sample = figures.iter().all(|figure| figure.persons > 1 && figure.items > 1);
+        Self { figures, se: Some(variance.sqrt()).filter(|se| is_sample && *se > 0.0), correlation, is_apart, fewest }
     }
 
     fn value(&self) -> f64 {

@@ -1,6 +1,7 @@
 //! Shares and means of answers by persons to items, and differences between two conditions.
 //!
-//! If each person and each item occurs once, answers are independent. Otherwise the variance is clustered both ways
+//! Answers of one person, or to one item, give no interval. If each person and each item occurs once, answers are independent. Otherwise
+//! the variance is clustered both ways
 //! (`variance.rs`). Shares get their interval on the logit scale by the delta method, so that it stays within 0 and 1.
 
 mod difference;
@@ -27,7 +28,7 @@ pub enum IntervalMethod {
     Extreme,
     /// Newcombe's interval of the difference between two shares of independent answers.
     Newcombe,
-    /// There is no interval: the data do not show how precise the figure is.
+    /// There is no interval, because the data do not show how precise the figure is: one person, one item, or no spread.
     None,
 }
 
@@ -51,7 +52,7 @@ pub struct StudyFigure {
     pub value: f64,
     /// Its interval, where one can be made.
     pub interval: Option<ConfidenceInterval>,
-    /// Its standard error, where it is above 0.
+    /// Its standard error, where it is above 0 and there are several persons and items.
     pub se: Option<f64>,
     /// How the interval was made.
     pub method: IntervalMethod,
@@ -101,7 +102,9 @@ impl AnswerSample {
     /// The mean as a share, with the interval that suits the sample.
     fn share_figure(&self, level: f64) -> StudyFigure {
         let is_extreme = self.mean == 0.0 || self.mean == 1.0;
-        let (method, interval) = if self.parts.is_independent() {
+        let (method, interval) = if !self.parts.is_sample() {
+            (IntervalMethod::None, None)
+        } else if self.parts.is_independent() {
             (IntervalMethod::Wilson, wilson_interval(self.mean * self.answers as f64, self.answers as f64, level))
         } else if is_extreme {
             let fewest = self.parts.fewest_groups() as f64;
@@ -131,7 +134,7 @@ impl AnswerSample {
     }
 
     fn standard_error(&self) -> Option<f64> {
-        Some(self.parts.variance().sqrt()).filter(|se| *se > 0.0)
+        Some(self.parts.variance().sqrt()).filter(|se| *se > 0.0 && self.parts.is_sample())
     }
 
     fn to_figure(&self, method: IntervalMethod, interval: Option<ConfidenceInterval>) -> StudyFigure {

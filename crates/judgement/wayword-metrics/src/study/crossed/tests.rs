@@ -66,12 +66,24 @@ fn one_person_with_one_item_gives_no_interval() {
     assert_eq!((found.value, found.interval), (3.0, None));
 }
 
+/// The answers of one person to many items, of many persons to one item, and of one to one, show nothing of other persons or items.
 #[test]
-fn many_persons_on_one_item_are_independent() {
-    let given: Vec<(u32, u32, f64)> = (0..20).map(|n| (n, 5, f64::from(n % 4 / 3))).collect();
-    let found = answer_share(&answers(&given), 0.95).unwrap();
-    assert_eq!((found.method, found.items), (IntervalMethod::Wilson, 1));
-    assert_eq!(found.interval, wilson_interval(5.0, 20.0, 0.95));
+fn one_person_or_one_item_gives_no_interval_for_any_figure() {
+    let value = |n: u32| f64::from(n % 4 / 3);
+    let one_item: Vec<_> = (0..20).map(|n| (n, 5, value(n))).collect();
+    let one_person: Vec<_> = (0..20).map(|n| (5, n, value(n))).collect();
+    let two_items_of_one_person = vec![(5, 1, 0.0), (5, 2, 0.0)];
+    let several: Vec<_> = (0..20).map(|n| (n, n + 40, value(n + 1))).collect();
+    for given in [one_item, one_person, two_items_of_one_person] {
+        let (given, several) = (answers(&given), answers(&several));
+        for figure in [answer_share(&given, 0.95).unwrap(), answer_mean(&given, 0.95).unwrap()] {
+            assert_eq!((figure.method, figure.interval, figure.se), (IntervalMethod::None, None, None), "{figure:?}");
+        }
+        for of in [share_difference(&given, &several, 0.95), mean_difference(&several, &given, 0.95)] {
+            let of = of.unwrap();
+            assert_eq!((of.method, of.interval, of.se), (IntervalMethod::None, None, None), "{of:?}");
+        }
+    }
 }
 
 #[test]

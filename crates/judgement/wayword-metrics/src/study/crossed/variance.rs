@@ -86,17 +86,20 @@ impl VarianceParts {
         }
     }
 
-    /// Whether no two answers share a person or an item. A single person or item is not a sample: then the figure is about
-    /// that one, and answers to it are independent.
-    pub(in crate::study) fn is_independent(&self) -> bool {
-        let is_free = |groups: usize| groups == self.answers || groups == 1;
-        is_free(self.persons) && is_free(self.items) && self.persons.max(self.items) == self.answers
+    /// Whether the answers come from more than one person and are about more than one item. A single person or item is no sample: nothing
+    /// shows how another one would differ.
+    pub(in crate::study) fn is_sample(&self) -> bool {
+        self.persons > 1 && self.items > 1
     }
 
-    /// The number of persons or of items, whichever is smaller. A number of 1 is ignored, because one person or item is no sample.
+    /// Whether no two answers share a person or an item.
+    pub(in crate::study) fn is_independent(&self) -> bool {
+        self.persons == self.answers && self.items == self.answers
+    }
+
+    /// The number of persons or of items, whichever is smaller.
     pub(in crate::study) fn fewest_groups(&self) -> usize {
-        let several = [self.persons, self.items].into_iter().filter(|groups| *groups > 1);
-        several.min().unwrap_or(1)
+        self.persons.min(self.items)
     }
 }
 
@@ -133,11 +136,12 @@ mod tests {
     }
 
     #[test]
-    fn a_single_item_is_no_sample_of_items() {
-        let found = parts(&[(1, 5), (2, 5), (3, 5)], &[1.0, -1.0, 0.0]);
-        assert!(found.is_independent());
-        assert_eq!((found.item, found.fewest_groups()), (0.0, 3));
-        assert!(!parts(&[(1, 5), (2, 5), (2, 6)], &[1.0, -1.0, 0.0]).is_independent());
-        assert_eq!(parts(&[(1, 1), (1, 1)], &[1.0, -1.0]).fewest_groups(), 1);
+    fn a_single_person_or_item_is_no_sample() {
+        for places in [&[(1, 5), (2, 5), (3, 5)][..], &[(1, 5), (1, 6), (1, 7)], &[(1, 1), (1, 1)], &[(1, 1)]] {
+            assert!(!parts(places, &vec![0.5; places.len()]).is_sample(), "{places:?}");
+        }
+        let two = parts(&[(1, 5), (2, 5), (2, 6)], &[1.0, -1.0, 0.0]);
+        assert!(two.is_sample() && !two.is_independent());
+        assert_eq!(two.fewest_groups(), 2);
     }
 }
