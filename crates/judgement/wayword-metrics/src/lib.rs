@@ -33,10 +33,10 @@ pub use latex::escape_latex;
 pub use mcnemar::McNemar;
 pub use similarity::{ItemVectors, SetSimilarity, compare_sets};
 pub use study::{
-    AnswerScale, BradleyTerry, ConfidenceInterval, DetectableShareDifference, FigureDifference, FittedTerm,
-    IntervalMethod, NoStrength, PairPreference, PowerPlan, RaterAgreement, StudyAnswer, StudyFigure, SystemComparison,
-    SystemStrength, answer_mean, answer_share, bradley_terry, detectable_difference, krippendorff_alpha,
-    mean_difference, mean_share, share_difference, wilson_interval,
+    AnswerScale, BradleyTerry, ConfidenceInterval, FigureDifference, FittedTerm, IntervalMethod, NoStrength,
+    PairPreference, PlannedAnswer, PlannedTest, PowerPlan, RaterAgreement, SimulatedPower, StudyAnswer, StudyFigure,
+    SystemComparison, SystemStrength, answer_mean, answer_share, bradley_terry, krippendorff_alpha, mean_difference,
+    search_for_power, share_difference, wilson_interval,
 };
 pub use trajectory::{
     AgentTrajectory, DistanceAtlas, EpisodeDemand, EpisodeScorer, SceneDistances, SuccessOutcome, TargetGrounding,

@@ -190,9 +190,34 @@ pub struct StudyInvite {
 
 /// `wayword study plan`.
 #[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  wayword study plan STUDY
+  wayword study plan STUDY --effect 15 --base 70
+      How often it finds 15 points between two shares around 70 %, and how many participants that needs.
+  wayword study plan STUDY --person-sd 0.5 --route-sd 0.8 --routes 80
+      With your own assumptions of how much persons and routes differ, and another number of routes.")]
 pub struct StudyPlan {
     /// Folder of the study.
     pub study: PathBuf,
+    /// The difference that the study shall find, in points of per cent; in mode pair, the distance from an even split.
+    #[arg(long, value_name = "POINTS", default_value_t = 20.0)]
+    pub effect: f64,
+    /// The share around which both conditions lie, in per cent. At 50 a difference is hardest to find.
+    #[arg(long, value_name = "PER CENT", default_value_t = 50.0)]
+    pub base: f64,
+    /// How much persons differ in what a condition does to them: a standard deviation on the logit scale. [default: 0, 0.5 and 1]
+    #[arg(long, value_name = "SD")]
+    pub person_sd: Option<f64>,
+    /// How much routes differ in the same sense. [default: 0, 0.5 and 1]
+    #[arg(long, value_name = "SD")]
+    pub route_sd: Option<f64>,
+    /// Plan for another number of routes than the study has.
+    #[arg(long, value_name = "N")]
+    pub routes: Option<usize>,
+    /// Plan for another number of participants than the study needs.
+    #[arg(long, value_name = "N")]
+    pub participants: Option<usize>,
 }
 
 /// `wayword study status`.

@@ -5,8 +5,7 @@
 ///
 /// The trapezoid rule over ±9 standard deviations; for a smooth function that falls off as the normal density does, its
 /// error is far below 1e-12.
-#[must_use]
-pub fn mean_share(logit: f64, sd: f64) -> f64 {
+pub(super) fn mean_share(logit: f64, sd: f64) -> f64 {
     mean_over_normal(logit, sd, expit)
 }
 

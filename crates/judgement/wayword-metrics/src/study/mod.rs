@@ -18,8 +18,7 @@ pub use bradley_terry::{
 pub use crossed::{
     FigureDifference, IntervalMethod, StudyFigure, answer_mean, answer_share, mean_difference, share_difference,
 };
-pub use logit_normal::mean_share;
-pub use power::{DetectableShareDifference, PowerPlan, detectable_difference};
+pub use power::{PlannedAnswer, PlannedTest, PowerPlan, SimulatedPower, search_for_power};
 use serde::{Deserialize, Serialize};
 pub use wilson::wilson_interval;
 

@@ -1,227 +1,320 @@
-//! Power analysis: the smallest difference between two conditions that a planned study can detect.
+//! Power analysis: how often a planned study finds a difference, by simulated studies that are analysed as a real one is.
 
-use super::{logit_normal, mean_share, quantile};
+use super::{
+    ConfidenceInterval, StudyAnswer, answer_share,
+    logit_normal::{centre_logit, expit},
+    quantile::normal_quantile,
+    share_difference,
+};
+use rand::Rng;
 use serde::{Deserialize, Serialize};
+use wayword_core::seeded_rng;
 
-/// A planned study of two conditions.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct PowerPlan {
-    /// All persons, those of both conditions together.
-    pub persons: usize,
-    /// Items, those of both conditions together where no item is in both.
-    pub items: usize,
-    /// How many answers each person gives, over both conditions.
-    pub answers_per_person: usize,
-    /// The mean of the two conditions' shares.
+/// An answer that a planned study gets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PlannedAnswer {
+    /// The number of the person.
+    pub person: usize,
+    /// The number of the item. Two conditions share items.
+    pub item: usize,
+    /// Whether it is about the second condition, and not the first.
+    pub is_second: bool,
+}
+
+/// What a planned study tests.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PlannedTest {
+    /// Whether the shares of two conditions differ.
+    Difference,
+    /// Whether one share differs from a half. All answers are about the first condition.
+    EvenSplit,
+}
+
+/// A planned study, and what is assumed about persons and items.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PowerPlan<'a> {
+    /// The answers that it gets.
+    pub answers: &'a [PlannedAnswer],
+    /// What it tests.
+    pub test: PlannedTest,
+    /// The mean of the two conditions' shares over all persons and items.
     pub base_share: f64,
-    /// The standard deviation of persons on the logit scale.
+    /// How persons differ in what a condition does to them: the standard deviation on the logit scale, drawn anew for each condition. What a
+    /// person does to both conditions alike cancels from their difference, and is left out.
     pub person_sd: f64,
-    /// The standard deviation of items on the logit scale.
+    /// How items differ in the same sense.
     pub item_sd: f64,
-    /// Whether each person sees both conditions, with half of the answers each.
-    pub persons_see_both: bool,
-    /// Whether each item is in both conditions.
-    pub items_in_both: bool,
+    /// Confidence level of the interval that has to leave out no difference.
+    pub level: f64,
+    /// How many studies are simulated.
+    pub studies: usize,
+    /// Seed of the studies. Equal seeds draw the same persons, items and luck for every difference.
+    pub seed: u64,
 }
 
-/// The smallest difference between two shares that a plan detects.
+/// The share of simulated studies that find a difference.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct DetectableShareDifference {
-    /// The difference.
-    pub difference: f64,
-    /// Answers in each condition.
-    pub answers_per_condition: f64,
-    /// The factor by which the variance exceeds that of independent answers; below 1 where effects of persons and items cancel.
-    pub design_effect: f64,
-}
-
-/// The smallest difference that a plan detects with this power in a two-sided test at this significance.
-///
-/// For independent answers, n in each condition, it solves (Fleiss, Levin and Paik 2003, 4.14, without continuity)
-///
-/// ```text
-/// d = (z_significance √(2 m (1 - m)) + z_power √(p (1 - p) + q (1 - q))) / √n,   p, q = m ± d / 2
-/// ```
-///
-/// for two shares with the mean m. Otherwise n is divided by the design effect (Kish 1965)
-/// `1 + (a - 1) person + (b - 1) item`, where a and b are the answers of one person and to one item within a condition, and
-/// `person` and `item` the correlations of two answers of one person and to one item at that mean. If persons (or items) take part
-/// in both conditions, their effects cancel from the difference, and `a - 1` (or `b - 1`) becomes -1. `None` where no difference
-/// has that power, and for impossible plans.
-#[must_use]
-pub fn detectable_difference(plan: &PowerPlan, power: f64, significance: f64) -> Option<DetectableShareDifference> {
-    let answers_per_condition = (plan.persons * plan.answers_per_person) as f64 / 2.0;
-    let is_inside = |share: f64| share > 0.0 && share < 1.0;
-    let is_sd = |sd: f64| (0.0..=MAX_LOGIT_SD).contains(&sd);
-    let is_possible = [plan.base_share, power, significance].into_iter().all(is_inside)
-        && is_sd(plan.person_sd)
-        && is_sd(plan.item_sd)
-        && plan.items > 0
-        && answers_per_condition > 0.0;
-    let design_effect = is_possible.then(|| design_effect(plan, answers_per_condition))?;
-    let z = [quantile::normal_quantile(1.0 - significance / 2.0), quantile::normal_quantile(power)];
-    let difference = smallest_difference(plan.base_share, answers_per_condition / design_effect, z)?;
-    Some(DetectableShareDifference { difference, answers_per_condition, design_effect })
+pub struct SimulatedPower {
+    /// The share.
+    pub power: f64,
+    /// Its standard error, because the number of simulated studies is limited.
+    pub se: f64,
 }
 
 /// Largest standard deviation of logits that is accepted. Beyond it a person gives nearly always the same answer.
 const MAX_LOGIT_SD: f64 = 10.0;
+/// How often the search for a difference corrects its guess.
+const MAX_SEARCH_STEPS: usize = 6;
+/// The search ends when the power is this near to the wanted one.
+const POWER_TOLERANCE: f64 = 0.01;
 
-/// The factor by which the variance exceeds that of independent answers, for `answers` in each condition.
-fn design_effect(plan: &PowerPlan, answers: f64) -> f64 {
-    let conditions = |in_both: bool| if in_both { 1.0 } else { 2.0 };
-    let per_person = answers * conditions(plan.persons_see_both) / plan.persons as f64;
-    let per_item = answers * conditions(plan.items_in_both) / plan.items as f64;
-    let [person, item] = answer_correlations(plan);
-    let effect = |in_both: bool, of_one: f64| if in_both { -1.0 } else { (of_one - 1.0).max(0.0) };
-    1.0 + effect(plan.persons_see_both, per_person) * person + effect(plan.items_in_both, per_item) * item
+impl ConfidenceInterval {
+    /// Whether a value lies outside the interval.
+    #[must_use]
+    pub fn leaves_out(&self, value: f64) -> bool {
+        self.low > value || self.high < value
+    }
 }
 
-/// The correlations of two answers of one person, and of two answers to one item.
-///
-/// Two answers of one person share the person's part of the logit and differ in the rest. Their covariance is the variance, over
-/// the shared part, of the expected share given that part. Divided by p (1 - p) it is their correlation.
-fn answer_correlations(plan: &PowerPlan) -> [f64; 2] {
-    let total_sd = plan.person_sd.hypot(plan.item_sd);
-    let centre = logit_normal::centre_logit(plan.base_share, total_sd);
-    let total = plan.base_share * (1.0 - plan.base_share);
-    let correlation = |shared_sd: f64, rest_sd: f64| {
-        let square = logit_normal::mean_over_normal(centre, shared_sd, |at| mean_share(at, rest_sd).powi(2));
-        (square - plan.base_share * plan.base_share) / total
-    };
-    [correlation(plan.person_sd, plan.item_sd), correlation(plan.item_sd, plan.person_sd)]
+impl PowerPlan<'_> {
+    /// How often the planned study finds a difference of this size: between two shares, or between one share and a half. `None` for
+    /// impossible plans, and where a share would lie outside 0 to 1.
+    #[must_use]
+    pub fn simulate_power(&self, difference: f64) -> Option<SimulatedPower> {
+        let shares = self.true_shares(difference)?;
+        let found = StudySimulation::new(self, shares).count_found();
+        let power = found as f64 / self.studies as f64;
+        Some(SimulatedPower { power, se: (power * (1.0 - power) / self.studies as f64).sqrt() })
+    }
+
+    /// The smallest difference that the planned study finds with this power. `None` for impossible plans, and where no difference has that
+    /// power.
+    #[must_use]
+    pub fn detectable_difference(&self, power: f64) -> Option<f64> {
+        let largest = LARGEST_SHARE_OF_RANGE * self.largest_difference()?;
+        let first_guess = 3.0 / (self.answers.len() as f64).sqrt();
+        search_for_power(power, largest, first_guess.min(largest), 1.0, |difference| self.simulate_power(difference))
+    }
+
+    /// The shares of both conditions for a difference.
+    fn true_shares(&self, difference: f64) -> Option<[f64; 2]> {
+        let is_possible = self.largest_difference().is_some_and(|largest| difference >= 0.0 && difference < largest);
+        let (above, below) = match self.test {
+            PlannedTest::Difference => (difference / 2.0, difference / 2.0),
+            PlannedTest::EvenSplit => (difference, 0.0),
+        };
+        is_possible.then_some([self.base_share + above, self.base_share - below])
+    }
+
+    /// The difference at which a share would be 0 or 1; `None` for impossible plans.
+    fn largest_difference(&self) -> Option<f64> {
+        let is_inside = |share: f64| share > 0.0 && share < 1.0;
+        let is_sd = |sd: f64| (0.0..=MAX_LOGIT_SD).contains(&sd);
+        let is_possible = is_inside(self.base_share)
+            && is_inside(self.level)
+            && is_sd(self.person_sd)
+            && is_sd(self.item_sd)
+            && self.studies > 0
+            && !self.answers.is_empty();
+        let room = self.base_share.min(1.0 - self.base_share);
+        is_possible.then_some(match self.test {
+            PlannedTest::Difference => 2.0 * room,
+            PlannedTest::EvenSplit => 1.0 - self.base_share,
+        })
+    }
 }
 
-/// Solves the formula for the difference, by bisection.
-fn smallest_difference(mean: f64, answers: f64, [significance, power]: [f64; 2]) -> Option<f64> {
-    let variance = |share: f64| (share * (1.0 - share)).max(0.0);
-    let is_detected = |difference: f64| {
-        let apart = variance(mean + difference / 2.0) + variance(mean - difference / 2.0);
-        let needed = significance * (2.0 * variance(mean)).sqrt() + power * apart.sqrt();
-        difference * answers.sqrt() >= needed
-    };
-    // With a larger difference, one of the two shares would be outside 0 to 1.
-    let largest = 2.0 * mean.min(1.0 - mean);
-    let (mut low, mut high) = (0.0, largest);
-    for _ in 0..100 {
-        let middle = f64::midpoint(low, high);
-        if is_detected(middle) {
-            high = middle;
+/// The largest difference that is tried, as a share of that at which a share would be 0 or 1.
+const LARGEST_SHARE_OF_RANGE: f64 = 0.98;
+
+/// Searches the value at which the power is the wanted one, from a first guess and up to a largest value. The distance from chance to the
+/// power, in standard errors, is taken to grow with the value to the power of `growth`: 1 for a difference, 0.5 for a number of persons.
+/// `None` if the largest value has less power.
+pub fn search_for_power(
+    wanted: f64,
+    largest: f64,
+    first_guess: f64,
+    growth: f64,
+    power_at: impl Fn(f64) -> Option<SimulatedPower>,
+) -> Option<f64> {
+    // A difference has to be 1.96 standard errors away to be found, and as much further as the power demands.
+    let threshold = normal_quantile(0.975);
+    let wanted_distance = threshold + normal_quantile(wanted);
+    let (mut low, mut high) = (0.0, None);
+    let mut guess = first_guess;
+    for _ in 0..MAX_SEARCH_STEPS {
+        let power = power_at(guess)?.power;
+        if (power - wanted).abs() <= POWER_TOLERANCE {
+            return Some(guess);
+        }
+        if power >= wanted {
+            high = Some(guess);
+        } else if guess >= largest {
+            return None;
         } else {
-            low = middle;
+            low = guess;
+        }
+        let distance = (threshold + normal_quantile(power.clamp(0.02, 0.998))).max(0.2);
+        let next = (guess * (wanted_distance / distance).powf(1.0 / growth)).min(largest);
+        // A guess outside what is known already is replaced by the middle.
+        let (bottom, top) = (low, high.unwrap_or(f64::INFINITY));
+        guess = if next > bottom && next < top { next } else { f64::midpoint(bottom, top.min(largest)) };
+    }
+    high.or(Some(guess))
+}
+
+/// Draws studies of one plan.
+struct StudySimulation<'a> {
+    plan: &'a PowerPlan<'a>,
+    /// The logits of both conditions, of a person and an item like the mean ones.
+    centres: [f64; 2],
+    persons: usize,
+    items: usize,
+}
+
+impl<'a> StudySimulation<'a> {
+    fn new(plan: &'a PowerPlan<'a>, shares: [f64; 2]) -> Self {
+        let sd = plan.person_sd.hypot(plan.item_sd);
+        let count =
+            |number: fn(&PlannedAnswer) -> usize| plan.answers.iter().map(number).max().map_or(0, |last| last + 1);
+        Self {
+            plan,
+            centres: shares.map(|share| centre_logit(share, sd)),
+            persons: count(|answer| answer.person),
+            items: count(|answer| answer.item),
         }
     }
-    is_detected(largest).then_some(high)
+
+    /// How many studies find the difference.
+    fn count_found(&self) -> usize {
+        let of_condition = |is_second: bool| -> Vec<StudyAnswer<usize, usize>> {
+            let own = self.plan.answers.iter().filter(|answer| answer.is_second == is_second);
+            own.map(|answer| StudyAnswer { person: answer.person, item: answer.item, value: 0.0 }).collect()
+        };
+        let mut answers = [of_condition(false), of_condition(true)];
+        let mut rng = seeded_rng(self.plan.seed, &["power"]);
+        (0..self.plan.studies)
+            .filter(|_| {
+                self.draw_answers(&mut answers, &mut rng);
+                self.is_found(&answers)
+            })
+            .count()
+    }
+
+    /// Draws the persons, the items and the answers of one study.
+    fn draw_answers(&self, answers: &mut [Vec<StudyAnswer<usize, usize>>; 2], rng: &mut impl Rng) {
+        for (own, centre) in answers.iter_mut().zip(self.centres) {
+            let mut normals = |count: usize, sd: f64| -> Vec<f64> {
+                (0..count).map(|_| sd * normal_quantile(rng.random_range(1e-12..1.0))).collect()
+            };
+            let (persons, items) = (normals(self.persons, self.plan.person_sd), normals(self.items, self.plan.item_sd));
+            for answer in own {
+                let share = expit(centre + persons[answer.person] + items[answer.item]);
+                answer.value = f64::from(u8::from(rng.random::<f64>() < share));
+            }
+        }
+    }
+
+    /// Whether the interval of a study leaves out no difference.
+    fn is_found(&self, [first, second]: &[Vec<StudyAnswer<usize, usize>>; 2]) -> bool {
+        let (interval, none) = match self.plan.test {
+            PlannedTest::Difference => {
+                (share_difference(first, second, self.plan.level).and_then(|found| found.interval), 0.0)
+            }
+            PlannedTest::EvenSplit => (answer_share(first, self.plan.level).and_then(|found| found.interval), 0.5),
+        };
+        interval.is_some_and(|interval| interval.leaves_out(none))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::Rng;
 
-    const PLAN: PowerPlan = PowerPlan {
-        persons: 60,
-        items: 60,
-        answers_per_person: 1,
-        base_share: 0.5,
-        person_sd: 0.0,
-        item_sd: 0.0,
-        persons_see_both: false,
-        items_in_both: false,
-    };
+    /// Each of `persons` answers `each` items of `items`, in turns about the one condition and the other.
+    fn planned(persons: usize, each: usize, items: usize) -> Vec<PlannedAnswer> {
+        let answer = |n: usize| PlannedAnswer {
+            person: n / each,
+            item: (n / 2 + n / items / 2) % items,
+            is_second: if each == 1 { (n / each) % 2 == 1 } else { n % 2 == 1 },
+        };
+        (0..persons * each).map(answer).collect()
+    }
 
-    fn found(plan: PowerPlan) -> DetectableShareDifference {
-        detectable_difference(&plan, 0.8, 0.05).unwrap()
+    fn plan(answers: &[PlannedAnswer]) -> PowerPlan<'_> {
+        PowerPlan {
+            answers,
+            test: PlannedTest::Difference,
+            base_share: 0.5,
+            person_sd: 0.0,
+            item_sd: 0.0,
+            level: 0.95,
+            studies: 1000,
+            seed: 1,
+        }
+    }
+
+    /// 30 persons with one item each, in each of two groups, find 35 points by Fleiss's formula; the interval is a little stricter.
+    #[test]
+    fn thirty_persons_in_each_group_find_about_35_points() {
+        let answers: Vec<PlannedAnswer> =
+            (0..60).map(|n| PlannedAnswer { person: n, item: n, is_second: n % 2 == 1 }).collect();
+        let found = plan(&answers).detectable_difference(0.8).unwrap();
+        assert!((found - 0.36).abs() < 0.025, "{found}");
     }
 
     #[test]
-    fn thirty_persons_in_each_group_detect_about_35_points() {
-        let found = found(PLAN);
-        assert_eq!((found.answers_per_condition, found.design_effect), (30.0, 1.0));
-        assert_eq!(format!("{:.3}", found.difference), "0.355");
-    }
-
-    /// The size that detects 0.6 against 0.7 by Fleiss's formula is 356 (Fleiss, Levin and Paik 2003).
-    #[test]
-    fn a_known_size_detects_its_difference() {
-        let found = found(PowerPlan { persons: 2 * 356, items: 2 * 356, base_share: 0.65, ..PLAN });
-        assert!((found.difference - 0.1).abs() < 1e-4, "{found:?}");
+    fn without_a_difference_one_study_in_twenty_or_fewer_finds_one() {
+        let answers = planned(30, 10, 60);
+        for sd in [0.0, 0.5, 1.0] {
+            let plan = PowerPlan { person_sd: sd, item_sd: sd, ..plan(&answers) };
+            let found = plan.simulate_power(0.0).unwrap();
+            assert!(found.power < 0.05 + 3.0 * found.se, "{sd}: {found:?}");
+        }
     }
 
     #[test]
-    fn one_person_each_with_one_item_each_is_independent_whatever_they_are_like() {
-        let found = found(PowerPlan { person_sd: 1.5, item_sd: 1.0, ..PLAN });
-        assert_eq!(found.design_effect, 1.0);
-    }
-
-    #[test]
-    fn clusters_cost_and_conditions_within_persons_gain() {
-        let several = PowerPlan { persons: 30, answers_per_person: 10, person_sd: 1.0, item_sd: 1.0, ..PLAN };
-        let within = PowerPlan { persons_see_both: true, items_in_both: true, ..several };
-        let free = PowerPlan { person_sd: 0.0, item_sd: 0.0, ..several };
-        let [several, within, free] = [several, within, free].map(found);
-        assert!(several.design_effect > 2.0, "{several:?}");
-        assert!(within.design_effect < 1.0, "{within:?}");
-        assert!(within.difference < free.difference && free.difference < several.difference);
-    }
-
-    /// The variance of a difference between equal shares, over simulated studies: the plan's persons in order, items in turns.
-    fn simulated_variance(plan: PowerPlan) -> f64 {
-        const STUDIES: u32 = 2000;
-        let mut rng = wayword_core::seeded_rng(1, &["power"]);
-        let centre = logit_normal::centre_logit(plan.base_share, plan.person_sd.hypot(plan.item_sd));
-        let one = |_| {
-            let mut normals = |count, sd: f64| -> Vec<f64> {
-                (0..count).map(|_| sd * quantile::normal_quantile(rng.random_range(1e-12..1.0))).collect()
+    fn what_differs_more_needs_a_larger_difference_and_more_persons_a_smaller_one() {
+        let (few, many) = (planned(24, 10, 60), planned(96, 10, 60));
+        let mut before = 0.0;
+        for sd in [0.0, 0.5, 1.0] {
+            let found = |answers: &[PlannedAnswer]| {
+                let plan = PowerPlan { person_sd: sd, item_sd: sd, ..plan(answers) };
+                plan.detectable_difference(0.8).unwrap()
             };
-            let (persons, items) = (normals(plan.persons, plan.person_sd), normals(plan.items, plan.item_sd));
-            let mut ones = [0.0; 2];
-            for n in 0..plan.persons * plan.answers_per_person {
-                let (person, at) = (n / plan.answers_per_person, n % plan.answers_per_person);
-                let second = usize::from(if plan.persons_see_both { at % 2 == 1 } else { person % 2 == 1 });
-                let half = plan.items / 2;
-                let before = if plan.persons_see_both { n / 2 } else { person / 2 * plan.answers_per_person + at };
-                let turn = 7 * before;
-                let item = if plan.items_in_both { turn % plan.items } else { turn % half + second * half };
-                let share = logit_normal::expit(centre + persons[person] + items[item]);
-                ones[second] += f64::from(u8::from(rng.random::<f64>() < share));
-            }
-            let answers = (plan.persons * plan.answers_per_person) as f64 / 2.0;
-            ((ones[0] - ones[1]) / answers).powi(2)
-        };
-        (0..STUDIES).map(one).sum::<f64>() / f64::from(STUDIES)
-    }
-
-    #[test]
-    fn the_design_effect_is_that_of_simulated_studies() {
-        let plan = PowerPlan {
-            persons: 30,
-            items: 60,
-            answers_per_person: 10,
-            person_sd: 1.0,
-            item_sd: 1.0,
-            base_share: 0.7,
-            ..PLAN
-        };
-        for (persons_see_both, items_in_both) in [(false, false), (false, true), (true, false)] {
-            let plan = PowerPlan { persons_see_both, items_in_both, ..plan };
-            let DetectableShareDifference { design_effect, answers_per_condition, .. } = found(plan);
-            let independent = 2.0 * plan.base_share * (1.0 - plan.base_share) / answers_per_condition;
-            let simulated = simulated_variance(plan) / independent;
-            assert!((simulated / design_effect - 1.0).abs() < 0.12, "{plan:?}: {simulated} for {design_effect}");
+            let (few, many) = (found(&few), found(&many));
+            assert!(many < few && few > before, "{sd}: {few} {many}, before {before}");
+            before = few;
         }
     }
 
     #[test]
-    fn detectable_is_none_for_impossible_plans() {
-        for plan in [
-            PowerPlan { persons: 0, ..PLAN },
-            PowerPlan { items: 0, ..PLAN },
-            PowerPlan { base_share: 1.0, ..PLAN },
-            PowerPlan { person_sd: f64::NAN, ..PLAN },
-            PowerPlan { persons: 2, ..PLAN },
+    fn the_detectable_difference_has_the_wanted_power() {
+        let answers = planned(40, 6, 30);
+        for test in [PlannedTest::Difference, PlannedTest::EvenSplit] {
+            let plan = PowerPlan { person_sd: 0.5, item_sd: 0.5, test, ..plan(&answers) };
+            let difference = plan.detectable_difference(0.8).unwrap();
+            // Other studies than those that the search saw.
+            let other = PowerPlan { seed: 2, ..plan }.simulate_power(difference).unwrap();
+            assert!((other.power - 0.8).abs() < 0.05, "{test:?} {difference}: {other:?}");
+        }
+    }
+
+    #[test]
+    fn impossible_plans_have_no_power() {
+        let answers = planned(4, 1, 4);
+        let good = plan(&answers);
+        for bad in [
+            PowerPlan { answers: &[], ..good },
+            PowerPlan { base_share: 1.0, ..good },
+            PowerPlan { person_sd: f64::NAN, ..good },
+            PowerPlan { studies: 0, ..good },
         ] {
-            assert_eq!(detectable_difference(&plan, 0.8, 0.05), None);
+            assert_eq!((bad.simulate_power(0.1), bad.detectable_difference(0.8)), (None, None));
         }
+        assert_eq!(good.simulate_power(1.0), None);
+        let two = planned(2, 1, 2);
+        assert_eq!(plan(&two).detectable_difference(0.8), None, "one answer each shows nothing");
     }
 }

@@ -1,16 +1,32 @@
-//! Predicts what a planned study needs (answers, participants, minutes) and how small a difference it can detect.
+//! Predicts what a planned study needs (answers, participants, minutes), how often it finds a difference, and how many participants a
+//! difference needs. `outlook_text.rs` prints it.
 
 use super::{
-    escape,
-    number_format::{count_with_noun, format_number},
-    sheets::kind_name,
+    CONFIDENCE_LEVEL,
+    planned_answers::{PlannedItem, count_answers, count_routes, full_items, items_of_study, plan_answers},
 };
-use crate::{ConditionKind, StudyDesign, StudyItem, StudySettings, StudyTask};
+use crate::{ConditionKind, StudyDesign, StudyError, StudyItem, StudySettings, StudyTask};
 use serde::Serialize;
-use std::{collections::BTreeSet, fmt};
-use wayword_metrics::{DetectableShareDifference, detectable_difference};
+use wayword_metrics::{PlannedAnswer, PlannedTest, PowerPlan, SimulatedPower, search_for_power};
 
-/// The needs of a planned study, and the smallest differences that it detects. `study plan` prints this.
+/// What a researcher asks of the plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanQuestion {
+    /// The difference that the study shall find, as a share: 0.2 is 20 points.
+    pub effect: f64,
+    /// The mean of the shares of both conditions.
+    pub base_share: f64,
+    /// How persons differ in what a condition does to them: the standard deviation on the logit scale. `None` tries three.
+    pub person_sd: Option<f64>,
+    /// How routes differ in the same sense. `None` tries three.
+    pub route_sd: Option<f64>,
+    /// Another number of routes than the study has, each with a text of every condition.
+    pub routes: Option<usize>,
+    /// Another number of participants than the study needs.
+    pub participants: Option<usize>,
+}
+
+/// The needs of a planned study, and what it finds. `study plan` prints this.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StudyOutlook {
     /// The task of the participants.
@@ -22,7 +38,7 @@ pub struct StudyOutlook {
     /// The routes of these items.
     pub routes: usize,
     /// Planned answers of each item.
-    pub per_item: usize,
+    pub per_item: f64,
     /// All answers.
     pub answers: usize,
     /// How many items a person gets.
@@ -31,14 +47,18 @@ pub struct StudyOutlook {
     pub participants: usize,
     /// How long one participant needs, minutes.
     pub minutes: u32,
-    /// The statistical power for which the detectable differences are computed.
+    /// The difference that the study shall find, as a share; where texts are compared, the distance from an even split.
+    pub effect: f64,
+    /// The statistical power for which differences and participants are searched.
     pub power: f64,
-    /// The significance level of the two-sided test for which the detectable differences are computed.
-    pub significance: f64,
+    /// The confidence level of the intervals of `results`, which have to leave out no difference.
+    pub level: f64,
     /// The share around which the two conditions are assumed to lie.
     pub base_share: f64,
-    /// The smallest detectable differences, each under another assumption of how much persons and routes differ.
-    pub detectable: Vec<DetectableDifference>,
+    /// How many studies were simulated for each figure.
+    pub simulated_studies: usize,
+    /// What the study finds, each time under another assumption of how much persons and routes differ. Empty for a study of one condition.
+    pub assumptions: Vec<PlannedPower>,
 }
 
 /// How many items a condition has.
@@ -52,179 +72,175 @@ pub struct PlannedCondition {
     pub items: usize,
 }
 
-/// The smallest difference that a study detects, under one assumption of how much persons and routes differ.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DetectableDifference {
-    /// How much persons and routes differ: `none`, `middle` or `large`.
-    pub effects: &'static str,
-    /// The standard deviation of persons, and of routes, on the logit scale.
-    pub sd: f64,
-    /// The difference between the shares of two conditions; where texts are compared, the distance from an even split. `None` if no
-    /// difference is detected with that power.
+/// What a planned study finds, under one assumption of how much persons and routes differ.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PlannedPower {
+    /// The standard deviation of persons on the logit scale.
+    pub person_sd: f64,
+    /// The standard deviation of routes on the logit scale.
+    pub route_sd: f64,
+    /// How often the planned study finds the asked difference. `None` where the difference is too large for the shares.
+    pub power: Option<SimulatedPower>,
+    /// The smallest difference that it finds with the wanted power; `None` if there is none.
     pub difference: Option<f64>,
-    /// Answers in each of two conditions; where texts are compared, comparisons of two conditions.
-    pub answers: Option<f64>,
-    /// The factor by which the variance exceeds that of independent answers.
-    pub design_effect: Option<f64>,
+    /// How many participants the asked difference needs for that power, on the same routes; `None` if sixteen times as many are not enough.
+    pub participants: Option<usize>,
 }
 
-/// Three assumptions of how much persons and routes differ: a name, and the standard deviation on the logit scale.
-const LOGIT_SPREADS: [(&str, f64); 3] = [("none", 0.0), ("middle", 0.75), ("large", 1.5)];
+/// Three assumptions of how much persons and routes differ: alike, differ, differ much.
+pub(super) const LOGIT_SPREADS: [f64; 3] = [0.0, 0.5, 1.0];
 /// The share of studies that find a difference of the detectable size.
 const TEST_POWER: f64 = 0.8;
-/// The significance level of the two-sided test.
-const TEST_SIGNIFICANCE: f64 = 0.05;
-/// The assumed share. Around a half, a difference is hardest to detect.
-const BASE_SHARE: f64 = 0.5;
+/// Most studies that are simulated for one figure.
+const MAX_SIMULATED_STUDIES: usize = 600;
+/// Fewest studies that are simulated for one figure.
+const MIN_SIMULATED_STUDIES: usize = 100;
+/// How many answers are simulated for one figure, so that a plan takes seconds.
+const SIMULATED_ANSWERS: usize = 200_000;
+/// How many times the planned participants are tried at most.
+const MAX_PARTICIPANT_FACTOR: usize = 16;
+/// Largest standard deviation on the logit scale that may be asked for.
+const MAX_ASKED_SD: f64 = 5.0;
+/// Most routes and most participants that may be asked for.
+const MAX_ASKED_COUNT: usize = 10_000;
+
+impl PlanQuestion {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// The first that makes no sense, by the name of its flag.
+    pub fn check(&self) -> Result<(), StudyError> {
+        let refuse = |flag: &str, hint: &str| Err(StudyError::refused_request(format!("{flag}: not possible"), hint));
+        if !(self.base_share > 0.0 && self.base_share < 1.0) {
+            return refuse("--base", "give per cent above 0 and below 100");
+        }
+        if !(self.effect > 0.0 && self.effect < 2.0 * self.base_share.min(1.0 - self.base_share)) {
+            return refuse("--effect", "give points above 0 by which both shares stay within 0 and 100 %");
+        }
+        for (flag, sd) in [("--person-sd", self.person_sd), ("--route-sd", self.route_sd)] {
+            if sd.is_some_and(|sd| !(0.0..=MAX_ASKED_SD).contains(&sd)) {
+                return refuse(flag, "give a standard deviation on the logit scale, 0 to 5");
+            }
+        }
+        for (flag, count) in [("--routes", self.routes), ("--participants", self.participants)] {
+            if count.is_some_and(|count| count == 0 || count > MAX_ASKED_COUNT) {
+                return refuse(flag, "give 1 to 10000");
+            }
+        }
+        Ok(())
+    }
+
+    /// The assumed standard deviations of persons and routes.
+    fn spreads(&self) -> Vec<[f64; 2]> {
+        match (self.person_sd, self.route_sd) {
+            (None, None) => LOGIT_SPREADS.iter().map(|sd| [*sd, *sd]).collect(),
+            (Some(person), Some(route)) => vec![[person, route]],
+            (Some(person), None) => LOGIT_SPREADS.iter().map(|sd| [person, *sd]).collect(),
+            (None, Some(route)) => LOGIT_SPREADS.iter().map(|sd| [*sd, route]).collect(),
+        }
+    }
+}
+
+impl Default for PlanQuestion {
+    /// 20 points around a half, where a difference is hardest to find.
+    fn default() -> Self {
+        Self { effect: 0.2, base_share: 0.5, person_sd: None, route_sd: None, routes: None, participants: None }
+    }
+}
+
+/// How many studies of so many answers are simulated.
+fn count_studies(answers: usize) -> usize {
+    (SIMULATED_ANSWERS / answers.max(1)).clamp(MIN_SIMULATED_STUDIES, MAX_SIMULATED_STUDIES)
+}
 
 impl StudyOutlook {
     /// Computes the outlook from the plan and the items.
     #[must_use]
-    pub fn new(plan: &StudyDesign, settings: &StudySettings, items: &[StudyItem]) -> Self {
-        let items: Vec<&StudyItem> = items.iter().filter(|item| !item.is_practice).collect();
-        let has = |item: &StudyItem, name: &str| item.texts.iter().any(|text| text.condition == name);
-        let conditions = plan.conditions.iter().map(|condition| PlannedCondition {
+    pub fn new(plan: &StudyDesign, settings: &StudySettings, items: &[StudyItem], question: &PlanQuestion) -> Self {
+        let names: Vec<&str> = plan.conditions.iter().map(|condition| condition.name.as_str()).collect();
+        let planned_items = match question.routes {
+            Some(routes) => full_items(routes, names.len(), plan.mode),
+            None => items_of_study(items, &names),
+        };
+        let conditions = plan.conditions.iter().enumerate().map(|(number, condition)| PlannedCondition {
             condition: condition.name.clone(),
             kind: condition.kind,
-            items: items.iter().filter(|item| has(item, &condition.name)).count(),
+            items: planned_items.iter().filter(|item| item.is_about(number)).count(),
         });
-        let per_item = plan.per_item as usize;
-        let per_participant = (plan.per_participant as usize).min(items.len());
-        let answers = items.len() * per_item;
+        let (items, routes) = (planned_items.len(), count_routes(&planned_items));
+        let (per_item, per_participant) = (plan.per_item as usize, (plan.per_participant as usize).min(routes));
+        let wanted = items * per_item;
         // A participant gets each item at most once, so there must be as many participants as answers of one item.
-        let participants = answers.div_ceil(per_participant.max(1)).max(if items.is_empty() { 0 } else { per_item });
+        let needed = wanted.div_ceil(per_participant.max(1)).max(if items == 0 { 0 } else { per_item });
+        let participants = question.participants.unwrap_or(needed);
+        let possible = count_answers(&planned_items, participants, per_participant);
+        let answers = if question.participants.is_some() { possible } else { wanted.min(possible) };
+        let simulated_studies = count_studies(answers);
         let mut outlook = Self {
             mode: plan.mode,
             conditions: conditions.collect(),
-            items: items.len(),
-            routes: items.iter().map(|item| item.route).collect::<BTreeSet<_>>().len(),
-            per_item,
+            items,
+            routes,
+            per_item: answers as f64 / items.max(1) as f64,
             answers,
             per_participant,
             participants,
             minutes: settings.minutes,
+            effect: question.effect,
             power: TEST_POWER,
-            significance: TEST_SIGNIFICANCE,
-            base_share: BASE_SHARE,
-            detectable: Vec::new(),
+            level: CONFIDENCE_LEVEL,
+            base_share: question.base_share,
+            simulated_studies,
+            assumptions: Vec::new(),
         };
-        outlook.detectable =
-            LOGIT_SPREADS.iter().map(|(effects, sd)| outlook.detectable_difference(effects, *sd, &items)).collect();
+        if names.len() > 1 && answers > 0 {
+            let seed = plan.seed;
+            let planned = plan_answers(&planned_items, participants, answers, seed);
+            let power = |[person_sd, route_sd]: [f64; 2]| {
+                outlook.planned_power(&planned_items, &planned, person_sd, route_sd, seed)
+            };
+            outlook.assumptions = question.spreads().into_iter().map(power).collect();
+        }
         outlook
     }
 
-    fn detectable_difference(&self, effects: &'static str, sd: f64, items: &[&StudyItem]) -> DetectableDifference {
-        let plan =
-            if self.mode == StudyTask::Pair { self.comparison_plan(sd) } else { self.two_condition_plan(sd, items) };
-        let found: Option<DetectableShareDifference> =
-            plan.and_then(|plan| detectable_difference(&plan, TEST_POWER, TEST_SIGNIFICANCE));
-        // One share against a half has half the variance of a difference between two.
-        let share_factor = if self.mode == StudyTask::Pair { std::f64::consts::FRAC_1_SQRT_2 } else { 1.0 };
-        DetectableDifference {
-            effects,
-            sd,
-            difference: found.map(|found| share_factor * found.difference),
-            answers: found.map(|found| found.answers_per_condition),
-            design_effect: found.map(|found| found.design_effect),
-        }
-    }
-
-    /// The plan of the power calculation for the first two conditions, with their share of the answers.
-    fn two_condition_plan(&self, sd: f64, items: &[&StudyItem]) -> Option<wayword_metrics::PowerPlan> {
-        let [first, second] = self.conditions.get(..2)? else { return None };
-        let routes = |name: &str| -> BTreeSet<u32> {
-            let has_condition = |item: &&&StudyItem| item.texts.iter().any(|text| text.condition == name);
-            items.iter().filter(has_condition).map(|item| item.route).collect()
+    /// What the study finds under one assumption.
+    fn planned_power(
+        &self,
+        items: &[PlannedItem],
+        planned: &[PlannedAnswer],
+        person_sd: f64,
+        route_sd: f64,
+        seed: u64,
+    ) -> PlannedPower {
+        let test = if self.mode == StudyTask::Pair { PlannedTest::EvenSplit } else { PlannedTest::Difference };
+        let base_share = if test == PlannedTest::EvenSplit { 0.5 } else { self.base_share };
+        let studies = self.simulated_studies;
+        let plan = PowerPlan {
+            answers: planned,
+            test,
+            base_share,
+            person_sd,
+            item_sd: route_sd,
+            level: self.level,
+            studies,
+            seed,
         };
-        let (first, second) = (routes(&first.condition), routes(&second.condition));
-        let shared = first.intersection(&second).count();
-        let all = first.union(&second).count();
-        // A person's answers to texts of these two conditions.
-        let answers_each = 2.0 * self.per_participant as f64 / self.conditions.len() as f64;
-        Some(wayword_metrics::PowerPlan {
-            persons: (self.participants as f64 * answers_each.min(1.0)).round() as usize,
-            items: all,
-            answers_per_person: (answers_each.round() as usize).max(1),
-            base_share: BASE_SHARE,
-            person_sd: sd,
-            item_sd: sd,
-            persons_see_both: answers_each >= 2.0,
-            items_in_both: 2 * shared > all,
-        })
-    }
-
-    /// The plan of the power calculation for comparisons of two conditions. Its result is one share. The calculation expects two groups,
-    /// so it gets the persons and the routes twice.
-    fn comparison_plan(&self, sd: f64) -> Option<wayword_metrics::PowerPlan> {
-        let conditions = self.conditions.len();
-        let pairs = (conditions * conditions.saturating_sub(1) / 2).max(1);
-        // A person's comparisons of these two conditions.
-        let answers_each = self.per_participant as f64 / pairs as f64;
-        (conditions > 1).then(|| wayword_metrics::PowerPlan {
-            persons: 2 * (self.participants as f64 * answers_each.min(1.0)).round() as usize,
-            items: 2 * self.routes,
-            answers_per_person: (answers_each.round() as usize).max(1),
-            base_share: BASE_SHARE,
-            person_sd: sd,
-            item_sd: sd,
-            persons_see_both: false,
-            items_in_both: false,
-        })
-    }
-}
-
-impl fmt::Display for StudyOutlook {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "mode          {}", self.mode.name())?;
-        writeln!(f, "items         {} on {} routes", self.items, self.routes)?;
-        for planned in &self.conditions {
-            let kind = if planned.kind == ConditionKind::Run {
-                String::new()
-            } else {
-                format!(" ({})", kind_name(planned.kind))
-            };
-            writeln!(f, "  {:<11} {}{kind}", planned.items, escape::to_table_name(&planned.condition))?;
-        }
-        writeln!(f, "answers       {}: {} of each item", self.answers, self.per_item)?;
-        writeln!(
-            f,
-            "participants  {}, if all finish: {} each",
-            self.participants,
-            count_with_noun(self.per_participant, "item", "items")
-        )?;
-        writeln!(f, "minutes each  {}", self.minutes)?;
-        let what = match self.mode {
-            StudyTask::Pair => "share of two compared conditions, in points from an even split",
-            StudyTask::Follow | StudyTask::Rate => {
-                "difference between the shares of two conditions near 50 %, in points"
-            }
+        let power_of = |participants: f64| {
+            let participants = participants.round().max(2.0) as usize;
+            let answers = count_answers(items, participants, self.per_participant);
+            let studies = count_studies(answers).min(studies);
+            let answers = plan_answers(items, participants, answers, seed);
+            PowerPlan { answers: &answers, studies, ..plan }.simulate_power(self.effect)
         };
-        writeln!(f, "\nThe smallest {what},\nthat 4 of 5 such studies find (two-sided test at 5 %):")?;
-        for detectable in &self.detectable {
-            let points =
-                detectable.difference.map_or_else(|| "none".to_owned(), |share| format_number(100.0 * share, 0));
-            let words = match detectable.effects {
-                "none" => "if persons and routes are all alike",
-                "middle" => "if they differ (standard deviation 0.75 on the logit scale)",
-                _ => "if they differ much (1.5)",
-            };
-            writeln!(f, "  {points:<5} {words}")?;
+        let most = (MAX_PARTICIPANT_FACTOR * self.participants) as f64;
+        let needed = search_for_power(TEST_POWER, most, self.participants.max(2) as f64, 0.5, power_of);
+        PlannedPower {
+            person_sd,
+            route_sd,
+            power: plan.simulate_power(self.effect),
+            difference: plan.detectable_difference(TEST_POWER),
+            participants: needed.map(|needed| needed.round().max(2.0) as usize),
         }
-        if self.mode != StudyTask::Pair {
-            writeln!(
-                f,
-                "What a person or a route does to both conditions alike cancels; where it does not, the study finds less."
-            )?;
-        }
-        if self.conditions.iter().all(|planned| planned.kind == ConditionKind::Run) && self.mode != StudyTask::Pair {
-            writeln!(
-                f,
-                "\nThere is no control. --include people,other-path shows how well a good and a wrong text do."
-            )?;
-        }
-        if self.per_participant == 1 {
-            writeln!(f, "\nEach person gets one item: what persons do and what items do cannot be told apart.")?;
-        }
-        Ok(())
     }
 }

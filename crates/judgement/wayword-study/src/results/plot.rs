@@ -180,8 +180,7 @@ pub(super) fn difference_plots(results: &StudyReport, version: &ResultVersion) -
                 .find(|row| row.condition == difference.condition)
                 .map_or(crate::ConditionKind::Run, |row| row.kind);
             let label = tables::condition_title(&difference.condition, kind);
-            let beside_zero =
-                |interval: &wayword_metrics::ConfidenceInterval| interval.low > 0.0 || interval.high < 0.0;
+            let beside_zero = |interval: &wayword_metrics::ConfidenceInterval| interval.leaves_out(0.0);
             let counts = number_format::method_name(figure.method).to_owned();
             ForestPlotRow {
                 id: format!("d-{}-{}-{at}", version.name, measure.name),

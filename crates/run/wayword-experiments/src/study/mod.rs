@@ -7,7 +7,7 @@ mod new_study;
 mod pictures;
 mod serve;
 
-use crate::study_args::{StudyArgs as Args, StudyCommand, StudyForget, StudyInvite, StudyResults, StudyStatus};
+use crate::study_args::{StudyArgs as Args, StudyCommand, StudyForget, StudyInvite, StudyPlan, StudyResults, StudyStatus};
 use messages::{ClosedNotice, PersonalLinks, ReconciliationTable, RemovalReport, StudyStatusReport};
 use serde::Serialize;
 use std::{fmt, path::PathBuf};
@@ -16,7 +16,10 @@ use wayword_run::{
     error::{CommandError, Exit},
     output::CommandOutput,
 };
-use wayword_study::{Study, now_ms, results::StudyOutlook};
+use wayword_study::{
+    Study, now_ms,
+    results::{PlanQuestion, StudyOutlook},
+};
 
 /// Runs `wayword study`: makes, serves and evaluates a study with people.
 ///
@@ -27,11 +30,7 @@ pub fn run_study(args: &Args, output: &CommandOutput) -> Result<Exit, CommandErr
         StudyCommand::New(args) => new_study::make_study(args, output)?,
         StudyCommand::Serve(args) => return serve::run_serve(args, output),
         StudyCommand::Invite(args) => run_invite(args, output)?,
-        StudyCommand::Plan(args) => {
-            let study = Study::open(&args.study)?;
-            let outlook = StudyOutlook::new(&study.plan, &study.settings, &study.items);
-            output.print_result(&outlook, &outlook);
-        }
+        StudyCommand::Plan(args) => show_plan(args, output)?,
         StudyCommand::Status(args) => show_status(args, output)?,
         StudyCommand::Results(args) => write_results(args, output)?,
         StudyCommand::Forget(args) => forget_participant(args, output)?,
@@ -45,6 +44,22 @@ pub fn run_study(args: &Args, output: &CommandOutput) -> Result<Exit, CommandErr
         }
     }
     Ok(Exit::Done)
+}
+
+fn show_plan(args: &StudyPlan, output: &CommandOutput) -> Result<(), CommandError> {
+    let question = PlanQuestion {
+        effect: args.effect / 100.0,
+        base_share: args.base / 100.0,
+        person_sd: args.person_sd,
+        route_sd: args.route_sd,
+        routes: args.routes,
+        participants: args.participants,
+    };
+    question.check()?;
+    let study = Study::open(&args.study)?;
+    let outlook = StudyOutlook::new(&study.plan, &study.settings, &study.items, &question);
+    output.print_result(&outlook, &outlook);
+    Ok(())
 }
 
 fn run_invite(args: &StudyInvite, output: &CommandOutput) -> Result<(), CommandError> {
