@@ -27,7 +27,7 @@ impl Study {
     /// # Errors
     /// When the database cannot be read.
     pub fn into_data(self) -> Result<StudyData, StudyError> {
-        StudyStore::open(&self.database_file())?.into_data(self, now_ms())
+        StudyStore::open_to_read(&self.database_file())?.into_data(self, now_ms())
     }
 
     /// Counts how many answers the study has and how many it still needs.
@@ -35,7 +35,7 @@ impl Study {
     /// # Errors
     /// When the database cannot be read.
     pub fn read_progress(&self) -> Result<StudyProgress, StudyError> {
-        StudyStore::open(&self.database_file())?
+        StudyStore::open_to_read(&self.database_file())?
             .read_transaction(self, now_ms(), |transaction| transaction.read_progress())
     }
 
@@ -64,7 +64,8 @@ impl Study {
     pub fn close(&self, even_if_live: bool) -> Result<(), StudyError> {
         let live = self.run_transaction(|transaction| transaction.close_study(even_if_live))?;
         if live > 0 && !even_if_live {
-            let problem = format!("{live} participants are in the middle of it, and could not go on");
+            let who = if live == 1 { "1 participant is".to_owned() } else { format!("{live} participants are") };
+            let problem = format!("{who} in the middle of it, and could not go on");
             return Err(StudyError::refused_request(problem, "wait until they are done, or give --even-if-live"));
         }
         // Deleted data must not stay in the database's log.
@@ -106,7 +107,9 @@ impl Study {
     /// # Errors
     /// When the database cannot be read.
     pub fn list_exports(&self) -> Result<Vec<PathBuf>, StudyError> {
-        let mut folders = self.run_transaction(|transaction| transaction.list_exports())?;
+        let mut folders =
+            StudyStore::open_to_read(&self.database_file())?
+                .read_transaction(self, now_ms(), |transaction| transaction.list_exports())?;
         folders.retain(|folder| folder.exists());
         Ok(folders)
     }

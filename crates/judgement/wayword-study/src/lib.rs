@@ -24,14 +24,15 @@ mod token;
 mod wording;
 
 pub use results::{StudyReport, compute_results};
-pub use site::{ListenOptions, SiteAddress, SiteSecurity, serve_study};
+pub use site::{ListenOptions, SiteAddress, SiteSecurity, preview_study, serve_study};
 pub use store::{
     ConditionProgress, ErasureReport, InviteTokens, Reconciliation, ReconciliationRow, StudyProgress, now_ms,
 };
 pub use study::{
-    AttentionCheck, CompletionCodes, ComprehensionQuestion, ConditionKind, FilmPicture, ItemSlot, PairChoice,
-    Participant, ParticipantAnswer, ParticipantMove, ParticipantStatus, RecruiterSettings, SlotState, Study,
-    StudyCondition, StudyData, StudyDesign, StudyError, StudyItem, StudyRoute, StudyScene, StudySettings, StudyTask,
-    StudyText, StudyViewpoint, TextMark,
+    AttentionCheck, CompletionCodes, ComprehensionQuestion, ConditionKind, ConsentLink, ENGLISH_TEXTS, EndAnswer,
+    EndQuestion, EndQuestionKind, ExclusionRules, FilmPicture, ItemSlot, PageTexts, PairChoice, Participant,
+    ParticipantAnswer, ParticipantMove, ParticipantStatus, RecruiterSettings, SlotState, Study, StudyCondition,
+    StudyData, StudyDesign, StudyError, StudyItem, StudyRoute, StudyScene, StudySettings, StudyTask, StudyText,
+    StudyViewpoint, TextMark,
 };
 pub use wording::{FOLLOW_STATEMENTS, RATE_QUESTIONS, RatingScale};

@@ -18,9 +18,9 @@ use std::{
 use tempfile::TempDir;
 use wayword_core::{DoubtGrade, Heading, SceneId, ViewpointId};
 use wayword_study::{
-    ConditionKind, FilmPicture, ListenOptions, RecruiterSettings, SiteAddress, SiteSecurity, Study, StudyCondition,
-    StudyDesign, StudyItem, StudyRoute, StudyScene, StudySettings, StudyTask, StudyText, StudyViewpoint, TextMark,
-    serve_study,
+    ConditionKind, ConsentLink, ENGLISH_TEXTS, EndQuestion, EndQuestionKind, FilmPicture, ListenOptions, PageTexts,
+    RecruiterSettings, SiteAddress, SiteSecurity, Study, StudyCondition, StudyDesign, StudyItem, StudyRoute,
+    StudyScene, StudySettings, StudyTask, StudyText, StudyViewpoint, TextMark, preview_study, serve_study,
 };
 
 /// Words that no page may have: the conditions, the scene, the route, the goal.
@@ -79,6 +79,7 @@ fn study(folder: &Path, mode: StudyTask) -> Study {
         folder: folder.to_owned(),
         plan,
         settings,
+        texts: PageTexts::default(),
         items: vec![item(0, false), item(1, true)],
         routes: vec![route(0), route(1)],
         scenes,
@@ -231,7 +232,7 @@ fn every_answer_has_its_headers() {
         assert!(header("content-security-policy").starts_with("default-src 'none'"), "{answer:?}");
         assert_eq!((header("x-content-type-options"), header("cache-control")), ("nosniff".into(), "no-store".into()));
         assert_eq!((header("referrer-policy"), header("x-frame-options")), ("same-origin".into(), "DENY".into()));
-        assert!(header("location") == "/" || header("location").is_empty(), "{answer:?}");
+        assert!(["", "/", "/?arrived"].contains(&header("location").as_str()), "{answer:?}");
         assert!(header("strict-transport-security").is_empty(), "there is no TLS here");
     }
 }
@@ -336,7 +337,8 @@ fn a_recruiters_id_leaves_the_address() {
     });
     let mut browser = site.browser();
     let came = browser.get("/join?PROLIFIC_PID=5f5f5f&STUDY_ID=s&SESSION_ID=x");
-    assert_eq!((came.status, came.headers["location"].as_str()), (303, "/"));
+    assert_eq!((came.status, came.headers["location"].as_str()), (303, "/?arrived"));
+    assert_eq!(browser.get("/?arrived").headers["location"], "/");
     assert!(browser.get("/").is_page("consent"));
     assert_eq!(browser.post("/consent", "agree=yes").status, 303);
     assert!(!format!("{:?}", browser.cookies).contains("arrival"), "{:?}", browser.cookies);
@@ -456,7 +458,8 @@ fn oversized_requests_are_refused() {
     let mut browser = site.participant();
     let slot = browser.get("/").field("slot");
     assert_eq!(browser.post("/write", &format!("slot={slot}&own_text={}", "a".repeat(1001))).status, 422);
-    assert_eq!(browser.post("/write", &"a".repeat(20_000)).status, 413);
+    assert_eq!(browser.post("/answer", &"a".repeat(20_000)).status, 413);
+    assert_eq!(browser.post("/write", &"a".repeat(600_000)).status, 413);
     let head = format!("GET / HTTP/1.1\r\nHost: x\r\nX: {}\r\n\r\n", "a".repeat(200_000));
     assert!([0, 431].contains(&raw(site.address, head.as_bytes()).status));
     assert_eq!(browser.get("/").field("slot"), slot);
@@ -482,4 +485,226 @@ fn an_open_address_needs_tls() {
     // The certificate stays the same, because browsers were set to trust it.
     serve_study(study, &open(SiteSecurity::SelfSigned), |_| (), || true).unwrap();
     assert_eq!(std::fs::read_to_string(folder.path().join("self-signed.key")).unwrap(), key);
+}
+
+/// A site of comparisons with questions at the end, and a participant who has answered all items.
+fn at_the_end() -> (Site, Browser) {
+    let question = |name: &str, kind, answers: &[&str], optional| EndQuestion {
+        name: name.into(),
+        text: format!("What about <i>{name}</i>?"),
+        kind,
+        answers: answers.iter().map(|one| (*one).into()).collect(),
+        optional,
+        max_chars: if kind == EndQuestionKind::Text { 20 } else { 0 },
+    };
+    let site = Site::new(StudyTask::Pair, |settings| {
+        settings.codes.done = "C0DE".into();
+        settings.end = vec![
+            question("age", EndQuestionKind::Choice, &["under 30", "30 or more"], false),
+            question("often", EndQuestionKind::Scale, &["never", "sometimes", "daily"], false),
+            question("remarks", EndQuestionKind::Text, &[], true),
+        ];
+    });
+    let mut browser = site.participant();
+    for _ in 0..2 {
+        let slot = browser.get("/").field("slot");
+        assert_eq!(browser.post("/answer", &format!("slot={slot}&choice=a&pictures=1")).status, 303);
+    }
+    (site, browser)
+}
+
+#[test]
+fn questions_at_the_end_are_shown_checked_and_stored_before_the_code() {
+    let (site, mut browser) = at_the_end();
+    let page = browser.get("/");
+    assert!(page.is_page("end") && page.body.contains("What about &lt;i&gt;age&lt;&#x2f;i&gt;?"), "{page:?}");
+    assert!(!page.body.contains("C0DE") && page.body.contains("maxlength=\"20\""), "{page:?}");
+    for (form, kept) in [
+        ("end_age=1&end_remarks=fine", "fine"),
+        ("end_age=3&end_often=2", "value=\"2\" required checked"),
+        ("end_age=1&end_often=2&end_remarks=123456789012345678901", "123456789012345678901"),
+    ] {
+        let page = browser.post("/end", form);
+        assert_eq!(page.status, 422, "{form}");
+        assert!(page.body.contains("role=\"alert\"") && page.body.contains(kept), "{form}: {page:?}");
+    }
+    assert_eq!(browser.post("/end", "end_age=2&end_often=3&end_remarks=%3Cb%3E").status, 303);
+    assert!(browser.get("/").body.contains("C0DE"));
+    let person = &site.study.clone().into_data().unwrap().participants[0];
+    let answers: Vec<(&str, Option<usize>)> = person.end.iter().map(|one| (one.answer.as_str(), one.number)).collect();
+    assert_eq!(answers, [("30 or more", Some(2)), ("daily", Some(3)), ("<b>", None)]);
+}
+
+#[test]
+fn the_code_is_shown_again_after_the_study_is_closed() {
+    let (site, mut browser) = at_the_end();
+    site.study.close(false).unwrap();
+    assert!(browser.get("/").body.contains("<output>C0DE</output>"), "without the questions at the end");
+    let site = Site::new(StudyTask::Pair, |settings| settings.codes.done = "C0DE".into());
+    let token = site.study.invite_participants(1).unwrap().tokens.remove(0);
+    let mut browser = site.browser();
+    browser.get(&format!("/t/{token}"));
+    browser.post("/consent", "agree=yes");
+    for _ in 0..2 {
+        let slot = browser.get("/").field("slot");
+        browser.post("/answer", &format!("slot={slot}&choice=a"));
+    }
+    site.study.close(false).unwrap();
+    let mut other_device = site.browser();
+    other_device.get(&format!("/t/{token}"));
+    assert!(other_device.get("/").body.contains("<output>C0DE</output>"));
+}
+
+#[test]
+fn a_recruited_participant_sees_the_code_after_closing_in_the_same_browser() {
+    let site = Site::new(StudyTask::Pair, |settings| {
+        let [person, session] = ["PROLIFIC_PID", "SESSION_ID"].map(str::to_owned);
+        settings.recruiter =
+            RecruiterSettings::Parameters { person, session, study: String::new(), only_study: String::new() };
+        settings.codes.done = "C0DE".into();
+    });
+    let link = "/join?PROLIFIC_PID=5f5f5f&SESSION_ID=x";
+    let mut browser = site.browser();
+    browser.get(link);
+    browser.post("/consent", "agree=yes");
+    for _ in 0..2 {
+        let slot = browser.get("/").field("slot");
+        browser.post("/answer", &format!("slot={slot}&choice=a"));
+    }
+    site.study.close(false).unwrap();
+    assert_eq!(browser.get(link).status, 303);
+    assert!(browser.get("/").body.contains("<output>C0DE</output>"));
+    assert_eq!(site.browser().get(link).status, 410, "the ids are gone, so another browser is a stranger");
+}
+
+#[test]
+fn a_browser_without_cookies_is_told_so() {
+    let site = Site::new(StudyTask::Pair, |_| {});
+    let token = site.study.invite_participants(1).unwrap().tokens.remove(0);
+    let mut browser = site.browser();
+    let came = browser.get(&format!("/t/{token}"));
+    browser.cookies.clear();
+    let page = browser.get(&came.headers["location"]);
+    assert_eq!(page.status, 403);
+    assert!(page.body.contains("keeps no cookies"), "{page:?}");
+    browser.get(&format!("/t/{token}"));
+    assert_eq!(browser.get("/?arrived").headers["location"], "/");
+    assert!(browser.get("/").is_page("consent"));
+}
+
+#[test]
+fn a_text_that_is_too_long_comes_back_whole() {
+    let site = Site::new(StudyTask::Rate, |_| {});
+    let mut browser = site.participant();
+    let slot = browser.get("/").field("slot");
+    // 10,000 letters, each of six bytes as a form sends it.
+    let page = browser.post("/write", &format!("slot={slot}&own_text={}", "%C3%A9".repeat(10_000)));
+    assert_eq!(page.status, 422);
+    assert!(
+        page.body.contains(&"é".repeat(10_000)) && page.body.contains("At most 1000 characters"),
+        "{}",
+        page.status
+    );
+}
+
+#[test]
+fn pages_speak_the_language_of_the_texts() {
+    let german = ENGLISH_TEXTS
+        .replace("language = \"en\"", "language = \"ar\"")
+        .replace("\"Compare two texts\"", "\"Vergleichen <b>Sie</b>\"")
+        .replace("\"Play\"", "\"Ab\\\"spielen\"");
+    let site = Site::with(StudyTask::Pair, |study| study.texts = PageTexts::parse(&german).unwrap());
+    assert_eq!(Study::open(&site.study.folder).unwrap().texts, site.study.texts, "the folder keeps the words");
+    let mut browser = site.participant();
+    let page = browser.get("/");
+    assert!(page.body.contains("<html lang=\"ar\" dir=\"rtl\">"), "{page:?}");
+    assert!(page.body.contains("Vergleichen &lt;b&gt;Sie"), "{page:?}");
+    assert!(page.body.contains("dir=\"auto\" lang=\"en\""), "the instructions are English");
+    assert!(browser.get("/script.js").body.contains(r#""play":"Ab\"spielen""#));
+    let wrong = ENGLISH_TEXTS.replace("go_on =", "goon =");
+    std::fs::write(site.study.folder.join("texts.toml"), wrong).unwrap();
+    let told = Study::open(&site.study.folder).unwrap_err().to_string();
+    assert!(told.contains("texts.toml") && told.contains("did you mean") && told.contains("study texts"), "{told}");
+}
+
+#[test]
+fn the_consent_page_names_the_approval_and_shows_links() {
+    let site = Site::new(StudyTask::Pair, |settings| {
+        settings.ethics = "Board of <x>, 12/2026".into();
+        settings.links = vec![ConsentLink { text: "Data & rights".into(), url: "https://example.org/a?b=1&c".into() }];
+    });
+    let token = site.study.invite_participants(1).unwrap().tokens.remove(0);
+    let mut browser = site.browser();
+    browser.get(&format!("/t/{token}"));
+    let page = browser.get("/");
+    assert!(
+        page.body.contains("Board of &lt;x&gt;, 12&#x2f;2026") && page.body.contains("Data &amp; rights"),
+        "{page:?}"
+    );
+    assert!(page.body.contains("rel=\"noopener noreferrer\""), "{page:?}");
+}
+
+#[test]
+fn a_preview_is_marked_and_stores_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut study = study(folder.path(), StudyTask::Pair);
+    study.settings.recruiter = RecruiterSettings::Parameters {
+        person: "a".into(),
+        session: "b".into(),
+        study: String::new(),
+        only_study: String::new(),
+    };
+    study.create().unwrap();
+    std::fs::write(study.pictures_folder().join("picture.jpg"), b"a picture").unwrap();
+    let before = std::fs::read(folder.path().join("study.db")).unwrap();
+    let (told, started) = mpsc::channel();
+    let stop = Arc::new(AtomicBool::new(false));
+    let (shown, ending) = (study.clone(), Arc::clone(&stop));
+    let thread = thread::spawn(move || {
+        let tell = |started: &SiteAddress| told.send(started.address).unwrap();
+        preview_study(shown, &listen(SiteSecurity::Loopback), tell, || ending.load(Ordering::Relaxed)).unwrap();
+    });
+    let address = started.recv().unwrap();
+    // Each visit of the link begins anew.
+    for _ in 0..3 {
+        let mut browser = Browser { address, origin: format!("http://{address}"), cookies: BTreeMap::new() };
+        assert_eq!(browser.get("/preview").status, 303);
+        let mut pages = vec![browser.get("/")];
+        assert!(pages[0].is_page("consent"), "{pages:?}");
+        browser.post("/consent", "agree=yes");
+        for _ in 0..2 {
+            let page = browser.get("/");
+            browser.post("/answer", &format!("slot={}&choice=a", page.field("slot")));
+            pages.push(page);
+        }
+        pages.extend([browser.get("/"), browser.get("/withdraw"), browser.get("/nowhere")]);
+        assert!(pages[3].is_page("done"), "{pages:?}");
+        assert!(pages.iter().all(|page| page.body.contains("class=\"preview\"")), "{pages:?}");
+    }
+    stop.store(true, Ordering::Relaxed);
+    thread.join().unwrap();
+    assert_eq!(std::fs::read(folder.path().join("study.db")).unwrap(), before);
+    assert!(study.into_data().unwrap().participants.is_empty());
+    let site = Site::new(StudyTask::Pair, |_| {});
+    assert_eq!(site.browser().get("/preview").status, 404, "participants have no such link");
+    assert!(!site.participant().get("/").body.contains("class=\"preview\""));
+}
+
+#[test]
+fn a_second_server_of_one_study_is_refused_at_once() {
+    let site = Site::new(StudyTask::Pair, |_| {});
+    let second = serve_study(site.study.clone(), &listen(SiteSecurity::Loopback), |_| (), || true);
+    assert!(second.unwrap_err().to_string().contains("serves this study already"));
+    // A preview, status and results go on beside it.
+    preview_study(site.study.clone(), &listen(SiteSecurity::Loopback), |_| (), || true).unwrap();
+    site.study.read_progress().unwrap();
+    let study = site.study.clone();
+    let folder = tempfile::tempdir().unwrap();
+    drop(site);
+    // The folder is gone with the site; another one, whose server has ended, can be served again.
+    let study = Study { folder: folder.path().to_owned(), ..study };
+    study.create().unwrap();
+    for _ in 0..2 {
+        serve_study(study.clone(), &listen(SiteSecurity::Loopback), |_| (), || true).unwrap();
+    }
 }

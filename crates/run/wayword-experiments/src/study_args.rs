@@ -12,6 +12,8 @@ Examples:
       Make a study: people walk by the texts of two runs, and by texts of other paths, through generated houses.
   wayword study plan STUDY
       See how many people it needs, and which differences it would find.
+  wayword study serve STUDY --preview
+      Walk through it yourself. Nothing is stored.
   wayword study serve STUDY --links 3
       Show it on this machine, and print three personal links.
   wayword study status STUDY
@@ -36,6 +38,8 @@ pub enum StudyCommand {
     Invite(StudyInvite),
     /// Show how many people the study needs, and which differences it would find.
     Plan(StudyPlan),
+    /// Write the words of all pages in English, as a file to translate.
+    Texts,
     /// Show how far it is.
     Status(StudyStatus),
     /// Write tables, plots, raw data and a codebook.
@@ -56,7 +60,10 @@ Examples:
   wayword study new --run a=runs/central#r2r --run b=runs/other#r2r --include people,other-path --episodes R2R_val_seen.json \\
       --platform matterport --data DATA --i-have-the-right --items 60 --per-item 5 --mode rate --out STUDY
   wayword study new --run plain=runs/a#r2r --run marked=runs/a#r2r --doubts marked --mode follow --out STUDY
-  wayword study new --run a=runs/a#r2r --run b=runs/b#r2r --mode pair --recruiter prolific --out STUDY")]
+  wayword study new --run a=runs/a#r2r --run b=runs/b#r2r --mode pair --recruiter prolific --out STUDY
+  wayword study texts > de.toml
+  wayword study new --run ours=runs/houses#r2r --mode rate --texts de.toml --out STUDY
+      Pages in another language: translate the file in between.")]
 pub struct StudyNew {
     /// A set of texts: NAME=RUN#STYLE or NAME=FILE. Give the flag several times to compare sets.
     #[arg(long, value_name = "NAME=SET", required = true)]
@@ -89,6 +96,9 @@ pub struct StudyNew {
     /// Where participants come from: links (personal ones), prolific or mturk.
     #[arg(long, value_name = "RECRUITER", default_value = "links")]
     pub recruiter: StudyRecruiter,
+    /// The words of the pages in another language: a translation of what `study texts` writes.
+    #[arg(long, value_name = "FILE")]
+    pub texts: Option<PathBuf>,
     /// Confirm that you may show the pictures of this platform to participants. Every platform but house needs it: its scenes
     /// belong to somebody.
     #[arg(long)]
@@ -161,6 +171,10 @@ pub struct StudyServe {
     /// Listen on other addresses than this machine's without TLS. Others in the network can read along.
     #[arg(long)]
     pub insecure_lan: bool,
+    /// Show the study to yourself: a link that walks through it, on marked pages. Nothing is stored. It can run beside the site for participants, with
+    /// another --listen.
+    #[arg(long, conflicts_with = "links")]
+    pub preview: bool,
     /// Make so many personal links, and print them.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub links: u32,
@@ -204,7 +218,7 @@ pub struct StudyPlan {
     #[arg(long, value_name = "POINTS", default_value_t = 20.0)]
     pub effect: f64,
     /// The share around which both conditions lie, in per cent. At 50 a difference is hardest to find.
-    #[arg(long, value_name = "PER CENT", default_value_t = 50.0)]
+    #[arg(long, value_name = "PERCENT", default_value_t = 50.0)]
     pub base: f64,
     /// How much persons differ in what a condition does to them: a standard deviation on the logit scale. [default: 0, 0.5 and 1]
     #[arg(long, value_name = "SD")]

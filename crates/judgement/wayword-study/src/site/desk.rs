@@ -15,15 +15,26 @@ use tokio::sync::oneshot;
 
 /// Most requests in one transaction.
 const MAX_BATCH_REQUESTS: usize = 64;
-/// Most requests in the queue. A further one fails with [`DeskBusyError`].
+/// Most requests in the queue. A further one fails with [`DeskError::Busy`].
 const MAX_WAITING_REQUESTS: usize = 1024;
 
-/// The store cannot take the request now: trying again is safe.
-#[derive(Debug)]
-pub(crate) struct DeskBusyError;
+/// Why the store did not take a request. Trying again is safe.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum DeskError {
+    /// It has too much to do, or an error that may pass.
+    Busy,
+    /// The disk is full or cannot be written.
+    Disk,
+}
 
-/// Sends the reply to the request. The argument is true if the transaction is on disk.
-type ReplyDelivery = Box<dyn FnOnce(bool) + Send>;
+impl From<&StudyError> for DeskError {
+    fn from(error: &StudyError) -> Self {
+        if error.is_of_disk() { Self::Disk } else { Self::Busy }
+    }
+}
+
+/// Sends the reply to the request. The argument says whether the transaction is on disk.
+type ReplyDelivery = Box<dyn FnOnce(Result<(), DeskError>) + Send>;
 /// The database work of one request. It returns whether its changes are kept, and how its reply is sent.
 type DeskJob = Box<dyn FnOnce(&StudyTransaction<'_>) -> (bool, ReplyDelivery) + Send>;
 
@@ -47,7 +58,19 @@ impl StudyDesk {
     /// # Errors
     /// When the database cannot be opened, or the system has no thread.
     pub(crate) fn open(study: Arc<Study>) -> Result<(Self, JoinHandle<()>), StudyError> {
-        let mut store = StudyStore::open(&study.database_file())?;
+        let store = StudyStore::open(&study.database_file())?;
+        Self::start(study, store)
+    }
+
+    /// Starts the thread with a store in memory, which ends with it.
+    ///
+    /// # Errors
+    /// When the system has no thread or no memory.
+    pub(crate) fn open_in_memory(study: Arc<Study>) -> Result<(Self, JoinHandle<()>), StudyError> {
+        Self::start(study, StudyStore::open_in_memory()?)
+    }
+
+    fn start(study: Arc<Study>, mut store: StudyStore) -> Result<(Self, JoinHandle<()>), StudyError> {
         let (jobs, waiting) = mpsc::sync_channel::<DeskTask>(MAX_WAITING_REQUESTS);
         let thread = thread::Builder::new()
             .name("study-desk".to_owned())
@@ -80,31 +103,32 @@ impl StudyDesk {
     pub(crate) async fn ask_store<T: Send + 'static>(
         &self,
         work: impl FnOnce(&StudyTransaction<'_>) -> Result<T, StudyError> + Send + 'static,
-    ) -> Result<T, DeskBusyError> {
+    ) -> Result<T, DeskError> {
         let (reply, answer) = oneshot::channel();
         let job: DeskJob = Box::new(move |transaction| {
             let done = work(transaction);
             let is_good = done.is_ok();
-            let deliver: ReplyDelivery = Box::new(move |is_kept| {
+            let deliver: ReplyDelivery = Box::new(move |kept: Result<(), DeskError>| {
                 // The request may have been given up, and then needs no reply.
-                let _ = reply.send(done.ok().filter(|_| is_kept));
+                let _ = reply.send(done.map_err(|error| DeskError::from(&error)).and_then(|done| kept.map(|()| done)));
             });
             (is_good, deliver)
         });
-        self.jobs.try_send(DeskTask::Ask(job)).map_err(|_| DeskBusyError)?;
-        answer.await.ok().flatten().ok_or(DeskBusyError)
+        self.jobs.try_send(DeskTask::Ask(job)).map_err(|_| DeskError::Busy)?;
+        answer.await.unwrap_or(Err(DeskError::Busy))
     }
 }
 
 /// Does the work of all jobs in one transaction, and sends the replies when it is on disk.
 fn run_batch(store: &mut StudyStore, study: &Study, batch: Vec<DeskJob>) {
-    let mut replies: Vec<(bool, ReplyDelivery)> = Vec::new();
+    let mut replies: Vec<ReplyDelivery> = Vec::new();
     let committed = store.write_batch(study, batch.into_iter(), |job, transaction| {
         let (is_good, deliver) = job(transaction);
-        replies.push((is_good, deliver));
+        replies.push(deliver);
         is_good
     });
-    for (is_good, deliver) in replies {
-        deliver(committed.is_ok() && is_good);
+    let kept = committed.map_err(|error| DeskError::from(&error));
+    for deliver in replies {
+        deliver(kept);
     }
 }

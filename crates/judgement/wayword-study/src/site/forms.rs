@@ -2,7 +2,7 @@
 
 use crate::{
     store::{MAX_OWN_TEXT_CHARS, ParticipantInput},
-    study::{PairChoice, StudyTask},
+    study::{EndAnswerFault, EndQuestion, PairChoice, StudyTask},
 };
 use std::collections::BTreeMap;
 
@@ -12,22 +12,23 @@ pub(super) type FormFields = BTreeMap<String, String>;
 /// Reads the answers to the questions about the task.
 ///
 /// # Errors
-/// A message for the participant that names the missing part.
+/// The key of a message for the participant that names the missing part; the section `error` of the texts has the words.
 pub(super) fn read_comprehension(fields: &FormFields, questions: usize) -> Result<ParticipantInput, &'static str> {
     let choices = (0..questions).map(|at| number_field(fields, &format!("q{at}"))).collect::<Option<Vec<usize>>>();
     let attempt = number_field(fields, "try").unwrap_or(0);
-    Ok(ParticipantInput::Understood { attempt, answers: choices.ok_or("Please answer every question.")? })
+    Ok(ParticipantInput::Understood { attempt, answers: choices.ok_or("every_question")? })
 }
 
 pub(super) fn read_own_text(fields: &FormFields) -> Result<ParticipantInput, &'static str> {
     let text = fields.get("own_text").map_or("", String::as_str).trim();
     if text.is_empty() {
-        return Err("Please write a text.");
+        return Err("write_text");
     }
     if text.chars().count() > MAX_OWN_TEXT_CHARS {
-        return Err("Your text is too long. Please write at most 1000 characters.");
+        return Err("long_text");
     }
-    Ok(ParticipantInput::OwnText { slot: slot_field(fields)?, text: text.to_owned() })
+    let pictures = number_field(fields, "pictures");
+    Ok(ParticipantInput::OwnText { slot: slot_field(fields)?, text: text.to_owned(), pictures })
 }
 
 pub(super) fn read_move(fields: &FormFields) -> Result<ParticipantInput, &'static str> {
@@ -39,48 +40,54 @@ pub(super) fn read_move(fields: &FormFields) -> Result<ParticipantInput, &'stati
     })
 }
 
-const MISSING_WAY_MESSAGE: &str = "Please choose a way.";
+const MISSING_WAY_MESSAGE: &str = "choose_way";
 
 pub(super) fn read_stop(fields: &FormFields) -> Result<ParticipantInput, &'static str> {
-    let seq = number_field(fields, "seq").ok_or("This page is old. Please load it again.")?;
+    let seq = number_field(fields, "seq").ok_or("old_page")?;
     Ok(ParticipantInput::Stop { slot: slot_field(fields)?, seq, looks: number_field(fields, "looks").unwrap_or(0) })
 }
 
 pub(super) fn read_answer(fields: &FormFields, mode: StudyTask) -> Result<ParticipantInput, &'static str> {
-    let slot = slot_field(fields)?;
+    let (slot, pictures) = (slot_field(fields)?, number_field(fields, "pictures"));
     match mode {
-        StudyTask::Follow => Ok(ParticipantInput::Followed {
-            slot,
-            statements: level_fields(fields, 's').ok_or("Please choose one answer for every statement.")?,
-        }),
-        StudyTask::Rate => Ok(ParticipantInput::Rated {
-            slot,
-            ratings: level_fields(fields, 'q').ok_or("Please choose one answer for every question.")?,
-        }),
+        StudyTask::Follow => {
+            Ok(ParticipantInput::Followed { slot, statements: level_fields(fields, 's').ok_or("every_statement")? })
+        }
+        StudyTask::Rate => {
+            Ok(ParticipantInput::Rated { slot, ratings: level_fields(fields, 'q').ok_or("every_question")?, pictures })
+        }
         StudyTask::Pair => {
             let choice = match fields.get("choice").map(String::as_str) {
                 Some("a") => PairChoice::A,
                 Some("b") => PairChoice::B,
                 Some("tie") => PairChoice::Tie,
                 Some("bad") => PairChoice::Bad,
-                _ => return Err("Please choose one of the four answers."),
+                _ => return Err("four_answers"),
             };
-            Ok(ParticipantInput::Chosen { slot, choice })
+            Ok(ParticipantInput::Chosen { slot, choice, pictures })
         }
     }
 }
 
 pub(super) fn read_attention(fields: &FormFields) -> Result<ParticipantInput, &'static str> {
-    let choice =
-        number_field(fields, "choice").filter(|level| (1..=5).contains(level)).ok_or("Please choose one answer.")?;
-    Ok(ParticipantInput::Attention {
-        number: number_field(fields, "number").ok_or("Please choose one answer.")?,
-        choice,
-    })
+    let choice = number_field(fields, "choice").filter(|level| (1..=5).contains(level)).ok_or("one_answer")?;
+    Ok(ParticipantInput::Attention { number: number_field(fields, "number").ok_or("one_answer")?, choice })
+}
+
+/// Reads the answers to the questions at the end, from the fields `end_` and the name of the question.
+pub(super) fn read_end(fields: &FormFields, questions: &[EndQuestion]) -> Result<ParticipantInput, &'static str> {
+    let answer = |question: &EndQuestion| {
+        let sent = fields.get(&format!("end_{}", question.name)).map(String::as_str);
+        question.read_answer(sent).map_err(|fault| match fault {
+            EndAnswerFault::Missing => "every_question",
+            EndAnswerFault::Long => "long_text",
+        })
+    };
+    Ok(ParticipantInput::End { answers: questions.iter().map(answer).collect::<Result<_, _>>()? })
 }
 
 fn slot_field(fields: &FormFields) -> Result<String, &'static str> {
-    fields.get("slot").cloned().ok_or("This page is old. Please load it again.")
+    fields.get("slot").cloned().ok_or("old_page")
 }
 
 /// Reads levels from 1 to 5 from the fields `s0`, `s1` and so on, where `s` is `letter`. `None` if one is missing or wrong.
@@ -113,7 +120,7 @@ mod tests {
         let all = fields(&[("slot", "s"), ("q0", "1"), ("q1", "2"), ("q2", "3"), ("q3", "5")]);
         assert_eq!(
             read_answer(&all, StudyTask::Rate),
-            Ok(ParticipantInput::Rated { slot: "s".into(), ratings: [1, 2, 3, 5] })
+            Ok(ParticipantInput::Rated { slot: "s".into(), ratings: [1, 2, 3, 5], pictures: None })
         );
     }
 

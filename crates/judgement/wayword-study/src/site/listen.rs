@@ -5,10 +5,10 @@ use super::{
     desk::StudyDesk,
     pages::PageTemplates,
     request_guard::RequestLimiter,
-    routes::{StudySite, build_router},
+    routes::{StudySite, build_router, script_with_words},
     tls,
 };
-use crate::study::{RecruiterSettings, Study, StudyError};
+use crate::study::{RecruiterSettings, ServeLock, Study, StudyError};
 use axum::{Router, extract::Request};
 use hyper::{body::Incoming, server::conn::http1, service::service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
@@ -80,6 +80,34 @@ pub struct SiteAddress {
     pub url: String,
 }
 
+/// Whose answers the site takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum SiteAudience {
+    /// Participants'. They are stored.
+    Participants,
+    /// The researcher's, who looks at the study. They are kept in memory only.
+    Researcher,
+}
+
+/// How many answers an item takes in a preview, and so how often it can be walked through.
+const PREVIEW_ANSWERS: u32 = 100_000;
+
+/// Serves a preview of a study until `should_stop` returns true: each visit of `/preview` walks through the study as a new participant.
+/// Nothing is stored, and every page says so. A server for participants may run beside it.
+///
+/// # Errors
+/// When the settings forbid it, the address cannot be had, or a file cannot be used.
+pub fn preview_study(
+    mut study: Study,
+    listen: &ListenOptions,
+    started: impl FnOnce(&SiteAddress),
+    should_stop: impl Fn() -> bool,
+) -> Result<(), StudyError> {
+    study.settings.recruiter = RecruiterSettings::Links;
+    study.plan.per_item = PREVIEW_ANSWERS;
+    serve_audience(study, listen, SiteAudience::Researcher, started, should_stop)
+}
+
 /// Serves a study until `should_stop` returns true. It calls `started` once it listens, and finishes running requests before it ends.
 ///
 /// # Errors
@@ -91,6 +119,18 @@ pub fn serve_study(
     should_stop: impl Fn() -> bool,
 ) -> Result<(), StudyError> {
     check_listen_options(&study, listen)?;
+    let _lock = ServeLock::acquire(&study.folder)?;
+    serve_audience(study, listen, SiteAudience::Participants, started, should_stop)
+}
+
+fn serve_audience(
+    study: Study,
+    listen: &ListenOptions,
+    audience: SiteAudience,
+    started: impl FnOnce(&SiteAddress),
+    should_stop: impl Fn() -> bool,
+) -> Result<(), StudyError> {
+    check_address(listen)?;
     let host = reachable_host(listen.address.ip());
     let acceptor = match &listen.security {
         SiteSecurity::Loopback | SiteSecurity::InsecureLan => None,
@@ -101,11 +141,17 @@ pub fn serve_study(
     let public = listen.public.as_ref().map(|url| url.trim_end_matches('/').to_owned());
     let is_secure = public.as_ref().map_or(acceptor.is_some(), |url| url.starts_with("https://"));
     let study = Arc::new(study);
-    let (desk, thread) = StudyDesk::open(Arc::clone(&study))?;
+    let (desk, thread) = match audience {
+        SiteAudience::Participants => StudyDesk::open(Arc::clone(&study))?,
+        SiteAudience::Researcher => StudyDesk::open_in_memory(Arc::clone(&study))?,
+    };
+    let is_preview = audience == SiteAudience::Researcher;
     let site = StudySite {
-        study,
+        script: script_with_words(&study.texts),
+        study: Arc::clone(&study),
         desk,
-        pages: PageTemplates::new()?,
+        pages: PageTemplates::new(&study.texts, is_preview)?,
+        is_preview,
         cookies: StudyCookies { is_secure },
         pace: RequestLimiter::new(),
         readers: Semaphore::new(MAX_PICTURE_READS),
@@ -132,8 +178,8 @@ pub fn serve_study(
     served
 }
 
-/// Refuses addresses and settings with which answers could be read along, or participants would lack a contact or a code.
-fn check_listen_options(study: &Study, listen: &ListenOptions) -> Result<(), StudyError> {
+/// Refuses addresses with which answers could be read along.
+fn check_address(listen: &ListenOptions) -> Result<(), StudyError> {
     let is_loopback = listen.address.ip().is_loopback();
     if !is_loopback && listen.security == SiteSecurity::Loopback {
         let problem = format!("{}: others could read along, and the cookies with it", listen.address);
@@ -149,7 +195,13 @@ fn check_listen_options(study: &Study, listen: &ListenOptions) -> Result<(), Stu
             "give an address that begins with https://, or --insecure-lan",
         ));
     }
-    let is_open = !is_loopback || listen.public.is_some();
+    Ok(())
+}
+
+/// Refuses addresses and settings with which answers could be read along, or participants would lack a contact or a code.
+fn check_listen_options(study: &Study, listen: &ListenOptions) -> Result<(), StudyError> {
+    check_address(listen)?;
+    let is_open = !listen.address.ip().is_loopback() || listen.public.is_some();
     let is_recruited = matches!(study.settings.recruiter, RecruiterSettings::Parameters { .. });
     if is_open && is_recruited && study.settings.codes.done.is_empty() {
         let problem =

@@ -10,4 +10,4 @@ mod routes;
 mod tls;
 mod ways;
 
-pub use listen::{ListenOptions, SiteAddress, SiteSecurity, serve_study};
+pub use listen::{ListenOptions, SiteAddress, SiteSecurity, preview_study, serve_study};

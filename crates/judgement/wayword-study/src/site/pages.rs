@@ -3,18 +3,21 @@
 use super::{forms::FormFields, ways::ways_from_place};
 use crate::{
     store::{
-        AnswerProgress, ArrivalOutcome, MAX_MOVES_PER_WALK, ParticipantStage, ParticipationOutcome, StoredSlot,
-        StudyTransaction,
+        AnswerProgress, ArrivalOutcome, MAX_MOVES_PER_WALK, MAX_OWN_TEXT_CHARS, ParticipantStage, ParticipationOutcome,
+        StoredSlot, StudyTransaction,
     },
-    study::{ParticipantStatus, Study, StudyError, StudyRoute, StudyScene, StudyTask, StudyText},
+    study::{
+        EndQuestionKind, PageTexts, ParticipantStatus, Study, StudyError, StudyRoute, StudyScene, StudyTask, StudyText,
+        fill_placeholders,
+    },
     token::hash_parts,
-    wording::{AGREEMENT_LEVELS, FOLLOW_STATEMENTS, RATE_QUESTIONS},
+    wording::{FOLLOW_STATEMENTS, RATE_QUESTIONS, RatingScale},
 };
-use minijinja::{Environment, Value, context};
+use minijinja::{Environment, Error, Value, context, value::Kwargs};
 use wayword_core::{Heading, ViewpointId, doubt::split_at_doubts, hex_text};
 
 /// The templates by their names. They are part of the program.
-const TEMPLATES: [(&str, &str); 13] = [
+const TEMPLATES: [(&str, &str); 14] = [
     ("base.html", include_str!("pages/base.html")),
     ("parts.html", include_str!("pages/parts.html")),
     ("consent.html", include_str!("pages/consent.html")),
@@ -25,6 +28,7 @@ const TEMPLATES: [(&str, &str); 13] = [
     ("follow.html", include_str!("pages/follow.html")),
     ("follow_after.html", include_str!("pages/follow_after.html")),
     ("attention.html", include_str!("pages/attention.html")),
+    ("end.html", include_str!("pages/end.html")),
     ("done.html", include_str!("pages/done.html")),
     ("message.html", include_str!("pages/message.html")),
     ("withdraw.html", include_str!("pages/withdraw.html")),
@@ -47,7 +51,7 @@ pub(super) struct StudyPage {
 pub(super) struct PageContext {
     /// A public mark of the person, see [`person_mark`].
     pub(super) who: Option<String>,
-    /// A message about a missing or wrong field.
+    /// The key of a message about a missing or wrong field, in the section `error` of the texts.
     pub(super) error: Option<&'static str>,
     /// The fields as they were filled in, if one of them was missing or wrong.
     pub(super) given: Option<FormFields>,
@@ -65,12 +69,17 @@ pub(super) fn consent_version(study: &Study) -> String {
 }
 
 impl PageTemplates {
-    /// Reads the templates.
+    /// Reads the templates, with the words that all pages share.
     ///
     /// # Errors
     /// When one is not well-formed, which a test rules out.
-    pub(super) fn new() -> Result<Self, StudyError> {
+    pub(super) fn new(texts: &PageTexts, is_preview: bool) -> Result<Self, StudyError> {
         let mut templates = Environment::new();
+        templates.add_global("t", Value::from_serialize(texts.sections()));
+        templates.add_global("language", texts.language.as_str());
+        templates.add_global("direction", texts.direction());
+        templates.add_global("is_preview", is_preview);
+        templates.add_filter("fill", fill_text);
         for (name, source) in TEMPLATES {
             templates.add_template(name, source).map_err(|error| template_error(&error))?;
         }
@@ -111,9 +120,13 @@ impl StudyPage {
                 title => settings.title, contact => settings.contact, retention => settings.retention, minutes => settings.minutes,
             },
             who => page_context.who,
-            error => page_context.error,
+            error => page_context.error.map(|key| study.texts.text("error", key)),
             given => page_context.given,
-            text_lang => Some(&settings.text_language).filter(|tag| !tag.is_empty()),
+            // Instructions are in English unless study.toml says otherwise, whatever the language of the pages.
+            text_lang => match settings.text_language.as_str() {
+                "" => (study.texts.language != "en").then_some("en"),
+                tag => Some(tag),
+            },
             can_withdraw,
         };
         Self { name, values: context! { ..page_values, ..shared } }
@@ -123,8 +136,15 @@ impl StudyPage {
     pub(super) fn consent_page(study: &Study, page_context: &PageContext) -> Self {
         let own = context! {
             paragraphs => study.settings.about, agreement => study.settings.agreement, version => consent_version(study),
+            ethics => study.settings.ethics, links => study.settings.links,
         };
         Self::new(study, "consent", page_context, false, own)
+    }
+
+    /// A page with a message of the texts, by its name, as `missing`.
+    pub(super) fn named_message(study: &Study, name: &str, retry: bool) -> Self {
+        let text = |part: &str| study.texts.text("message", &format!("{name}_{part}")).to_owned();
+        Self::message_page(study, &text("title"), &text("text"), retry)
     }
 
     /// A page with a message only.
@@ -202,21 +222,15 @@ impl StudyPage {
                 },
             ),
             ParticipantStage::Attention { number, level } => {
-                let asked = AGREEMENT_LEVELS[usize::from(level.clamp(1, 5)) - 1];
-                let text = format!("This is an attention check. Please choose \u{201c}{asked}\u{201d}.");
-                stage_page(
-                    "attention",
-                    context! { number, text, levels => AGREEMENT_LEVELS, ..progress_context(progress) },
-                )
+                let levels = study.texts.agreement_levels();
+                let asked = levels[usize::from(level.clamp(1, 5)) - 1].clone();
+                let text = fill_placeholders(study.texts.text("attention", "text"), [("level", asked)]);
+                stage_page("attention", context! { number, text, levels, ..progress_context(progress) })
             }
+            ParticipantStage::End => stage_page("end", end_context(study)),
             ParticipantStage::Item(held) => match Self::page_for_item(transaction, &held, page_context, progress) {
                 Some(page) => page,
-                None => Self::message_page(
-                    study,
-                    "This item cannot be shown",
-                    "Please tell the people who do this study.",
-                    false,
-                ),
+                None => Self::named_message(study, "item", false),
             },
         })
     }
@@ -237,12 +251,13 @@ impl StudyPage {
         let text = item.texts.first().map(|first| &first.text);
         let (name, own) = match study.plan.mode {
             StudyTask::Rate if study.settings.write_first && held.own_text.is_none() => {
-                ("watch", context! { film => film(), examples => study.settings.examples })
+                ("watch", context! { film => film(), examples => study.settings.examples, most => MAX_OWN_TEXT_CHARS })
             }
             StudyTask::Rate => (
                 "rate",
                 context! {
-                    film => film(), examples => study.settings.examples, own_text => held.own_text, text, questions => RATE_QUESTIONS,
+                    film => film(), examples => study.settings.examples, own_text => held.own_text, text,
+                    questions => scale_contexts(&study.texts, &RATE_QUESTIONS),
                 },
             ),
             StudyTask::Pair => {
@@ -251,7 +266,7 @@ impl StudyPage {
                 ("pair", context! { film => film(), a, b })
             }
             StudyTask::Follow if held.stopped_ms.is_some() => {
-                ("follow_after", context! { text, statements => FOLLOW_STATEMENTS })
+                ("follow_after", context! { text, statements => scale_contexts(&study.texts, &FOLLOW_STATEMENTS) })
             }
             StudyTask::Follow => {
                 let marked_text = item.texts.first()?;
@@ -266,6 +281,41 @@ impl StudyPage {
         };
         Some(Self::new(study, name, page_context, true, shown))
     }
+}
+
+/// The filter `fill` of the templates: fills in the placeholders of a text, as `t.consent.minutes|fill(minutes=20)`.
+#[allow(clippy::needless_pass_by_value, reason = "a filter takes its keyword arguments by value")]
+fn fill_text(text: &str, values: Kwargs) -> Result<String, Error> {
+    let names: Vec<String> = values.args().map(str::to_owned).collect();
+    let value = |name: &String| Ok((name.clone(), values.get::<Value>(name)?.to_string()));
+    let values: Vec<(String, String)> = names.iter().map(value).collect::<Result<_, Error>>()?;
+    Ok(fill_placeholders(text, values.iter().map(|(name, value)| (name.as_str(), value.clone()))))
+}
+
+/// Questions with the words of their levels, in the language of the pages.
+fn scale_contexts(texts: &PageTexts, scales: &[RatingScale]) -> Vec<Value> {
+    let scale = |scale| {
+        let (text, levels) = texts.scale_words(scale);
+        context! { text, levels }
+    };
+    scales.iter().map(scale).collect()
+}
+
+/// The questions at the end.
+fn end_context(study: &Study) -> Value {
+    let question = |question: &crate::study::EndQuestion| {
+        let kind = match question.kind {
+            EndQuestionKind::Text => "text",
+            EndQuestionKind::Choice => "choice",
+            EndQuestionKind::Scale => "scale",
+        };
+        let numbers: Vec<String> = (1..=question.answers.len()).map(|number| number.to_string()).collect();
+        context! {
+            field => format!("end_{}", question.name), text => question.text, kind, numbers, answers => question.answers,
+            optional => question.optional, most => question.text_limit(),
+        }
+    };
+    context! { questions => study.settings.end.iter().map(question).collect::<Vec<_>>() }
 }
 
 /// Splits a text into runs of words. A marked run has its number, grade and alternatives.
@@ -318,64 +368,29 @@ fn progress_context(progress: AnswerProgress) -> Value {
 }
 
 /// The steps of the task, for the page before the first item.
-fn task_steps(study: &Study) -> Vec<&'static str> {
-    let practice = "The first one is for practice. It does not count.";
-    match study.plan.mode {
-        StudyTask::Follow => {
-            let marks = "Some words may be marked: a program doubts them. They may be wrong, or right. Under the text you read what may stand there instead.";
-            let has_marks = study.plan.conditions.iter().any(|condition| condition.shows_doubts);
-            let first = ["You read a text. It tells the way through a building."];
-            let then = [
-                "You see pictures of the building. Look around, and go from place to place.",
-                "Go where the text says. Stop where the text ends.",
-                "Then you say how it was.",
-                practice,
-            ];
-            first.into_iter().chain(has_marks.then_some(marks)).chain(then).collect()
+fn task_steps(study: &Study) -> Vec<&str> {
+    let steps: &[&str] = match study.plan.mode {
+        StudyTask::Follow if study.plan.conditions.iter().any(|condition| condition.shows_doubts) => {
+            &["follow_read", "follow_marks", "follow_look", "follow_stop", "follow_say", "practice"]
         }
-        StudyTask::Rate if study.settings.write_first => vec![
-            "You watch a walk through a building.",
-            "You write a text that would lead somebody along the walk.",
-            "Then you read another text about the same walk, and answer four questions about it.",
-            practice,
-        ],
-        StudyTask::Rate => vec![
-            "You watch a walk through a building.",
-            "You read a text about the walk.",
-            "You answer four questions about the text.",
-            practice,
-        ],
-        StudyTask::Pair => vec![
-            "You watch a walk through a building.",
-            "You read two texts about it, A and B.",
-            "You say which one describes the walk better.",
-            practice,
-        ],
-    }
+        StudyTask::Follow => &["follow_read", "follow_look", "follow_stop", "follow_say", "practice"],
+        StudyTask::Rate if study.settings.write_first => &["watch", "write", "read_after_writing", "practice"],
+        StudyTask::Rate => &["watch", "rate_read", "rate_answer", "practice"],
+        StudyTask::Pair => &["watch", "pair_read", "pair_say", "practice"],
+    };
+    steps.iter().map(|key| study.texts.text("task", key)).collect()
 }
 
 /// The message page for an arrival that may not take part.
 pub(super) fn refusal_page(study: &Study, outcome: &ArrivalOutcome) -> StudyPage {
-    let (heading, text, retry) = match outcome {
-        ArrivalOutcome::Twice => (
-            "You have taken part already",
-            "Please open the link with which you started. If that does not help, ask us.",
-            false,
-        ),
-        ArrivalOutcome::Gone => {
-            ("You stopped taking part", "Your answers were deleted. One cannot take part again after that.", false)
-        }
-        ArrivalOutcome::Full => {
-            ("All places are taken at the moment", "A place may become free. Please try again in some minutes.", true)
-        }
-        ArrivalOutcome::Closed => {
-            ("This study is over", "It takes no more answers. Thank you for your interest.", false)
-        }
-        ArrivalOutcome::Unknown | ArrivalOutcome::New | ArrivalOutcome::Back(_) => {
-            ("This link leads to no study", "Please open the link that you were given, as a whole.", false)
-        }
+    let (name, retry) = match outcome {
+        ArrivalOutcome::Twice => ("twice", false),
+        ArrivalOutcome::Gone => ("gone", false),
+        ArrivalOutcome::Full => ("places", true),
+        ArrivalOutcome::Closed => ("closed", false),
+        ArrivalOutcome::Unknown | ArrivalOutcome::New | ArrivalOutcome::Back(_) => ("link", false),
     };
-    StudyPage::message_page(study, heading, text, retry)
+    StudyPage::named_message(study, name, retry)
 }
 
 #[cfg(test)]
@@ -384,6 +399,6 @@ mod tests {
 
     #[test]
     fn all_templates_are_well_formed() {
-        PageTemplates::new().unwrap();
+        PageTemplates::new(&PageTexts::default(), false).unwrap();
     }
 }

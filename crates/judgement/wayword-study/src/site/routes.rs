@@ -5,7 +5,7 @@
 
 use super::{
     cookies::StudyCookies,
-    desk::{DeskBusyError, StudyDesk},
+    desk::{DeskError, StudyDesk},
     forms::{self, FormFields},
     pages::{PageContext, PageTemplates, StudyPage, consent_version, person_mark, refusal_page},
     request_guard::{self, RequestLimiter, RequestSource},
@@ -15,14 +15,14 @@ use crate::{
         ArrivalOutcome, InputRefusal, ParticipantArrival, ParticipantInput, StudyTransaction, WithdrawalChoice,
         may_be_issued,
     },
-    study::{RecruiterSettings, Study, StudyError, StudyTask},
+    study::{PageTexts, RecruiterSettings, Study, StudyError, StudyTask, fill_placeholders},
     token::is_token,
 };
 use axum::{
     Router,
     body::Body,
     extract::{DefaultBodyLimit, Form, FromRequest as _, Path, Query, Request, State, rejection::PathRejection},
-    http::{HeaderMap, HeaderValue, StatusCode, header},
+    http::{HeaderMap, HeaderValue, StatusCode, Uri, header},
     middleware::{self, Next},
     response::{IntoResponse, Response},
     routing::{get, post},
@@ -32,6 +32,11 @@ use tokio::sync::Semaphore;
 
 /// Longest body of a form, bytes. A longer one gets an error page.
 const MAX_FORM_BYTES: usize = 16 * 1024;
+/// Longest body of a form with texts of the participant's own, bytes. It is far above what is stored, so that who writes too much gets the text
+/// back and can shorten it.
+const MAX_TEXT_FORM_BYTES: usize = 512 * 1024;
+/// The address to which an arrival is led. Its query tells whether the browser sends the cookie back that came with it.
+const ARRIVED_PAGE: HeaderValue = HeaderValue::from_static("/?arrived");
 /// How long a request may take, including its body.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(15);
 /// The assignment id that MTurk sends while a worker only previews a task.
@@ -44,6 +49,10 @@ pub(super) struct StudySite {
     pub(super) study: Arc<Study>,
     pub(super) desk: StudyDesk,
     pub(super) pages: PageTemplates,
+    /// Whether this is a preview, in which nothing is stored.
+    pub(super) is_preview: bool,
+    /// The script of the pages, with its words.
+    pub(super) script: String,
     pub(super) cookies: StudyCookies,
     pub(super) pace: RequestLimiter,
     /// Limits how many pictures are read at once, and so how much memory they take.
@@ -66,7 +75,9 @@ pub(super) fn build_router(site: Arc<StudySite>) -> Router {
         .route("/join", get(open_recruiter_link))
         .route("/consent", post(post_consent))
         .route("/understood", post(post_comprehension))
-        .route("/write", post(post_own_text))
+        .route("/write", post(post_own_text).layer(DefaultBodyLimit::max(MAX_TEXT_FORM_BYTES)))
+        .route("/end", post(post_end).layer(DefaultBodyLimit::max(MAX_TEXT_FORM_BYTES)))
+        .route("/preview", get(begin_preview))
         .route("/move", post(post_move))
         .route("/stop", post(post_stop))
         .route("/answer", post(post_answer))
@@ -74,8 +85,8 @@ pub(super) fn build_router(site: Arc<StudySite>) -> Router {
         .route("/withdraw", get(show_withdraw_page).post(post_withdraw))
         .route("/look/{slot}/{file}", get(serve_panorama))
         .route("/film/{slot}/{file}", get(serve_film_picture))
-        .route("/style.css", get(|| serve_asset("text/css; charset=utf-8", include_str!("assets/style.css"))))
-        .route("/script.js", get(|| serve_asset("text/javascript; charset=utf-8", include_str!("assets/script.js"))))
+        .route("/style.css", get(|| async { asset("text/css; charset=utf-8", include_str!("assets/style.css")) }))
+        .route("/script.js", get(serve_script))
         .route("/favicon.ico", get(|| async { StatusCode::NO_CONTENT }))
         .fallback(|State(site): SiteState| async move { RequestProblem::Missing.problem_page(&site) })
         .method_not_allowed_fallback(|State(site): SiteState| async move { RequestProblem::Method.problem_page(&site) })
@@ -117,6 +128,10 @@ enum RequestProblem {
     Fast,
     /// The store took too long, or its queue is full.
     Busy,
+    /// The disk is full, or cannot be written.
+    Disk,
+    /// The browser does not send cookies back.
+    NoCookies,
     /// The form is too long.
     Large,
     /// The form cannot be read.
@@ -133,50 +148,36 @@ enum RequestProblem {
 
 impl RequestProblem {
     fn problem_page(self, site: &StudySite) -> Response {
-        let (status, heading, text, retry) = match self {
-            Self::Missing => (StatusCode::NOT_FOUND, "There is nothing here", "Please open your link again.", false),
-            Self::Method => {
-                (StatusCode::METHOD_NOT_ALLOWED, "There is nothing here", "Please open your link again.", false)
-            }
-            Self::Foreign => (
-                StatusCode::FORBIDDEN,
-                "This came from another site",
-                "Please open your link again, and go on there.",
-                false,
-            ),
-            Self::NoSession => (
-                StatusCode::FORBIDDEN,
-                "We do not know who you are",
-                "Please open the link again with which you started. Your answers are kept.",
-                false,
-            ),
-            Self::Fast => (StatusCode::TOO_MANY_REQUESTS, "That was very fast", "Please wait a moment.", true),
-            Self::Busy => (StatusCode::SERVICE_UNAVAILABLE, "Not yet stored", "Please try again in a moment.", true),
-            Self::Large => (StatusCode::PAYLOAD_TOO_LARGE, "That was too much", "Please write less.", false),
-            Self::Form => (StatusCode::BAD_REQUEST, "We could not read that", "Please load the page again.", true),
-            Self::OutOfTurn => (StatusCode::CONFLICT, "You are at another place", "Please load the page again.", true),
-            Self::Returned => (
-                StatusCode::CONFLICT,
-                "This one went to somebody else",
-                "You were away for a long time. Please go on with the next one.",
-                true,
-            ),
-            Self::Closed => (StatusCode::GONE, "This study is over", "It takes no more answers. Thank you.", false),
-            Self::Fault => {
-                (StatusCode::INTERNAL_SERVER_ERROR, "Something went wrong", "Please try again in a moment.", true)
-            }
+        let (status, name, retry) = match self {
+            Self::Missing => (StatusCode::NOT_FOUND, "missing", false),
+            Self::Method => (StatusCode::METHOD_NOT_ALLOWED, "missing", false),
+            Self::Foreign => (StatusCode::FORBIDDEN, "foreign", false),
+            Self::NoSession => (StatusCode::FORBIDDEN, "unknown", false),
+            Self::NoCookies => (StatusCode::FORBIDDEN, "cookies", false),
+            Self::Fast => (StatusCode::TOO_MANY_REQUESTS, "fast", true),
+            Self::Busy => (StatusCode::SERVICE_UNAVAILABLE, "busy", true),
+            Self::Disk => (StatusCode::SERVICE_UNAVAILABLE, "full", true),
+            Self::Large => (StatusCode::PAYLOAD_TOO_LARGE, "large", false),
+            Self::Form => (StatusCode::BAD_REQUEST, "form", true),
+            Self::OutOfTurn => (StatusCode::CONFLICT, "turn", true),
+            Self::Returned => (StatusCode::CONFLICT, "returned", true),
+            Self::Closed => (StatusCode::GONE, "closed", false),
+            Self::Fault => (StatusCode::INTERNAL_SERVER_ERROR, "fault", true),
         };
-        let mut response = page_response(site, status, &StudyPage::message_page(&site.study, heading, text, retry));
-        if matches!(self, Self::Fast | Self::Busy) {
+        let mut response = page_response(site, status, &StudyPage::named_message(&site.study, name, retry));
+        if matches!(self, Self::Fast | Self::Busy | Self::Disk) {
             response.headers_mut().insert(header::RETRY_AFTER, RETRY_AFTER_SECONDS);
         }
         response
     }
 }
 
-impl From<DeskBusyError> for RequestProblem {
-    fn from(_: DeskBusyError) -> Self {
-        Self::Busy
+impl From<DeskError> for RequestProblem {
+    fn from(error: DeskError) -> Self {
+        match error {
+            DeskError::Busy => Self::Busy,
+            DeskError::Disk => Self::Disk,
+        }
     }
 }
 
@@ -200,17 +201,36 @@ fn page_response(site: &StudySite, status: StatusCode, page: &StudyPage) -> Resp
     }
 }
 
-/// Redirects to `/` and sets cookies.
-fn redirect_home(cookies: impl IntoIterator<Item = Option<HeaderValue>>) -> Response {
-    let mut response = (StatusCode::SEE_OTHER, [(header::LOCATION, HeaderValue::from_static("/"))]).into_response();
+/// Redirects to `/`, where the participant's page is.
+fn redirect_home() -> Response {
+    redirect_with_cookies(HeaderValue::from_static("/"), [])
+}
+
+/// Redirects and sets cookies.
+fn redirect_with_cookies(to: HeaderValue, cookies: impl IntoIterator<Item = Option<HeaderValue>>) -> Response {
+    let mut response = (StatusCode::SEE_OTHER, [(header::LOCATION, to)]).into_response();
     for cookie in cookies.into_iter().flatten() {
         response.headers_mut().append(header::SET_COOKIE, cookie);
     }
     response
 }
 
-async fn serve_asset(kind: &'static str, text: &'static str) -> Response {
-    ([(header::CONTENT_TYPE, HeaderValue::from_static(kind))], text).into_response()
+fn asset(kind: &'static str, text: impl IntoResponse) -> Response {
+    let mut response = text.into_response();
+    response.headers_mut().insert(header::CONTENT_TYPE, HeaderValue::from_static(kind));
+    response
+}
+
+async fn serve_script(State(site): SiteState) -> Response {
+    asset("text/javascript; charset=utf-8", site.script.clone())
+}
+
+/// The script of the pages, with its words in front of it.
+pub(super) fn script_with_words(texts: &PageTexts) -> String {
+    let words = ["script", "film", "walk"].map(|name| texts.sections().get(name).cloned().unwrap_or_default());
+    let words: BTreeMap<String, String> = words.into_iter().flatten().collect();
+    // JSON is also JavaScript. No page contains the script, so no word can end it.
+    format!("'use strict';\nconst T = {};\n{}", serde_json::json!(words), include_str!("assets/script.js"))
 }
 
 fn response_or_problem_page(result: Result<Response, RequestProblem>, site: &StudySite) -> Response {
@@ -251,8 +271,14 @@ async fn require_person(site: &StudySite, headers: &HeaderMap) -> Result<(i64, P
 }
 
 /// Answers `/`: the page of the participant's stage, the consent page for a new arrival, or a message.
-async fn show_current_page(State(site): SiteState, headers: HeaderMap) -> Response {
+async fn show_current_page(State(site): SiteState, address: Uri, headers: HeaderMap) -> Response {
     let page = async {
+        if address.query() == Some("arrived") {
+            // The cookie came back: the address becomes plain. Without it, the browser keeps none.
+            let has_cookie =
+                site.cookies.session_token(&headers).is_some() || site.cookies.pending_arrival(&headers).is_some();
+            return if has_cookie { Ok(redirect_home()) } else { Err(RequestProblem::NoCookies) };
+        }
         if let Some((person, mark)) = identify_requester(&site, &headers).await? {
             let page_context = PageContext { who: Some(mark), ..PageContext::default() };
             return stage_response(&site, person, page_context, StatusCode::OK).await;
@@ -293,7 +319,7 @@ async fn stage_response(
 fn arrival_response(site: &StudySite, entry: ArrivalOutcome) -> Response {
     match entry {
         ArrivalOutcome::Back(session) => {
-            redirect_home([site.cookies.set_session(&session), site.cookies.drop_arrival()])
+            redirect_with_cookies(ARRIVED_PAGE, [site.cookies.set_session(&session), site.cookies.drop_arrival()])
         }
         entry => {
             let status = match entry {
@@ -307,7 +333,11 @@ fn arrival_response(site: &StudySite, entry: ArrivalOutcome) -> Response {
 }
 
 /// Answers a visitor who opens a link: leads to the consent page or back into the study, or shows a message.
-async fn handle_arrival(site: &StudySite, arrival: ParticipantArrival) -> Result<Response, RequestProblem> {
+async fn handle_arrival(
+    site: &StudySite,
+    headers: &HeaderMap,
+    arrival: ParticipantArrival,
+) -> Result<Response, RequestProblem> {
     if !site.pace.allows_request(RequestSource::Stranger) {
         return Err(RequestProblem::Fast);
     }
@@ -315,41 +345,62 @@ async fn handle_arrival(site: &StudySite, arrival: ParticipantArrival) -> Result
     Ok(match site.desk.ask_store(move |transaction| transaction.enter_study(&asked)).await? {
         // This ends the session of another person on the same machine. If the study is full, the page at `/` tries again.
         ArrivalOutcome::New | ArrivalOutcome::Full => {
-            redirect_home([site.cookies.set_arrival(&arrival), site.cookies.drop_session()])
+            redirect_with_cookies(ARRIVED_PAGE, [site.cookies.set_arrival(&arrival), site.cookies.drop_session()])
         }
+        // A closed study knows no recruiter's link any more. In the browser in which somebody took part, the session still leads to the code.
+        ArrivalOutcome::Closed if session_person(site, headers).await?.is_some() => redirect_home(),
         entry => arrival_response(site, entry),
     })
 }
 
+/// Begins a walk through the study as a new participant, in a preview.
+async fn begin_preview(State(site): SiteState) -> Response {
+    let begin = async {
+        if !site.is_preview {
+            return Err(RequestProblem::Missing);
+        }
+        let token = site.desk.ask_store(|transaction| Ok(transaction.invite_participants(1)?.tokens)).await?.pop();
+        let arrival = ParticipantArrival::Link(token.ok_or(RequestProblem::Fault)?);
+        handle_arrival(&site, &HeaderMap::new(), arrival).await
+    };
+    response_or_problem_page(begin.await, &site)
+}
+
 /// A personal link.
-async fn open_personal_link(State(site): SiteState, token: Result<Path<String>, PathRejection>) -> Response {
+async fn open_personal_link(
+    State(site): SiteState,
+    token: Result<Path<String>, PathRejection>,
+    headers: HeaderMap,
+) -> Response {
     let Ok(Path(token)) = token else { return RequestProblem::Missing.problem_page(&site) };
-    response_or_problem_page(handle_arrival(&site, ParticipantArrival::Link(token)).await, &site)
+    response_or_problem_page(handle_arrival(&site, &headers, ParticipantArrival::Link(token)).await, &site)
 }
 
 /// A recruiter's link. Its ids go into a cookie and out of the address at once, so that the browser's history does not show them.
-async fn open_recruiter_link(State(site): SiteState, Query(query): Query<BTreeMap<String, String>>) -> Response {
+async fn open_recruiter_link(
+    State(site): SiteState,
+    Query(query): Query<BTreeMap<String, String>>,
+    headers: HeaderMap,
+) -> Response {
     let RecruiterSettings::Parameters { person, session, study, .. } = &site.study.settings.recruiter else {
         return RequestProblem::Missing.problem_page(&site);
     };
     if query.get(session).is_some_and(|session| session == MTURK_PREVIEW_ID) {
-        let text = "Accept the task, and open its link again to take part.";
         return page_response(
             &site,
             StatusCode::OK,
-            &StudyPage::message_page(&site.study, "This is a preview", text, false),
+            &StudyPage::named_message(&site.study, "recruiter_preview", false),
         );
     }
     let value = |name: &String| query.get(name).cloned().unwrap_or_default();
     if let Some(parameter) = [person, session].into_iter().find(|name| !may_be_issued(&value(name), name)) {
-        let text = format!(
-            "Please open the study from the recruiter's page. A preview has no id: {parameter} in this link is empty, or a placeholder."
-        );
-        let page = StudyPage::message_page(&site.study, "This link has no participant's id", &text, false);
+        let texts = &site.study.texts;
+        let text = fill_placeholders(texts.text("message", "no_id_text"), [("parameter", parameter.clone())]);
+        let page = StudyPage::message_page(&site.study, texts.text("message", "no_id_title"), &text, false);
         return page_response(&site, StatusCode::FORBIDDEN, &page);
     }
     let arrival = ParticipantArrival::Recruit { person: value(person), session: value(session), study: value(study) };
-    response_or_problem_page(handle_arrival(&site, arrival).await, &site)
+    response_or_problem_page(handle_arrival(&site, &headers, arrival).await, &site)
 }
 
 /// The fields of a form.
@@ -371,7 +422,7 @@ async fn post_consent(State(site): SiteState, request: Request) -> Response {
     let done = async {
         let (headers, fields) = read_form(request).await?;
         if identify_requester(&site, &headers).await?.is_some() {
-            return Ok(redirect_home([]));
+            return Ok(redirect_home());
         }
         let arrival = site.cookies.pending_arrival(&headers).ok_or(RequestProblem::NoSession)?;
         if fields.get("agree").map(String::as_str) != Some("yes") {
@@ -384,7 +435,7 @@ async fn post_consent(State(site): SiteState, request: Request) -> Response {
         }
         let version = consent_version(&site.study);
         if fields.get("version").is_some_and(|read| *read != version) {
-            let error = Some("This page has changed. Please read it once more.");
+            let error = Some("consent_changed");
             let page = StudyPage::consent_page(&site.study, &PageContext { error, ..PageContext::default() });
             return Ok(page_response(&site, StatusCode::UNPROCESSABLE_ENTITY, &page));
         }
@@ -410,7 +461,7 @@ async fn post_input(
     match read(&fields) {
         Ok(input) => {
             site.desk.ask_store(move |transaction| transaction.store_input(person, input)).await??;
-            Ok(redirect_home([]))
+            Ok(redirect_home())
         }
         Err(error) => {
             let page_context = PageContext { error: Some(error), given: Some(fields), ..page_context };
@@ -429,6 +480,11 @@ async fn post_comprehension(State(site): SiteState, request: Request) -> Respons
 
 async fn post_own_text(State(site): SiteState, request: Request) -> Response {
     response_or_problem_page(post_input(&site, request, forms::read_own_text).await, &site)
+}
+
+async fn post_end(State(site): SiteState, request: Request) -> Response {
+    let questions = &site.study.settings.end;
+    response_or_problem_page(post_input(&site, request, |fields| forms::read_end(fields, questions)).await, &site)
 }
 
 async fn post_move(State(site): SiteState, request: Request) -> Response {
@@ -486,11 +542,10 @@ async fn post_withdraw(State(site): SiteState, request: Request) -> Response {
                 site.desk
                     .ask_store(move |transaction| transaction.withdraw_person(person, WithdrawalChoice::Keep))
                     .await?;
-                Ok(redirect_home([]))
+                Ok(redirect_home())
             }
             _ => {
-                let page_context =
-                    PageContext { error: Some("Please choose what happens to your answers."), ..page_context };
+                let page_context = PageContext { error: Some("choose_end"), ..page_context };
                 Ok(page_response(
                     &site,
                     StatusCode::UNPROCESSABLE_ENTITY,

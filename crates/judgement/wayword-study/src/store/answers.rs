@@ -2,7 +2,7 @@
 //! again.
 
 use super::{StudyTransaction, stage::StoredSlot};
-use crate::study::{PairChoice, ParticipantAnswer, ParticipantStatus, StudyError, StudyTask};
+use crate::study::{EndAnswer, PairChoice, ParticipantAnswer, ParticipantStatus, StudyError, StudyTask};
 use rusqlite::params;
 
 /// Most steps of a walk; a further one is refused. Paths of the known datasets have fewer than 20.
@@ -17,20 +17,22 @@ const MAX_STORED_LOOKS: u32 = 100_000;
 pub(crate) enum ParticipantInput {
     /// The answers to the questions about the task, as indices. `attempt` is the number of wrong tries before this one.
     Understood { attempt: u32, answers: Vec<usize> },
-    /// A text that the participant wrote.
-    OwnText { slot: String, text: String },
+    /// A text that the participant wrote, after seeing `pictures` pictures of the film.
+    OwnText { slot: String, text: String, pictures: Option<u32> },
     /// A step to neighbour number `to` of the current place, after `seq` steps.
     Move { slot: String, seq: usize, to: usize },
     /// The end of a walk, after `seq` steps and `looks` turns to look around.
     Stop { slot: String, seq: usize, looks: u32 },
     /// The levels of the statements after a walk, 1 to 5.
     Followed { slot: String, statements: [u8; 3] },
-    /// The levels of the questions about a text, 1 to 5.
-    Rated { slot: String, ratings: [u8; 4] },
-    /// Which text is better.
-    Chosen { slot: String, choice: PairChoice },
+    /// The levels of the questions about a text, 1 to 5, after seeing `pictures` pictures of the film.
+    Rated { slot: String, ratings: [u8; 4], pictures: Option<u32> },
+    /// Which text is better, after seeing `pictures` pictures of the film.
+    Chosen { slot: String, choice: PairChoice, pictures: Option<u32> },
     /// The level that was chosen at an attention check. `number` counts the checks from 0.
     Attention { number: u32, choice: u8 },
+    /// The answers to all questions at the end.
+    End { answers: Vec<EndAnswer> },
 }
 
 /// Why an input is not stored.
@@ -58,20 +60,24 @@ impl StudyTransaction<'_> {
         match input {
             ParticipantInput::Understood { attempt, answers } => self.store_comprehension(person, attempt, &answers),
             ParticipantInput::Attention { number, choice } => self.store_attention(person, number, choice),
-            ParticipantInput::OwnText { slot, text } => {
-                self.with_slot(person, &slot, |held| self.store_own_text(held, &text))
-            }
+            ParticipantInput::End { answers } => self.store_end_answers(person, &answers),
+            ParticipantInput::OwnText { slot, text, pictures } => self.with_slot(person, &slot, |held| {
+                self.store_viewing(held, pictures)?;
+                self.store_own_text(held, &text)
+            }),
             ParticipantInput::Move { slot, seq, to } => {
                 self.with_slot(person, &slot, |held| self.store_move(held, seq, to))
             }
             ParticipantInput::Stop { slot, seq, looks } => {
                 self.with_slot(person, &slot, |held| self.store_stop(held, seq, looks))
             }
-            ParticipantInput::Rated { slot, ratings } => self.with_slot(person, &slot, |held| {
+            ParticipantInput::Rated { slot, ratings, pictures } => self.with_slot(person, &slot, |held| {
+                self.store_viewing(held, pictures)?;
                 let is_early = self.study.settings.write_first && held.own_text.is_none();
                 self.store_answer(person, held, StudyTask::Rate, is_early, &ParticipantAnswer::Rate { ratings })
             }),
-            ParticipantInput::Chosen { slot, choice } => self.with_slot(person, &slot, |held| {
+            ParticipantInput::Chosen { slot, choice, pictures } => self.with_slot(person, &slot, |held| {
+                self.store_viewing(held, pictures)?;
                 self.store_answer(person, held, StudyTask::Pair, false, &ParticipantAnswer::Pair { choice })
             }),
             ParticipantInput::Followed { slot, statements } => self.with_slot(person, &slot, |held| {
@@ -133,6 +139,28 @@ impl StudyTransaction<'_> {
         self.db.execute(insert, params![person, number, passed, self.now_ms])?;
         self.end_if_done(person)?;
         Ok(Ok(()))
+    }
+
+    /// Stores the answers to the questions at the end. The first ones stand.
+    fn store_end_answers(&self, person: i64, answers: &[EndAnswer]) -> InputResult {
+        let Some(outcome) = self.find_outcome(person)? else { return Ok(Err(InputRefusal::OutOfTurn)) };
+        if self.has_end_questions(person, outcome.status)? {
+            let Ok(answers) = serde_json::to_string(answers) else { return Ok(Err(InputRefusal::Unknown)) };
+            let insert = "INSERT INTO end_answers (person, answers, at_ms) VALUES (?1, ?2, ?3)";
+            self.db.execute(insert, params![person, answers, self.now_ms])?;
+        }
+        Ok(Ok(()))
+    }
+
+    /// Stores how many pictures of the film were seen, if the page counted them. A reload begins to count anew, so the largest number stands.
+    fn store_viewing(&self, held: &StoredSlot, pictures: Option<u32>) -> Result<(), StudyError> {
+        let Some(pictures) = pictures else { return Ok(()) };
+        let frames = self.slot_contents(held).map_or(0, |(_, route, _)| route.film.len());
+        let pictures = pictures.min(u32::try_from(frames).unwrap_or(u32::MAX));
+        let insert = "INSERT INTO viewing (slot, pictures) VALUES (?1, ?2) \
+                      ON CONFLICT (slot) DO UPDATE SET pictures = max(pictures, excluded.pictures)";
+        self.db.execute(insert, params![held.id, pictures])?;
+        Ok(())
     }
 
     fn store_own_text(&self, held: &StoredSlot, text: &str) -> InputResult {

@@ -20,7 +20,7 @@ pub(crate) use stage::{AnswerProgress, ParticipantStage, ParticipationOutcome, S
 mod tests;
 
 use crate::study::{Study, StudyError};
-use rusqlite::{Connection, TransactionBehavior};
+use rusqlite::{Connection, OpenFlags, TransactionBehavior};
 use std::{
     path::{Path, PathBuf},
     time::{Duration, SystemTime, UNIX_EPOCH},
@@ -53,17 +53,51 @@ impl StudyStore {
         db.pragma_update(None, "foreign_keys", true)?;
         // Deleted data are overwritten, and not only unlinked.
         db.pragma_update(None, "secure_delete", true)?;
-        let version: i64 = db.pragma_query_value(None, "user_version", |row| row.get(0))?;
-        if version > SCHEMA_VERSION {
-            let problem = format!(
-                "{}: a later version of this program made it (tables of version {version}, and this program reads {SCHEMA_VERSION})",
-                file.display()
-            );
-            return Err(StudyError::refused_request(problem, "use that version"));
-        }
+        check_version(&db, file)?;
         db.execute_batch(DATABASE_SCHEMA)?;
         db.pragma_update(None, "user_version", SCHEMA_VERSION)?;
         Ok(Self { db })
+    }
+
+    /// A store in memory, which is gone when it is dropped.
+    ///
+    /// # Errors
+    /// When there is no memory.
+    pub(crate) fn open_in_memory() -> Result<Self, StudyError> {
+        let db = Connection::open_in_memory()?;
+        db.pragma_update(None, "foreign_keys", true)?;
+        db.execute_batch(DATABASE_SCHEMA)?;
+        Ok(Self { db })
+    }
+
+    /// Opens the database to read it. Nothing is written, so this works on a full disk and in a folder that cannot be written.
+    ///
+    /// # Errors
+    /// When it cannot be opened, or is of a later version.
+    pub(crate) fn open_to_read(file: &Path) -> Result<Self, StudyError> {
+        let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX | OpenFlags::SQLITE_OPEN_URI;
+        let open = |uri: &str| -> Result<Self, StudyError> {
+            let db = Connection::open_with_flags(uri, flags)?;
+            db.busy_timeout(BUSY_TIMEOUT)?;
+            check_version(&db, file)?;
+            let has_tables = "SELECT EXISTS (SELECT 1 FROM sqlite_master WHERE name = 'end_answers')";
+            if db.query_row(has_tables, [], |row| row.get(0))? {
+                return Ok(Self { db });
+            }
+            // An earlier version of the program made it, without the newer tables.
+            drop(db);
+            Self::open(file)
+        };
+        let address = file_uri(file);
+        let opened = open(&address);
+        // SQLite makes a file of shared memory beside the database, where no server has one. Without room for it, the database can still be
+        // read as it is, unless its log has answers that only that file leads to.
+        let log = PathBuf::from(format!("{}-wal", file.display()));
+        let has_empty_log = std::fs::metadata(log).map_or(true, |log| log.len() == 0);
+        match opened {
+            Err(StudyError::Store { .. }) if file.exists() && has_empty_log => open(&format!("{address}?immutable=1")),
+            opened => opened,
+        }
     }
 
     /// Runs `work` as one transaction: all its changes are kept, or none.
@@ -124,6 +158,25 @@ impl StudyStore {
         }
         Ok(transaction.commit()?)
     }
+}
+
+/// Refuses a database of a later version of the program.
+fn check_version(db: &Connection, file: &Path) -> Result<(), StudyError> {
+    let version: i64 = db.pragma_query_value(None, "user_version", |row| row.get(0))?;
+    if version > SCHEMA_VERSION {
+        let problem = format!(
+            "{}: a later version of this program made it (tables of version {version}, and this program reads {SCHEMA_VERSION})",
+            file.display()
+        );
+        return Err(StudyError::refused_request(problem, "use that version"));
+    }
+    Ok(())
+}
+
+/// The address of a file as SQLite takes it, with the letters encoded that an address reserves.
+fn file_uri(file: &Path) -> String {
+    let path = file.to_string_lossy();
+    format!("file:{}", path.replace('%', "%25").replace('?', "%3f").replace('#', "%23"))
 }
 
 /// Unix time, milliseconds.

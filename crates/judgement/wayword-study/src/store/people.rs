@@ -1,9 +1,6 @@
 //! The participants: how they arrive, consent, come back, stop, and are forgotten.
 
-use super::{
-    StudyTransaction,
-    stage::{ParticipantStage, ParticipationOutcome},
-};
+use super::{StudyTransaction, stage::ParticipationOutcome};
 use crate::{
     study::{ParticipantStatus, RecruiterSettings, StudyError},
     token::{hash_parts, is_token, random_token},
@@ -329,15 +326,15 @@ impl StudyTransaction<'_> {
         }
     }
 
-    /// Ends a participation with a status, and returns the stage at its end.
+    /// Ends a participation with a status.
     pub(super) fn end_participation(
         &self,
         person: i64,
         status: ParticipantStatus,
-    ) -> Result<ParticipantStage, StudyError> {
+    ) -> Result<ParticipationOutcome, StudyError> {
         let update = "UPDATE person SET status = ?2, finished_ms = ?3 WHERE id = ?1";
         self.db.execute(update, params![person, status.name(), self.now_ms])?;
-        Ok(ParticipantStage::Over(ParticipationOutcome { status, answers: self.answer_progress(person)?.answered }))
+        Ok(ParticipationOutcome { status, answers: self.answer_progress(person)?.answered })
     }
 
     /// The participant who came by this link before.

@@ -1,7 +1,9 @@
 //! Reads the whole database into [`StudyData`], from which the results are computed.
 
 use super::{StudyStore, StudyTransaction, people};
-use crate::study::{AttentionCheck, ItemSlot, Participant, ParticipantMove, SlotState, Study, StudyData, StudyError};
+use crate::study::{
+    AttentionCheck, EndAnswer, ItemSlot, Participant, ParticipantMove, SlotState, Study, StudyData, StudyError,
+};
 use rusqlite::{Connection, Row};
 use std::collections::BTreeMap;
 use wayword_core::ViewpointId;
@@ -19,8 +21,8 @@ impl StudyStore {
             Ok((participants, slots, forgotten, transaction.is_closed()?))
         };
         let (participants, slots, forgotten, is_closed) = self.read_transaction(&study, now_ms, read)?;
-        let Study { plan, settings, items, routes, scenes, .. } = study;
-        Ok(StudyData { plan, settings, items, routes, scenes, participants, slots, forgotten, is_closed })
+        let Study { plan, settings, texts, items, routes, scenes, .. } = study;
+        Ok(StudyData { plan, settings, texts, items, routes, scenes, participants, slots, forgotten, is_closed })
     }
 }
 
@@ -33,11 +35,16 @@ fn read_participants(db: &Connection) -> Result<Vec<Participant>, StudyError> {
         attention.entry(row.get(0)?).or_default().push(check);
     }
     let mut select = db.prepare(
-        "SELECT id, name, status, consented_ms, consent, finished_ms, seen_ms, misunderstood, expected, understood, recruiter_status FROM person \
-         ORDER BY consented_ms, id",
+        "SELECT person.id, name, status, consented_ms, consent, finished_ms, seen_ms, misunderstood, expected, understood, recruiter_status, \
+         answers FROM person LEFT JOIN end_answers ON person = person.id ORDER BY consented_ms, person.id",
     )?;
     let participant = |row: &Row<'_>| {
         let id: i64 = row.get(0)?;
+        let end: Option<Vec<EndAnswer>> = row
+            .get::<_, Option<String>>(11)?
+            .map(|answers| serde_json::from_str(&answers))
+            .transpose()
+            .map_err(|error| people::unreadable_value(11, error))?;
         Ok(Participant {
             id: row.get(1)?,
             status: people::status_in_column(row, 2)?,
@@ -49,6 +56,7 @@ fn read_participants(db: &Connection) -> Result<Vec<Participant>, StudyError> {
             expected: row.get(8)?,
             understood: row.get(9)?,
             recruiter_status: row.get(10)?,
+            end: end.unwrap_or_default(),
             attention: attention.remove(&id).unwrap_or_default(),
         })
     };
@@ -59,8 +67,8 @@ fn read_participants(db: &Connection) -> Result<Vec<Participant>, StudyError> {
 fn read_slots(db: &Connection, now_ms: i64) -> Result<Vec<ItemSlot>, StudyError> {
     let mut moves = read_moves(db)?;
     let mut select = db.prepare(
-        "SELECT slot.id, person.name, item, position, state, lease_ms, given_ms, answered_ms, is_turned, answer, own_text \
-         FROM slot JOIN person ON person.id = slot.person ORDER BY given_ms, slot.id",
+        "SELECT slot.id, person.name, item, position, state, lease_ms, given_ms, answered_ms, is_turned, answer, own_text, \
+         pictures FROM slot JOIN person ON person.id = slot.person LEFT JOIN viewing ON viewing.slot = slot.id ORDER BY given_ms, slot.id",
     )?;
     let slot = |row: &Row<'_>| {
         let id: i64 = row.get(0)?;
@@ -82,6 +90,7 @@ fn read_slots(db: &Connection, now_ms: i64) -> Result<Vec<ItemSlot>, StudyError>
             is_turned: row.get(8)?,
             answer: answer.map_err(|error| people::unreadable_value(9, error))?,
             own_text: row.get(10)?,
+            pictures_seen: row.get(11)?,
             moves: moves.remove(&id).unwrap_or_default(),
         })
     };

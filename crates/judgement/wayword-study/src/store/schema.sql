@@ -77,3 +77,16 @@ CREATE TABLE IF NOT EXISTS attention (
     at_ms INTEGER NOT NULL,
     PRIMARY KEY (person, number)
 ) STRICT, WITHOUT ROWID;
+
+-- How many different pictures of a film the page showed, as it counted them.
+CREATE TABLE IF NOT EXISTS viewing (
+    slot INTEGER PRIMARY KEY REFERENCES slot (id) ON DELETE CASCADE,
+    pictures INTEGER NOT NULL
+) STRICT;
+
+-- The answers to the questions at the end, as JSON.
+CREATE TABLE IF NOT EXISTS end_answers (
+    person INTEGER PRIMARY KEY REFERENCES person (id) ON DELETE CASCADE,
+    answers TEXT NOT NULL,
+    at_ms INTEGER NOT NULL
+) STRICT;

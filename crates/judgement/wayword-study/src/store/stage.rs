@@ -18,6 +18,8 @@ pub(crate) enum ParticipantStage {
     Item(StoredSlot),
     /// At attention check `number`, from 0, which asks for a level, 1 to 5.
     Attention { number: u32, level: u8 },
+    /// At the questions at the end. All items are answered.
+    End,
     /// At the end.
     Over(ParticipationOutcome),
 }
@@ -67,7 +69,7 @@ impl StudyTransaction<'_> {
     /// The stage of a person. Hands out the next item if one is due, and ends the participation if all items are answered.
     pub(crate) fn current_stage(&self, person: i64) -> Result<ParticipantStage, StudyError> {
         if let Some(outcome) = self.find_outcome(person)? {
-            return Ok(ParticipantStage::Over(outcome));
+            return self.stage_at_end(person, outcome);
         }
         let find = "SELECT understood, misunderstood FROM person WHERE id = ?1";
         let (understood, attempt) =
@@ -96,14 +98,33 @@ impl StudyTransaction<'_> {
 
     /// Ends the participation of a person who has answered everything.
     fn finish_person(&self, person: i64) -> Result<ParticipantStage, StudyError> {
-        self.end_participation(
-            person,
-            if self.has_failed_checks(person)? {
-                ParticipantStatus::AttentionFailed
-            } else {
-                ParticipantStatus::Complete
-            },
-        )
+        let status = if self.has_failed_checks(person)? {
+            ParticipantStatus::AttentionFailed
+        } else {
+            ParticipantStatus::Complete
+        };
+        let outcome = self.end_participation(person, status)?;
+        self.stage_at_end(person, outcome)
+    }
+
+    /// The stage of a person whose participation has ended. Who answered all items is complete, also without an answer to the questions at
+    /// the end: these come before the code, and an empty page of them loses nothing.
+    fn stage_at_end(&self, person: i64, outcome: ParticipationOutcome) -> Result<ParticipantStage, StudyError> {
+        Ok(if self.has_end_questions(person, outcome.status)? {
+            ParticipantStage::End
+        } else {
+            ParticipantStage::Over(outcome)
+        })
+    }
+
+    /// Whether a person still has to answer the questions at the end. In a closed study nobody has to.
+    pub(super) fn has_end_questions(&self, person: i64, status: ParticipantStatus) -> Result<bool, StudyError> {
+        let is_done = matches!(status, ParticipantStatus::Complete | ParticipantStatus::AttentionFailed);
+        if !is_done || self.study.settings.end.is_empty() || self.is_closed()? {
+            return Ok(false);
+        }
+        let find = "SELECT EXISTS (SELECT 1 FROM end_answers WHERE person = ?1)";
+        Ok(!self.db.query_row(find, [person], |row| row.get::<_, bool>(0))?)
     }
 
     /// Ends the participation if everything is answered. It is called after each answer, because many people close the page after the

@@ -2,8 +2,9 @@
 
 use super::*;
 use crate::study::{
-    ComprehensionQuestion, ConditionKind, PairChoice, ParticipantAnswer, ParticipantStatus, StudyCondition,
-    StudyDesign, StudyItem, StudyRoute, StudyScene, StudySettings, StudyTask, StudyText, StudyViewpoint,
+    ComprehensionQuestion, ConditionKind, EndAnswer, EndQuestion, EndQuestionKind, FilmPicture, PageTexts, PairChoice,
+    ParticipantAnswer, ParticipantStatus, StudyCondition, StudyDesign, StudyItem, StudyRoute, StudyScene,
+    StudySettings, StudyTask, StudyText, StudyViewpoint,
 };
 use std::collections::BTreeMap;
 use tempfile::TempDir;
@@ -80,7 +81,15 @@ fn study(mode: StudyTask, routes: u32, per_item: u32, per_participant: u32) -> D
         ..StudySettings::for_mode(mode, per_participant)
     };
     let routes = (0..=routes).map(route).collect();
-    let study = Study { folder: folder.path().to_owned(), plan, settings, items, routes, scenes: vec![scene()] };
+    let study = Study {
+        folder: folder.path().to_owned(),
+        plan,
+        settings,
+        texts: PageTexts::default(),
+        items,
+        routes,
+        scenes: vec![scene()],
+    };
     study.create().unwrap();
     Desk { folder, study, now_ms: 1_000_000 }
 }
@@ -126,10 +135,14 @@ impl Desk {
         let held = self.held(person);
         let slot = held.slot.clone();
         let given = match self.study.plan.mode {
-            StudyTask::Pair => ParticipantInput::Chosen { slot, choice: PairChoice::Tie },
+            StudyTask::Pair => ParticipantInput::Chosen { slot, choice: PairChoice::Tie, pictures: None },
             StudyTask::Rate => {
-                self.give(person, ParticipantInput::OwnText { slot: slot.clone(), text: "mine".into() }).unwrap();
-                ParticipantInput::Rated { slot, ratings: [1, 2, 3, 4] }
+                self.give(
+                    person,
+                    ParticipantInput::OwnText { slot: slot.clone(), text: "mine".into(), pictures: None },
+                )
+                .unwrap();
+                ParticipantInput::Rated { slot, ratings: [1, 2, 3, 4], pictures: None }
             }
             StudyTask::Follow => {
                 self.give(person, ParticipantInput::Stop { slot: slot.clone(), seq: held.moves.len(), looks: 2 })
@@ -139,6 +152,13 @@ impl Desk {
         };
         self.give(person, given).unwrap();
         held
+    }
+
+    /// Answers all items that are left.
+    fn answer_all(&self, person: i64) {
+        while let ParticipantStage::Item(_) = self.stage(person) {
+            self.answer(person);
+        }
     }
 
     fn data(&self) -> crate::study::StudyData {
@@ -223,7 +243,7 @@ fn items_of_absent_participants_go_to_others() {
         ParticipantStage::Over(ParticipationOutcome { status: ParticipantStatus::Complete, answers: 0 })
     );
     assert_eq!(
-        desk.give(first, ParticipantInput::Chosen { slot: held.slot, choice: PairChoice::A }),
+        desk.give(first, ParticipantInput::Chosen { slot: held.slot, choice: PairChoice::A, pictures: None }),
         Err(InputRefusal::Returned)
     );
     desk.answer(second);
@@ -249,10 +269,10 @@ fn an_answer_counts_once_and_the_first_stands() {
     let person = desk.newcomer();
     desk.answer(person);
     let slot = desk.held(person).slot;
-    let rated = |ratings| ParticipantInput::Rated { slot: slot.clone(), ratings };
+    let rated = |ratings| ParticipantInput::Rated { slot: slot.clone(), ratings, pictures: None };
     assert_eq!(desk.give(person, rated([5; 4])), Err(InputRefusal::OutOfTurn), "one's own text comes first");
-    desk.give(person, ParticipantInput::OwnText { slot: slot.clone(), text: "first".into() }).unwrap();
-    desk.give(person, ParticipantInput::OwnText { slot: slot.clone(), text: "second".into() }).unwrap();
+    desk.give(person, ParticipantInput::OwnText { slot: slot.clone(), text: "first".into(), pictures: None }).unwrap();
+    desk.give(person, ParticipantInput::OwnText { slot: slot.clone(), text: "second".into(), pictures: None }).unwrap();
     desk.give(person, rated([5; 4])).unwrap();
     desk.give(person, rated([1; 4])).unwrap();
     let data = desk.data();
@@ -270,7 +290,7 @@ fn nobody_answers_for_somebody_else() {
     let (one, other) = (desk.newcomer(), desk.newcomer());
     let slot = desk.held(one).slot;
     assert_eq!(
-        desk.give(other, ParticipantInput::Chosen { slot: slot.clone(), choice: PairChoice::A }),
+        desk.give(other, ParticipantInput::Chosen { slot: slot.clone(), choice: PairChoice::A, pictures: None }),
         Err(InputRefusal::Unknown)
     );
     assert_eq!(desk.ask(|book| book.panorama_file(other, &slot, 0)), None);
@@ -332,6 +352,7 @@ fn two_failed_attention_checks_change_the_status() {
     let attend = |person, is_good: bool| {
         loop {
             match desk.stage(person) {
+                ParticipantStage::End => panic!("there are no questions at the end"),
                 ParticipantStage::Item(_) => {
                     desk.answer(person);
                 }
@@ -493,7 +514,10 @@ fn a_closed_study_keeps_no_id_of_a_recruiter() {
     let live = desk.ask(|book| book.close_study(false));
     assert_eq!((live, desk.ask(|book| book.is_closed())), (1, false));
     desk.ask(|book| book.close_study(true));
-    assert_eq!(desk.give(person, ParticipantInput::Chosen { slot, choice: PairChoice::A }), Err(InputRefusal::Closed));
+    assert_eq!(
+        desk.give(person, ParticipantInput::Chosen { slot, choice: PairChoice::A, pictures: None }),
+        Err(InputRefusal::Closed)
+    );
     assert_eq!(desk.come(&recruit("p9", "x")), Err(ArrivalOutcome::Closed));
     // Opening and closing it moves what the log holds into the file.
     drop(StudyStore::open(&desk.folder.path().join("study.db")).unwrap());
@@ -557,4 +581,112 @@ fn a_later_database_is_not_touched() {
     let file = desk.folder.path().join("study.db");
     rusqlite::Connection::open(&file).unwrap().pragma_update(None, "user_version", 99).unwrap();
     assert!(StudyStore::open(&file).unwrap_err().to_string().contains("later version"));
+}
+
+/// A study with one question at the end, which has to be answered, and one that may be left out.
+fn with_end_questions(routes: u32) -> Desk {
+    let mut desk = study(StudyTask::Pair, routes, 1, routes);
+    let question = |name: &str, optional| EndQuestion {
+        name: name.to_owned(),
+        text: "How old are you?".to_owned(),
+        kind: EndQuestionKind::Text,
+        answers: Vec::new(),
+        optional,
+        max_chars: 0,
+    };
+    desk.study.settings.end = vec![question("age", false), question("more", true)];
+    desk
+}
+
+fn end_answers(text: &str) -> ParticipantInput {
+    ParticipantInput::End { answers: vec![EndAnswer { name: "age".to_owned(), answer: text.to_owned(), number: None }] }
+}
+
+#[test]
+fn questions_at_the_end_come_after_the_last_item_and_count_once() {
+    let desk = with_end_questions(2);
+    let person = desk.newcomer();
+    assert_eq!(desk.give(person, end_answers("early")), Err(InputRefusal::OutOfTurn));
+    desk.answer_all(person);
+    assert_eq!(desk.stage(person), ParticipantStage::End);
+    assert_eq!(desk.data().participants[0].status, ParticipantStatus::Complete, "the items are what counts");
+    for text in ["first", "second"] {
+        desk.give(person, end_answers(text)).unwrap();
+    }
+    assert!(matches!(desk.stage(person), ParticipantStage::Over(_)));
+    assert_eq!(desk.data().participants[0].end[0].answer, "first");
+    let id = desk.data().participants[0].id.clone();
+    desk.ask(|book| book.forget_participant(&id, false));
+    let left: i64 = StudyStore::open(&desk.folder.path().join("study.db"))
+        .unwrap()
+        .db
+        .query_row("SELECT count(*) FROM end_answers", [], |row| row.get(0))
+        .unwrap();
+    assert_eq!(left, 0, "what is forgotten is gone");
+}
+
+#[test]
+fn a_closed_study_asks_no_more_questions_and_ends_with_the_code() {
+    let desk = with_end_questions(1);
+    let person = desk.newcomer();
+    desk.answer_all(person);
+    desk.ask(|book| book.close_study(false));
+    assert!(matches!(
+        desk.stage(person),
+        ParticipantStage::Over(ParticipationOutcome { status: ParticipantStatus::Complete, .. })
+    ));
+    assert_eq!(desk.give(person, end_answers("late")), Err(InputRefusal::Closed));
+}
+
+#[test]
+fn the_most_pictures_of_a_film_that_were_seen_are_kept() {
+    let mut desk = study(StudyTask::Pair, 1, 1, 1);
+    let picture = |at: u32| FilmPicture { file: format!("{at}.jpg"), alt: String::new() };
+    desk.study.routes.iter_mut().for_each(|route| route.film = (0..5).map(picture).collect());
+    let person = desk.newcomer();
+    for pictures in [Some(3), Some(2), None, Some(9000)] {
+        let slot = desk.held(person).slot;
+        let seen = ParticipantInput::OwnText { slot, text: "mine".to_owned(), pictures };
+        desk.give(person, seen).unwrap();
+        let data = desk.data();
+        let expected = if pictures == Some(9000) { 5 } else { 3 };
+        assert_eq!(data.slots[0].pictures_seen, Some(expected), "{pictures:?}");
+    }
+}
+
+#[test]
+fn a_full_disk_is_told_and_what_was_acknowledged_stays() {
+    let desk = study(StudyTask::Pair, 4, 1, 4);
+    let person = desk.newcomer();
+    let slot = desk.held(person).slot;
+    desk.give(person, ParticipantInput::Chosen { slot, choice: PairChoice::A, pictures: None }).unwrap();
+    let file = desk.folder.path().join("study.db");
+    let mut store = StudyStore::open(&file).unwrap();
+    let pages: i64 = store.db.pragma_query_value(None, "page_count", |row| row.get(0)).unwrap();
+    store.db.pragma_update(None, "max_page_count", pages).unwrap();
+    let error = store
+        .write_transaction(&desk.study, desk.now_ms, |book| book.invite_participants(2000))
+        .expect_err("the disk has no room for so many links");
+    assert!(error.is_of_disk() && error.to_string().contains("free some space"), "{error}");
+    // The same connection goes on when there is room again.
+    store.db.pragma_update(None, "max_page_count", 100_000).unwrap();
+    store.write_transaction(&desk.study, desk.now_ms, |book| book.invite_participants(2000)).unwrap();
+    assert_eq!(desk.data().slots.iter().filter(|slot| slot.answer.is_some()).count(), 1);
+}
+
+#[test]
+fn a_database_is_read_without_writing_to_it() {
+    let desk = study(StudyTask::Pair, 1, 1, 1);
+    let person = desk.newcomer();
+    desk.held(person);
+    let file = desk.folder.path().join("study.db");
+    StudyStore::open(&file).unwrap().empty_log();
+    let before = std::fs::read(&file).unwrap();
+    let mut store = StudyStore::open_to_read(&file).unwrap();
+    let progress = store.read_transaction(&desk.study, desk.now_ms, |book| book.read_progress()).unwrap();
+    assert_eq!(progress.participants[&ParticipantStatus::Started], 1);
+    let refused = store.write_transaction(&desk.study, desk.now_ms, |book| book.invite_participants(1));
+    assert!(refused.unwrap_err().is_of_disk());
+    drop(store);
+    assert!(before == std::fs::read(&file).unwrap(), "the database has changed");
 }

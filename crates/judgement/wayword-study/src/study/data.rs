@@ -1,6 +1,6 @@
 //! The answers of a study as data, the input of [`crate::compute_results()`].
 
-use super::{StudyDesign, StudyItem, StudyRoute, StudyScene, StudySettings};
+use super::{EndAnswer, PageTexts, StudyDesign, StudyItem, StudyRoute, StudyScene, StudySettings};
 use serde::{Deserialize, Serialize};
 use wayword_core::ViewpointId;
 
@@ -11,6 +11,8 @@ pub struct StudyData {
     pub plan: StudyDesign,
     /// Wording and other settings.
     pub settings: StudySettings,
+    /// The words of the pages.
+    pub texts: PageTexts,
     /// All items, by id.
     pub items: Vec<StudyItem>,
     /// All routes, by id.
@@ -85,6 +87,9 @@ pub struct Participant {
     pub attention: Vec<AttentionCheck>,
     /// How many items were to be answered.
     pub expected: u32,
+    /// The answers to the questions at the end; empty until they are answered.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub end: Vec<EndAnswer>,
 }
 
 /// The result of an attention check.
@@ -119,6 +124,8 @@ pub struct ItemSlot {
     pub answer: Option<ParticipantAnswer>,
     /// The text that the participant wrote first, if the study asked for one.
     pub own_text: Option<String>,
+    /// How many different pictures of the film the participant saw, as the page counted; `None` where it could not count.
+    pub pictures_seen: Option<u32>,
     /// The steps of the participant's walk. The start is left out.
     pub moves: Vec<ParticipantMove>,
 }

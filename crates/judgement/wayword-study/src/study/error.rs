@@ -49,6 +49,13 @@ impl StudyError {
         move |source| Self::Io { path, doing, source }
     }
 
+    /// Whether the disk is full or cannot be written.
+    pub(crate) fn is_of_disk(&self) -> bool {
+        use rusqlite::ErrorCode::{DiskFull, ReadOnly, SystemIoFailure};
+        let Self::Store { source } = self else { return false };
+        matches!(source.sqlite_error_code(), Some(DiskFull | ReadOnly | SystemIoFailure))
+    }
+
     pub(crate) fn refused_request(problem: impl Into<String>, hint: impl Into<String>) -> Self {
         Self::Refused { problem: problem.into(), hint: hint.into() }
     }

@@ -1,6 +1,6 @@
 //! Writes and reads the folder of a study.
 
-use super::{StudyDesign, StudyError, StudyItem, StudyRoute, StudyScene, StudySettings};
+use super::{PageTexts, StudyDesign, StudyError, StudyItem, StudyRoute, StudyScene, StudySettings};
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
     fs,
@@ -12,6 +12,10 @@ use std::{
 const PLAN_FILE: &str = "plan.json";
 /// The wording, which the researcher may change.
 const SETTINGS_FILE: &str = "study.toml";
+/// The words of the pages, where they were translated.
+const TEXTS_FILE: &str = "texts.toml";
+/// Largest file of words, bytes.
+const MAX_TEXTS_BYTES: u64 = 1 << 20;
 const ITEMS_FILE: &str = "items.jsonl";
 const ROUTES_FILE: &str = "routes.jsonl";
 const SCENES_FILE: &str = "scenes.jsonl";
@@ -30,6 +34,8 @@ pub struct Study {
     pub plan: StudyDesign,
     /// Wording and other settings.
     pub settings: StudySettings,
+    /// The words of the pages.
+    pub texts: PageTexts,
     /// All items, by id.
     pub items: Vec<StudyItem>,
     /// All routes, by id.
@@ -57,6 +63,10 @@ impl Study {
         self.write_lines(ITEMS_FILE, &self.items)?;
         self.write_lines(ROUTES_FILE, &self.routes)?;
         self.write_lines(SCENES_FILE, &self.scenes)?;
+        if !self.texts.is_english() {
+            let texts = self.texts.to_file().map_err(|problem| wrong_file_error(&self.folder, TEXTS_FILE, &problem))?;
+            self.write_file(TEXTS_FILE, texts.as_bytes())?;
+        }
         let settings = toml::to_string_pretty(&self.settings)
             .map_err(|error| wrong_file_error(&self.folder, SETTINGS_FILE, &error))?;
         self.write_file(SETTINGS_FILE, settings.as_bytes())
@@ -92,9 +102,12 @@ impl Study {
         let settings: StudySettings =
             toml::from_str(&read(SETTINGS_FILE)?).map_err(|error| wrong_file_error(folder, SETTINGS_FILE, &error))?;
         settings.check().map_err(|problem| wrong_file_error(folder, SETTINGS_FILE, &problem))?;
+        let texts = folder.join(TEXTS_FILE);
+        let texts = if texts.exists() { PageTexts::read(&texts)? } else { PageTexts::default() };
         let study = Self {
             plan,
             settings,
+            texts,
             items: read_json_lines(folder, ITEMS_FILE)?,
             routes: read_json_lines(folder, ROUTES_FILE)?,
             scenes: read_json_lines(folder, SCENES_FILE)?,
@@ -102,6 +115,18 @@ impl Study {
         };
         study.check_numbering()?;
         Ok(study)
+    }
+
+    /// Writes a new file about the study that its researcher keeps.
+    ///
+    /// # Errors
+    /// When the file exists, or cannot be written.
+    pub(crate) fn write_new_file(path: &Path, text: &str) -> Result<(), StudyError> {
+        let written = fs::File::options().write(true).create_new(true).open(path).and_then(|mut file| {
+            file.write_all(text.as_bytes())?;
+            file.sync_all()
+        });
+        written.map_err(StudyError::io_error(path, "write the new file"))
     }
 
     /// Where its pictures are.
@@ -186,6 +211,26 @@ fn wrong_file_error(folder: &Path, name: &str, problem: &dyn std::fmt::Display) 
         "put back the file as `study new` wrote it, or use the version of this program that made the study"
     };
     StudyError::File { path: folder.join(name), problem: problem.to_string(), hint }
+}
+
+impl PageTexts {
+    /// Reads a file of words.
+    ///
+    /// # Errors
+    /// When it cannot be read, or a text is missing, unknown, or has other placeholders than the English one.
+    pub fn read(path: &Path) -> Result<Self, StudyError> {
+        let wrong = |problem: String| StudyError::File {
+            path: path.to_owned(),
+            problem,
+            hint: "`wayword study texts` writes all texts in English; translate what stands right of the equals signs",
+        };
+        let size = fs::metadata(path).map_err(StudyError::io_error(path, "read"))?.len();
+        if size > MAX_TEXTS_BYTES {
+            return Err(wrong(format!("it has {size} bytes, and at most {MAX_TEXTS_BYTES} are read")));
+        }
+        let text = fs::read_to_string(path).map_err(StudyError::io_error(path, "read"))?;
+        Self::parse(&text).map_err(wrong)
+    }
 }
 
 /// Reads a text file of the study, unless it is too large.

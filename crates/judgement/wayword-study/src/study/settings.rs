@@ -1,6 +1,6 @@
 //! The settings of a study in `study.toml`, which the researcher may edit: wording, limits, questions and recruiter.
 
-use super::StudyTask;
+use super::{ConsentLink, EndQuestion, ExclusionRules, StudyTask, consent_page::check_consent_page};
 use serde::{Deserialize, Serialize};
 
 /// The contents of `study.toml`. A change takes effect at the next start of the site.
@@ -36,9 +36,21 @@ pub struct StudySettings {
     pub text_language: String,
     /// The lease of an item: after so many seconds without a sign of life it may go to another participant.
     pub lease_s: u64,
+    /// The approval of an ethics committee, as participants read it: committee, number, date.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub ethics: String,
+    /// Links on the consent page.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub links: Vec<ConsentLink>,
     /// Questions that test whether a participant has understood the task.
     #[serde(default)]
     pub questions: Vec<ComprehensionQuestion>,
+    /// Questions that participants answer after their last item.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub end: Vec<EndQuestion>,
+    /// Rules by which the results leave out single answers.
+    #[serde(default, skip_serializing_if = "ExclusionRules::is_empty")]
+    pub exclusions: ExclusionRules,
     /// Where participants come from.
     pub recruiter: RecruiterSettings,
     /// Codes that participants take back to the recruiter.
@@ -110,6 +122,9 @@ impl StudySettings {
     pub(crate) fn consent_words(&self) -> Vec<&str> {
         let mut words: Vec<&str> = self.about.iter().map(String::as_str).collect();
         words.extend([self.agreement.as_str(), &self.title, &self.contact, &self.retention]);
+        // Left out where they are empty, so that the hash of an older study stays the same.
+        words.extend(Some(self.ethics.as_str()).filter(|ethics| !ethics.is_empty()));
+        words.extend(self.links.iter().flat_map(|link| [link.text.as_str(), &link.url]));
         words
     }
 
@@ -150,6 +165,10 @@ impl StudySettings {
             least_items: 1,
             text_language: String::new(),
             lease_s: 20 * 60,
+            ethics: String::new(),
+            links: Vec::new(),
+            end: Vec::new(),
+            exclusions: ExclusionRules::default(),
             questions: ComprehensionQuestion::for_mode(mode),
             recruiter: RecruiterSettings::Links,
             codes: CompletionCodes::default(),
@@ -186,6 +205,16 @@ impl StudySettings {
         if self.about.is_empty() || self.agreement.is_empty() {
             return Err("about and agreement: participants must read what they consent to".to_owned());
         }
+        let others = [
+            ("agreement", self.agreement.as_str()),
+            ("title", &self.title),
+            ("contact", &self.contact),
+            ("retention", &self.retention),
+            ("ethics", &self.ethics),
+        ];
+        check_consent_page(&self.about, &others, &self.links)?;
+        EndQuestion::check_all(&self.end)?;
+        self.exclusions.check()?;
         let url = &self.codes.return_url;
         let is_usable = url.starts_with("https://") && url.contains("{code}");
         if !url.is_empty() && !is_usable {
@@ -252,6 +281,44 @@ mod tests {
                 StudySettings::for_mode(mode, items).check().unwrap();
             }
         }
+    }
+
+    #[test]
+    fn what_docs_say_of_study_toml_is_read_and_written_back() {
+        let added = r#"
+            ethics = "Board 7"
+            [[links]]
+            text = "More"
+            url = "mailto:a@example.org"
+            [[end]]
+            name = "experience"
+            text = "How often?"
+            kind = "scale"
+            answers = ["never", "often"]
+            [[end]]
+            name = "remarks"
+            text = "What else?"
+            kind = "text"
+            optional = true
+            max_chars = 500
+            [exclusions]
+            min_seconds_per_item = 3
+            min_share_of_film = 0.8
+            min_moves_per_walk = 1
+        "#;
+        let plain = StudySettings::for_mode(StudyTask::Pair, 3);
+        let written = toml::to_string_pretty(&plain).unwrap();
+        assert!(
+            ["end", "links", "exclusions", "ethics"].iter().all(|key| !written.contains(&format!("{key}]"))),
+            "{written}"
+        );
+        let (keys, tables) = written.split_at(written.find("[[questions]]").unwrap());
+        let read: StudySettings = toml::from_str(&format!("{keys}{added}{tables}")).unwrap();
+        read.check().unwrap();
+        assert_eq!((read.end.len(), read.exclusions.min_share_of_film, read.links.len()), (2, 0.8, 1));
+        let again: StudySettings = toml::from_str(&toml::to_string_pretty(&read).unwrap()).unwrap();
+        assert_eq!(again, read);
+        assert_ne!(read.consent_words(), plain.consent_words(), "consent is to the links and the approval too");
     }
 
     #[test]

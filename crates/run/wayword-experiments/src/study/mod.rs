@@ -7,7 +7,9 @@ mod new_study;
 mod pictures;
 mod serve;
 
-use crate::study_args::{StudyArgs as Args, StudyCommand, StudyForget, StudyInvite, StudyPlan, StudyResults, StudyStatus};
+use crate::study_args::{
+    StudyArgs as Args, StudyCommand, StudyForget, StudyInvite, StudyPlan, StudyResults, StudyStatus,
+};
 use messages::{ClosedNotice, PersonalLinks, ReconciliationTable, RemovalReport, StudyStatusReport};
 use serde::Serialize;
 use std::{fmt, path::PathBuf};
@@ -17,7 +19,7 @@ use wayword_run::{
     output::CommandOutput,
 };
 use wayword_study::{
-    Study, now_ms,
+    ENGLISH_TEXTS, PageTexts, Study, now_ms,
     results::{PlanQuestion, StudyOutlook},
 };
 
@@ -31,6 +33,7 @@ pub fn run_study(args: &Args, output: &CommandOutput) -> Result<Exit, CommandErr
         StudyCommand::Serve(args) => return serve::run_serve(args, output),
         StudyCommand::Invite(args) => run_invite(args, output)?,
         StudyCommand::Plan(args) => show_plan(args, output)?,
+        StudyCommand::Texts => output.print_result(&PageTexts::default(), ENGLISH_TEXTS.trim_end()),
         StudyCommand::Status(args) => show_status(args, output)?,
         StudyCommand::Results(args) => write_results(args, output)?,
         StudyCommand::Forget(args) => forget_participant(args, output)?,

@@ -11,8 +11,8 @@ use wayword_core::Platform;
 use wayword_report::view;
 use wayword_run::{count::count_phrase, error::CommandError, interrupt, output::CommandOutput, terms};
 use wayword_study::{
-    CompletionCodes, RecruiterSettings, Study, StudyCondition, StudyDesign, StudyItem, StudyRoute, StudySettings,
-    StudyTask, StudyText,
+    CompletionCodes, PageTexts, RecruiterSettings, Study, StudyCondition, StudyDesign, StudyItem, StudyRoute,
+    StudySettings, StudyTask, StudyText,
 };
 use wayword_synthesis::style::built_in;
 
@@ -62,6 +62,10 @@ pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), 
         return Err(CommandError::usage(problem, "give another --out; a study that people see is not changed"));
     }
     let conditions = study_conditions(args)?;
+    let texts = args.texts.as_deref().map_or_else(|| Ok(PageTexts::default()), PageTexts::read)?;
+    if args.texts.is_some() && mode == StudyTask::Follow {
+        output.say("the page on which people walk stays in English; --texts words all others");
+    }
     let mut walks = choose_walks(args, mode, &conditions, &*platform, output)?;
     let asked = args.items as usize;
     // One more path than the user asked for is for practice.
@@ -100,7 +104,7 @@ pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), 
         pictures,
         has_practice,
     };
-    Study { folder: args.out.clone(), plan, settings, items, routes: study_routes, scenes }.create()?;
+    Study { folder: args.out.clone(), plan, settings, texts, items, routes: study_routes, scenes }.create()?;
     output.print_result(&summary, &summary);
     Ok(())
 }

@@ -9,12 +9,15 @@ use wayword_run::{
     interrupt,
     output::CommandOutput,
 };
-use wayword_study::{ListenOptions, RecruiterSettings, SiteAddress, SiteSecurity, Study, serve_study};
+use wayword_study::{ListenOptions, RecruiterSettings, SiteAddress, SiteSecurity, Study, preview_study, serve_study};
 
 /// The addresses under which the site can be reached.
 #[derive(Debug, Serialize)]
 struct ServedSite {
     url: String,
+    /// The link that walks through a preview.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    preview_link: Option<String>,
     /// The link for the recruiter. For Prolific it contains placeholders that Prolific fills in.
     #[serde(skip_serializing_if = "Option::is_none")]
     recruiter_link: Option<String>,
@@ -38,6 +41,12 @@ pub(super) fn run_serve(args: &StudyServe, output: &CommandOutput) -> Result<Exi
     let announced_study = study.clone();
     let mut announced = Ok(());
     let started = |started: &SiteAddress| announced = announce_site(&announced_study, started, args, output);
+    if args.preview {
+        preview_study(study, &listen, started, interrupt::is_interrupted)?;
+        announced?;
+        output.say("stopped; nothing was stored");
+        return Ok(Exit::Done);
+    }
     serve_study(study, &listen, started, interrupt::is_interrupted)?;
     announced?;
     output.say("stopped; the same command goes on");
@@ -50,6 +59,13 @@ fn announce_site(
     args: &StudyServe,
     output: &CommandOutput,
 ) -> Result<(), CommandError> {
+    if args.preview {
+        let preview_link = Some(format!("{}/preview", started.url));
+        let serving = ServedSite { url: started.url.clone(), preview_link, recruiter_link: None, links: Vec::new() };
+        output.print_result(&serving, describe_site(&serving, args.self_signed));
+        output.say("Ctrl-C stops it");
+        return Ok(());
+    }
     let links = if args.links > 0 { make_links(study, args.links, &started.url)?.links } else { Vec::new() };
     let recruiter_link = match &study.settings.recruiter {
         RecruiterSettings::Links => None,
@@ -57,7 +73,7 @@ fn announce_site(
             Some(recruiter_link(&started.url, [person, study, session]))
         }
     };
-    let serving = ServedSite { url: started.url.clone(), recruiter_link, links };
+    let serving = ServedSite { url: started.url.clone(), preview_link: None, recruiter_link, links };
     output.print_result(&serving, describe_site(&serving, args.self_signed));
     if study.settings.contact.trim().is_empty() {
         output
@@ -85,14 +101,18 @@ fn recruiter_link(url: &str, [person, study, session]: [&String; 3]) -> String {
 
 fn describe_site(serving: &ServedSite, has_code: bool) -> String {
     let mut lines = vec![format!("the study is at {}", serving.url)];
-    if let Some(link) = &serving.recruiter_link {
+    if let Some(link) = &serving.preview_link {
+        lines.push(format!("preview, of which nothing is stored; open it again to begin anew: {link}"));
+    } else if let Some(link) = &serving.recruiter_link {
         lines.push(format!("link for the recruiter: {link}"));
     }
     lines.extend(serving.links.iter().map(|link| format!("personal link: {link}")));
-    if serving.recruiter_link.is_none() && serving.links.is_empty() {
+    if serving.preview_link.is_none() && serving.recruiter_link.is_none() && serving.links.is_empty() {
         lines.push("participants need a personal link: `wayword study invite` makes some".to_owned());
     }
-    let code = has_code.then(|| QrCode::new(serving.links.first().unwrap_or(&serving.url))).and_then(Result::ok);
+    let code = has_code
+        .then(|| QrCode::new(serving.links.first().or(serving.preview_link.as_ref()).unwrap_or(&serving.url)))
+        .and_then(Result::ok);
     if let Some(code) = code {
         lines.push(
             "the first link, for the camera of a phone; its browser warns, because nobody vouches for the certificate:"

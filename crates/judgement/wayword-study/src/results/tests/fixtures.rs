@@ -1,7 +1,7 @@
 //! Made-up studies.
 
 use crate::{
-    AttentionCheck, ConditionKind, ItemSlot, PairChoice, Participant, ParticipantAnswer, ParticipantMove,
+    AttentionCheck, ConditionKind, ItemSlot, PageTexts, PairChoice, Participant, ParticipantAnswer, ParticipantMove,
     ParticipantStatus, SlotState, StudyCondition, StudyData, StudyDesign, StudyItem, StudyRoute, StudyScene,
     StudySettings, StudyTask, StudyText, StudyViewpoint,
 };
@@ -35,6 +35,7 @@ pub(super) fn empty(mode: StudyTask, conditions: &[(&str, ConditionKind)]) -> St
             style: "r2r".to_owned(),
         },
         settings: StudySettings::for_mode(mode, 6),
+        texts: PageTexts::default(),
         items: Vec::new(),
         routes: Vec::new(),
         scenes: vec![line()],
@@ -106,6 +107,7 @@ pub(super) fn add_person(data: &mut StudyData, status: ParticipantStatus) -> Str
             at_ms: consented_ms + 60_000,
         }],
         expected: 6,
+        end: Vec::new(),
     });
     id
 }
@@ -131,6 +133,7 @@ pub(super) fn add_slot(data: &mut StudyData, person: &str, item: u32, answer: Op
         own_text: matches!(answer, Some(ParticipantAnswer::Rate { .. }))
             .then(|| "Go through the door, then stop.".to_owned()),
         answer,
+        pictures_seen: None,
         moves: (1..=last)
             .map(|at| ParticipantMove { viewpoint: viewpoint(at), at_ms: given_ms + 2000 * at as i64 })
             .collect(),

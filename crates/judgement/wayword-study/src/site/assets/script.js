@@ -1,5 +1,6 @@
 // The study works without this file: every page is a form. It adds an outbox, so that no answer is lost with the network; a film that plays; and a view that turns.
 'use strict';
+/* global T: the words of the page, in its language; the server puts them in front of this file. */
 
 const $ = (what, where = document) => where.querySelector(what);
 const all = (what, where = document) => [...where.querySelectorAll(what)];
@@ -9,6 +10,7 @@ const who = () => $('#page').dataset.who;
 // Which page this is: two tabs that show the same one need not replace it.
 const at = (doc = document) => $('main', doc).dataset.page + '/' + $('main', doc).dataset.at;
 const say = (text) => { $('#say').textContent = text; };
+const fill = (text, values) => text.replace(/\{(\w+)\}/g, (all, name) => values[name] ?? all);
 const net = (text) => { if ($('#net').textContent !== text) $('#net').textContent = text; };
 
 // A browser may refuse storage (private windows, policies). Then all of this works until the page is closed.
@@ -31,7 +33,7 @@ const box = () => 'wayword-study ' + who() + ' ';
 
 async function send(answer, leftover) {
   for (let tries = 0; ; tries += 1) {
-    const slow = setTimeout(() => net('Sending…'), 800);
+    const slow = setTimeout(() => net(T.sending), 800);
     let pause = Math.min(30000, 1000 * 2 ** tries) * (0.75 + Math.random() / 2);
     try {
       const stop = new AbortController();
@@ -49,7 +51,7 @@ async function send(answer, leftover) {
       }
       pause = Math.max(pause, 1000 * Number(reply.headers.get('Retry-After')) || 0);
     } catch { /* no network, or too slow: the same again */ } finally { clearTimeout(slow); }
-    net('Not sent yet; trying again. Your answer is kept. Please leave this page open.');
+    net(T.not_sent);
     await Promise.race([wait(pause), new Promise((done) => addEventListener('online', done, { once: true }))]);
   }
 }
@@ -70,8 +72,12 @@ addEventListener('submit', async (event) => {
     kept.set(answer.key, JSON.stringify(answer));
   }
   const { reply, doc } = await send(answer);
-  if (reply.ok) tab.drop(draft());
   busy = false;
+  if (reply.status === 413) {  // the page stays with what was written
+    net(T.too_long);
+    return;
+  }
+  if (reply.ok) tab.drop(draft());
   net('');
   show(doc, reply);
 });
@@ -140,7 +146,7 @@ function insist(img) {
   img.addEventListener('error', () => {
     tries += 1;
     if (tries < 6) setTimeout(() => { img.src = img.src; }, 1000 * tries);
-    else net('A picture did not load. Please load the page again. Your place is kept.');
+    else net(T.picture_failed);
   });
   if (img.complete && !img.naturalWidth) img.src = img.src;
 }
@@ -151,6 +157,8 @@ function film(section) {
   const { slot, frames, perSecond } = section.dataset;
   const alts = all('.frames span', section).map((span) => span.textContent);
   const ready = [img];  // pictures asked for so far
+  const seenKey = 'pictures ' + who() + slot;
+  const seen = new Set(JSON.parse(tab.get(seenKey)) || []);  // a reload does not begin to count anew
   let n = 0;
   let timer = 0;
   const picture = (k) => {
@@ -162,18 +170,22 @@ function film(section) {
     img.src = `/film/${slot}/${n}.jpg`;
     img.alt = alts[n] || '';
     slider.value = n + 1;
-    slider.setAttribute('aria-valuetext', `Picture ${n + 1} of ${frames}. ${img.alt}`);
-    $('.at', section).textContent = `Picture ${n + 1} of ${frames}`;
+    const position = fill(T.position, { number: n + 1, pictures: frames });
+    slider.setAttribute('aria-valuetext', `${position}. ${img.alt}`);
+    $('.at', section).textContent = position;
+    seen.add(n);
+    tab.set(seenKey, JSON.stringify([...seen]));
+    for (const field of all('[name=pictures]')) field.value = seen.size;
     for (let k = n + 1; k < Math.min(n + 5, frames); k += 1) picture(k);
   };
-  const pause = () => { clearInterval(timer); timer = 0; play.textContent = 'Play'; };
+  const pause = () => { clearInterval(timer); timer = 0; play.textContent = T.play; };
   const acts = {
     back: () => { pause(); go(n - 1); },
     next: () => { pause(); go(n + 1); },
     play: () => {
       if (timer) { pause(); return; }
       if (n === frames - 1) go(0);
-      play.textContent = 'Pause';
+      play.textContent = T.pause;
       timer = setInterval(() => {
         if (!section.isConnected || n >= frames - 1) pause();
         else if (picture(n + 1).complete) go(n + 1);  // else it waits for the network
