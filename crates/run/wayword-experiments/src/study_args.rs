@@ -210,7 +210,9 @@ Examples:
   wayword study plan STUDY --effect 15 --base 70
       How often it finds 15 points between two shares around 70 %, and how many participants that needs.
   wayword study plan STUDY --person-sd 0.5 --route-sd 0.8 --routes 80
-      With your own assumptions of how much persons and routes differ, and another number of routes.")]
+      With your own assumptions of how much persons and routes differ, and another number of routes.
+  wayword study plan STUDY --out preregistration.md
+      Write a sheet for preregistration, filled in from study.toml and this plan.")]
 pub struct StudyPlan {
     /// Folder of the study.
     pub study: PathBuf,
@@ -232,6 +234,9 @@ pub struct StudyPlan {
     /// Plan for another number of participants than the study needs.
     #[arg(long, value_name = "N")]
     pub participants: Option<usize>,
+    /// Write a sheet for preregistration (Markdown) to this new file.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
 }
 
 /// `wayword study status`.

@@ -74,7 +74,8 @@ pub(super) fn collect_answers<'a>(
         collected.push(AnsweredItem { person, participant, slot, item, answer, score });
     }
     if unmatched > 0 {
-        problems.push(format!("{unmatched} answers name no participant or item of the study; they are in no figure"));
+        let names = if unmatched == 1 { "1 answer names".to_owned() } else { format!("{unmatched} answers name") };
+        problems.push(format!("{names} no participant or item of the study, and counts in no figure"));
     }
     collected.sort_by_key(|one| (one.person, one.slot.position, one.item.id));
     (collected, problems)
@@ -169,22 +170,30 @@ pub(super) fn seconds_between(from_ms: i64, to_ms: i64) -> f64 {
     to_ms.saturating_sub(from_ms).max(0) as f64 / 1000.0
 }
 
-/// Which participants count in a version of the tables.
+/// Which answers count in a version of the tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ParticipantFilter {
     /// All participants except those who were screened out.
     Everybody,
     /// Only those who finished and passed the attention checks.
     Finished,
+    /// Of those, only the answers that no exclusion rule leaves out.
+    Kept,
 }
 
 impl ParticipantFilter {
+    /// The versions of a study with these exclusion rules.
+    pub(super) fn for_rules(rules: &crate::ExclusionRules) -> Vec<Self> {
+        let kept = (!rules.is_empty()).then_some(Self::Kept);
+        [Self::Everybody, Self::Finished].into_iter().chain(kept).collect()
+    }
+
     /// Whether a participant counts. `most_failed` is how many failed attention checks are tolerated.
     pub(super) fn accepts_participant(self, participant: &Participant, most_failed: usize) -> bool {
         let failed = participant.attention.iter().filter(|check| !check.passed).count();
         match self {
             Self::Everybody => participant.status != ParticipantStatus::ScreenedOut,
-            Self::Finished => participant.status == ParticipantStatus::Complete && failed <= most_failed,
+            Self::Finished | Self::Kept => participant.status == ParticipantStatus::Complete && failed <= most_failed,
         }
     }
 }

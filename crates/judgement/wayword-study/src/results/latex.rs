@@ -37,7 +37,9 @@ pub(super) fn render_latex(results: &StudyReport) -> String {
         }
     }
     let by_position = tables::handout_table("Drop-off by position", "Position", &results.people.by_position);
-    for table in [tables::submission_table(results), tables::attention_table(results), by_position] {
+    let people = [tables::submission_table(results), tables::attention_table(results)].into_iter();
+    for table in people.chain(tables::exclusion_table(results)).chain([by_position]).chain(tables::end_tables(results))
+    {
         add_table(&mut page, &table, None);
     }
     if let Some(wording) = tables::wording_table(results) {

@@ -21,9 +21,8 @@ pub(super) fn render_markdown(results: &StudyReport, sheets: &[DataSheet]) -> St
     }
     add_table(&mut page, 2, &tables::condition_table(results));
     for version in &results.versions {
-        let title = if version.name == "everybody" { "Figures: all answers" } else { "Figures: finished and passed" };
-        let counts = format!("{} answers of {} persons.", version.answers, version.persons);
-        append_text(&mut page, format_args!("## {title}\n\n{} {counts}\n\n", escaped(version.rule)));
+        let (title, counts) = (version.title, notes::count_answers(version));
+        append_text(&mut page, format_args!("## Figures: {title}\n\n{} {counts}\n\n", escaped(version.rule)));
         let paper = tables::paper_table(results, version);
         let version_tables =
             paper.into_iter().chain(tables::pair_tables(version)).chain([tables::figure_table(results, version)]);
@@ -38,6 +37,9 @@ pub(super) fn render_markdown(results: &StudyReport, sheets: &[DataSheet]) -> St
     let people = &results.people;
     add_table(&mut page, 3, &tables::submission_table(results));
     add_table(&mut page, 3, &tables::attention_table(results));
+    for table in tables::exclusion_table(results).iter().chain(&tables::end_tables(results)) {
+        add_table(&mut page, 3, table);
+    }
     add_table(&mut page, 3, &tables::handout_table("Drop-off by position", "Position", &people.by_position));
     add_table(&mut page, 3, &tables::handout_table("Drop-off by condition", "Condition", &people.by_condition));
     add_table(&mut page, 3, &tables::handout_table("Drop-off by item", "Item", &people.by_item));
@@ -49,6 +51,9 @@ pub(super) fn render_markdown(results: &StudyReport, sheets: &[DataSheet]) -> St
     add_table(&mut page, 2, &tables::meaning_table(results));
     if let Some(wording) = tables::wording_table(results) {
         add_table(&mut page, 2, &wording);
+    }
+    if let Some(shown) = tables::shown_wording_table(results) {
+        add_table(&mut page, 2, &shown);
     }
     add_codebook(&mut page, sheets);
     page

@@ -2,7 +2,7 @@
 //! of an answer.
 
 use super::judgements::TextJudgement;
-use crate::StudyTask;
+use crate::{StudyTask, wording::RatingScale};
 use serde::Serialize;
 use wayword_metrics::TrajectoryScore;
 
@@ -137,6 +137,21 @@ impl StudyMeasure {
         match self.source {
             MeasureSource::Walk(figure) => figure.score_value(score),
             _ => None,
+        }
+    }
+
+    /// The value of this figure for the answers `a`, as an expression in R. `scales` are the questions of the mode.
+    pub(super) fn r_expression(&self, scales: &[RatingScale]) -> String {
+        let level = |at: usize| scales.get(at).map_or("", |scale| scale.name);
+        match self.source {
+            MeasureSource::Walk(_) => format!("a${}", self.name),
+            MeasureSource::Seconds => "a$seconds".to_owned(),
+            MeasureSource::Presses => "a$presses".to_owned(),
+            MeasureSource::Level(at) => format!("a${}", level(at)),
+            MeasureSource::AtLeast(at, least) => format!("a${} >= {least}", level(at)),
+            MeasureSource::AtMost(at, most) => format!("a${} <= {most}", level(at)),
+            MeasureSource::Gain => "a$gain".to_owned(),
+            MeasureSource::BothBad => "a$choice == \"bad\"".to_owned(),
         }
     }
 

@@ -4,7 +4,10 @@
 //! Everything is computed from [`StudyData`] alone, so the same answers give the same files. Texts that participants wrote appear only in
 //! `answers.csv`, and never in a table or on a page.
 
+mod analysis_script;
+mod end_questions;
 mod escape;
+mod exclusions;
 mod judgements;
 mod latex;
 mod markdown;
@@ -19,6 +22,7 @@ mod pairs;
 mod people;
 mod planned_answers;
 mod plot;
+mod preregistration;
 mod sheet;
 mod sheets;
 mod tables;
@@ -26,6 +30,8 @@ mod version;
 mod walks;
 mod write;
 
+pub use end_questions::{EndAnswerCount, EndQuestionCounts};
+pub use exclusions::ExclusionCount;
 pub use measure::{MeasureKind, MeasureUnit, StudyMeasure};
 pub use outlook::{PlanQuestion, PlannedCondition, PlannedPower, StudyOutlook};
 pub use pairs::{ConditionStrengths, PairResults, PairRow};
@@ -69,8 +75,20 @@ pub struct StudyReport {
     pub scales: &'static [wording::RatingScale],
     /// The figures of this mode, with their meanings.
     pub measures: &'static [StudyMeasure],
-    /// The values of the figures: for all participants, and for those who finished and passed the attention checks.
-    pub versions: [ResultVersion; 2],
+    /// The language of the pages.
+    pub language: String,
+    /// The questions or statements as participants read them, if the pages were translated.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub shown_wording: Vec<ShownWording>,
+    /// The values of the figures: of all answers; of those of participants who finished and passed the attention checks; and, if study.toml
+    /// has exclusion rules, of those among these that no rule leaves out.
+    pub versions: Vec<ResultVersion>,
+    /// What the exclusion rules leave out.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub exclusions: Vec<ExclusionCount>,
+    /// The answers to the questions at the end.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub end: Vec<EndQuestionCounts>,
     /// Who took part, and where people stopped.
     pub people: ParticipantSummary,
     /// Problems of the data, in words.
@@ -78,6 +96,36 @@ pub struct StudyReport {
     /// The CSV files.
     #[serde(skip)]
     sheets: Vec<DataSheet>,
+}
+
+/// A question or statement in the language of the pages.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct ShownWording {
+    /// Its short name in tables and files.
+    pub name: &'static str,
+    /// The question or statement.
+    pub text: String,
+    /// The words of the five levels.
+    pub levels: [String; 5],
+}
+
+impl StudyReport {
+    /// The version of all answers.
+    fn everybody(&self) -> &ResultVersion {
+        &self.versions[0]
+    }
+}
+
+/// The wording that participants read, if it is not the English one.
+fn shown_wording(data: &StudyData) -> Vec<ShownWording> {
+    if data.texts.is_english() {
+        return Vec::new();
+    }
+    let shown = |scale: &wording::RatingScale| {
+        let (text, levels) = data.texts.scale_words(scale);
+        ShownWording { name: scale.name, text, levels }
+    };
+    scales_for_mode(data.plan.mode).iter().map(shown).collect()
 }
 
 /// The questions or statements of a mode.
@@ -104,7 +152,8 @@ pub fn compute_results(data: &StudyData, now_ms: i64) -> Result<StudyReport, Stu
     let names = ParticipantNames::new(data);
     let (answered, problems) = judgements::collect_answers(data, &names);
     let most_failed = data.settings.tolerated_failed_checks();
-    let version = |filter| ResultVersion::new(data, &answered, filter, most_failed);
+    let version = |filter: &ParticipantFilter| ResultVersion::new(data, &answered, *filter, most_failed);
+    let filters = ParticipantFilter::for_rules(&data.settings.exclusions);
     let people = ParticipantSummary::new(data, &names, &answered, now_ms);
     let sources = SheetSources { data, names: &names, answered: &answered, most_failed };
     let sheets = sources.all_sheets(&people);
@@ -121,7 +170,11 @@ pub fn compute_results(data: &StudyData, now_ms: i64) -> Result<StudyReport, Stu
         conditions: data.plan.conditions.clone(),
         scales: scales_for_mode(data.plan.mode),
         measures: StudyMeasure::for_mode(data.plan.mode),
-        versions: [version(ParticipantFilter::Everybody), version(ParticipantFilter::Finished)],
+        language: data.texts.language.clone(),
+        shown_wording: shown_wording(data),
+        versions: filters.iter().map(version).collect(),
+        exclusions: exclusions::count_exclusions(data, &answered),
+        end: end_questions::count_end_answers(data),
         people,
         problems,
         sheets,

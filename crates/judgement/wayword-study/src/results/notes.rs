@@ -7,7 +7,7 @@ use wayword_metrics::IntervalMethod;
 
 /// A summary of the study: task, answers, persons, and whether it is closed.
 pub(super) fn describe_study(results: &StudyReport) -> String {
-    let [everybody, _] = &results.versions;
+    let everybody = results.everybody();
     let task = match results.mode {
         StudyTask::Follow => "people walked by the text alone",
         StudyTask::Rate => "people watched a walk and rated a text about it",
@@ -24,9 +24,15 @@ pub(super) fn describe_study(results: &StudyReport) -> String {
     format!("Mode {}: {task}. {answers} of {persons}. The study is {state}.{style}", results.mode.name())
 }
 
+/// The number of answers and persons of a version, as a sentence.
+pub(super) fn count_answers(version: &ResultVersion) -> String {
+    let answers = number_format::count_with_noun(version.answers, "answer", "answers");
+    format!("{answers} of {}.", number_format::count_with_noun(version.persons, "person", "persons"))
+}
+
 /// Warnings that a reader has to see first: problems of the data, no answers, no control condition.
 pub(super) fn collect_warnings(results: &StudyReport) -> Vec<String> {
-    let [everybody, _] = &results.versions;
+    let everybody = results.everybody();
     let mut warnings = Vec::new();
     if everybody.answers == 0 {
         warnings.push("There are no answers yet.".to_owned());
@@ -67,9 +73,14 @@ pub(super) fn used_methods(versions: &[ResultVersion]) -> Vec<IntervalMethod> {
 pub(super) fn collect_notes(results: &StudyReport) -> Vec<String> {
     let mut notes = vec![
         "Practice is in no figure. Neither are answers of those who did not understand the task in two tries.".to_owned(),
-        "Every figure is given twice: from all answers, and without those who failed attention checks or did not finish. Decide before the \
-         study which one counts, and report both."
-            .to_owned(),
+        if results.versions.len() > 2 {
+            "Every figure is given three times: from all answers, without those who failed attention checks or did not finish, and besides \
+             without the answers that an exclusion rule leaves out. Decide before the study which one counts, and report all."
+        } else {
+            "Every figure is given twice: from all answers, and without those who failed attention checks or did not finish. Decide before the \
+             study which one counts, and report both."
+        }
+        .to_owned(),
         "Intervals hold for other persons and other routes than these. Conditions share routes, so a route is the item. An interval ends \
          where the scale ends."
             .to_owned(),

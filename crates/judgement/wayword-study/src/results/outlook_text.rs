@@ -57,10 +57,10 @@ impl StudyOutlook {
             }
             StudyTask::Follow | StudyTask::Rate => {
                 writeln!(
-                f,
-                "\nTwo conditions whose shares differ by {effect} around {} %.",
-                format_number(100.0 * self.base_share, 0)
-            )?;
+                    f,
+                    "\nTwo conditions whose shares differ by {effect} around {} %.",
+                    format_number(100.0 * self.base_share, 0)
+                )?;
             }
         }
         writeln!(

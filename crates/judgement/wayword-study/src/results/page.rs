@@ -47,8 +47,8 @@ impl VersionView {
             .chain(levels);
         Self {
             name: version.name,
-            title: if version.name == "everybody" { "All answers" } else { "Finished and passed" },
-            rule: format!("{} {} answers of {} persons.", version.rule, version.answers, version.persons),
+            title: version.title,
+            rule: format!("{} {}", version.rule, notes::count_answers(version)),
             paper: tables::paper_table(results, version),
             forests: plot::figure_plots(results, version),
             less: plot::difference_plots(results, version),
@@ -83,7 +83,12 @@ pub(super) fn render_page(results: &StudyReport, sheets: &[DataSheet]) -> Result
         warnings => notes::collect_warnings(results),
         conditions => tables::condition_table(results),
         versions => results.versions.iter().map(|version| VersionView::new(results, version)).collect::<Vec<_>>(),
-        people => [tables::submission_table(results), tables::attention_table(results)],
+        people => [tables::submission_table(results), tables::attention_table(results)]
+            .into_iter()
+            .chain(tables::exclusion_table(results))
+            .collect::<Vec<_>>(),
+        end => tables::end_tables(results),
+        shown_wording => tables::shown_wording_table(results),
         drop_off => drop_off,
         handed => [
             tables::handout_table("Drop-off by position", "Position", &people.by_position),

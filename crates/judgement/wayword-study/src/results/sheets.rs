@@ -1,7 +1,7 @@
 //! Fills the CSV files of answers, moves, submissions and items.
 
 use super::{
-    MeasureKind, MeasureUnit, StudyMeasure,
+    MeasureKind, MeasureUnit, StudyMeasure, exclusions,
     judgements::{AnsweredItem, ParticipantFilter, seconds_between},
     names::ParticipantNames,
     people::ParticipantSummary,
@@ -31,7 +31,8 @@ impl SheetSources<'_> {
     /// All files, in the order of the codebook.
     pub(super) fn all_sheets(&self, people: &ParticipantSummary) -> Vec<DataSheet> {
         let moves = (self.data.plan.mode == StudyTask::Follow).then(|| self.move_sheet());
-        [Some(self.answer_sheet()), moves, Some(self.submission_sheet()), Some(self.item_sheet(people))]
+        let end = (!self.data.settings.end.is_empty()).then(|| self.end_sheet());
+        [Some(self.answer_sheet()), moves, Some(self.submission_sheet()), end, Some(self.item_sheet(people))]
             .into_iter()
             .flatten()
             .collect()
@@ -60,6 +61,18 @@ impl SheetSources<'_> {
                 "",
                 YES_NO_VALUES,
             ),
+            sheet_column(
+                "in_kept",
+                "whether it is in these figures and no exclusion rule leaves it out",
+                "",
+                YES_NO_VALUES,
+            ),
+            sheet_column(
+                "excluded",
+                "the exclusion rules of study.toml that it breaks",
+                "",
+                "too_fast, film_not_watched, too_few_moves, with spaces between; empty if none",
+            ),
         ];
         columns.extend(match mode {
             StudyTask::Follow => follow_columns(),
@@ -77,7 +90,7 @@ impl SheetSources<'_> {
         let since = |at_ms| SheetCell::Number(seconds_between(one.participant.consented_ms, at_ms), 3);
         let route = self.data.routes.get(one.item.route as usize);
         let is_in = |filter: ParticipantFilter| {
-            SheetCell::yes_or_no(filter.accepts_participant(one.participant, self.most_failed))
+            SheetCell::yes_or_no(exclusions::counts_answer(filter, one, self.data, self.most_failed))
         };
         let mut cells = vec![
             SheetCell::text(self.names.name_for_id(&one.participant.id)),
@@ -90,7 +103,10 @@ impl SheetSources<'_> {
             SheetCell::text(one.participant.status.name()),
             is_in(ParticipantFilter::Everybody),
             is_in(ParticipantFilter::Finished),
+            is_in(ParticipantFilter::Kept),
+            SheetCell::text(exclusions::broken_rules(one, self.data).join(" ")),
         ];
+        let pictures = || one.slot.pictures_seen.map_or(SheetCell::Empty, |seen| SheetCell::Whole(i64::from(seen)));
         let condition = |text: usize| {
             one.item.texts.get(text).map_or(SheetCell::Empty, |judged| SheetCell::text(&judged.condition))
         };
@@ -107,12 +123,14 @@ impl SheetSources<'_> {
             ParticipantAnswer::Rate { .. } => {
                 cells.push(condition(0));
                 cells.extend(levels);
+                cells.push(pictures());
                 cells.push(one.slot.own_text.as_ref().map_or(SheetCell::Empty, SheetCell::text));
             }
             ParticipantAnswer::Pair { choice } => {
                 let [a, b] = one.shown_order();
                 cells.extend([condition(a), condition(b), SheetCell::text(choice_word(*choice))]);
                 cells.push(one.preferred_text().map_or(SheetCell::Empty, condition));
+                cells.push(pictures());
             }
         }
         cells
@@ -227,6 +245,32 @@ impl SheetSources<'_> {
         ]
     }
 
+    fn end_sheet(&self) -> DataSheet {
+        let columns = vec![
+            sheet_column("participant", "the participant", "", "p001 and so on"),
+            sheet_column("question", "the name of a question at the end, as in study.toml", "", "a name"),
+            sheet_column("number", "which answer was chosen, or which level", "", "number from 1; empty for a text"),
+            sheet_column(
+                "answer",
+                "the words of the answer, or what the participant wrote",
+                "",
+                "text; an apostrophe in front is not the participant's: take one away; empty if left out",
+            ),
+        ];
+        let mut sheet = DataSheet::new("end.csv", "an answer to a question at the end", columns);
+        let mut people: Vec<&Participant> = self.data.participants.iter().collect();
+        people.sort_by_key(|person| self.names.name_for_id(&person.id));
+        for (person, given) in people.iter().flat_map(|person| person.end.iter().map(move |given| (person, given))) {
+            sheet.rows.push(vec![
+                SheetCell::text(self.names.name_for_id(&person.id)),
+                SheetCell::text(&given.name),
+                given.number.map_or(SheetCell::Empty, SheetCell::count),
+                SheetCell::text(&given.answer),
+            ]);
+        }
+        sheet
+    }
+
     fn item_sheet(&self, people: &ParticipantSummary) -> DataSheet {
         let columns = vec![
             sheet_column("item", "the item", "", "number from 0"),
@@ -327,6 +371,7 @@ fn follow_columns() -> Vec<SheetColumn> {
 fn rate_columns() -> Vec<SheetColumn> {
     let mut columns = vec![condition_column()];
     columns.extend(level_columns(&crate::wording::RATE_QUESTIONS));
+    columns.push(pictures_column());
     let prefix = "text; an apostrophe in front is not the participant's: take one away";
     columns.push(sheet_column("own_text", "what the participant wrote before seeing the text", "", prefix));
     columns
@@ -343,7 +388,13 @@ fn pair_columns() -> Vec<SheetColumn> {
             "",
             "name of a condition; empty without a preference",
         ),
+        pictures_column(),
     ]
+}
+
+fn pictures_column() -> SheetColumn {
+    let values = "number; empty where the page could not count";
+    sheet_column("pictures_seen", "how many different pictures of the film were seen, as the page counted", "", values)
 }
 
 fn choice_word(choice: PairChoice) -> &'static str {

@@ -1,14 +1,14 @@
 //! Makes the tables of the report as text, independent of the output format; Markdown, LaTeX and the page all print these.
 
 use super::{
-    ConditionDifference, HandoutCounts, QuestionAgreement, ResultVersion, StudyMeasure, StudyReport,
-    escape::to_table_name,
+    ConditionDifference, EndQuestionCounts, HandoutCounts, QuestionAgreement, ResultVersion, StudyMeasure, StudyReport,
+    escape::{self, to_table_name},
     measure::PAPER_MEASURE_NAMES,
     number_format::{self, NO_FIGURE, count_with_noun, format_number},
     pairs::{ConditionStrengths, PairRow},
     version::CHOICE_QUESTION_NAME,
 };
-use crate::ConditionKind;
+use crate::{ConditionKind, EndQuestionKind};
 use serde::Serialize;
 use wayword_metrics::wilson_interval;
 
@@ -359,6 +359,51 @@ pub(super) fn attention_table(results: &StudyReport) -> ResultTable {
     table
 }
 
+/// What the exclusion rules leave out; `None` where there are no rules.
+pub(super) fn exclusion_table(results: &StudyReport) -> Option<ResultTable> {
+    let heads = ["Rule", "Left out if", "Answers", "Persons", "Not known"];
+    let mut table = ResultTable::new("Answers that an exclusion rule leaves out", &heads, 2);
+    for one in &results.exclusions {
+        let counts = [one.answers, one.persons, one.unknown].map(|count| count.to_string());
+        table.add_row(false, [one.rule.to_owned(), one.words.clone()].into_iter().chain(counts));
+    }
+    let everybody = results.everybody().answers;
+    table.notes.push(format!(
+        "Of {}. An answer can break several rules. \"Not known\": the participant was away in between, or the page could not count pictures.",
+        count_with_noun(everybody, "answer", "answers")
+    ));
+    (!table.rows.is_empty()).then_some(table)
+}
+
+/// The answers to each question at the end.
+pub(super) fn end_tables(results: &StudyReport) -> Vec<ResultTable> {
+    let table = |question: &EndQuestionCounts| {
+        let title = format!("{}: {}", question.name, escape::to_single_line(&question.text));
+        let mut table = ResultTable::new(title, &["Answer", "Participants"], 1);
+        for (number, chosen) in (1..).zip(&question.chosen) {
+            let words = escape::to_single_line(&chosen.answer);
+            let answer = if question.kind == EndQuestionKind::Scale { format!("{number} {words}") } else { words };
+            table.add_row(false, [answer, chosen.count.to_string()]);
+        }
+        let answered = count_with_noun(question.answered, "participant", "participants");
+        let texts = if question.kind == EndQuestionKind::Text { " The texts are in end.csv." } else { "" };
+        table.notes.push(format!("Answered by {answered}, left out by {}.{texts}", question.left_out));
+        table
+    };
+    results.end.iter().map(table).collect()
+}
+
+/// The wording in the language of the pages; `None` where it is the English one.
+pub(super) fn shown_wording_table(results: &StudyReport) -> Option<ResultTable> {
+    let title = format!("As participants read them (language {})", to_table_name(&results.language));
+    let mut table = ResultTable::new(title, &["Name", "Question", "1", "2", "3", "4", "5"], 7);
+    for shown in &results.shown_wording {
+        let cells = [shown.name, shown.text.as_str()].into_iter().chain(shown.levels.iter().map(String::as_str));
+        table.add_row(false, cells.map(escape::to_single_line));
+    }
+    (!table.rows.is_empty()).then_some(table)
+}
+
 /// What became of the items that were handed out.
 pub(super) fn handout_table(title: &str, label: &str, rows: &[HandoutCounts]) -> ResultTable {
     let mut table =
@@ -393,7 +438,7 @@ pub(super) fn meaning_table(results: &StudyReport) -> ResultTable {
 /// The conditions: their kinds, and the sources of their texts.
 pub(super) fn condition_table(results: &StudyReport) -> ResultTable {
     let mut table = ResultTable::new("Conditions", &["Condition", "Texts", "Answers", "Persons", "Routes"], 2);
-    let [everybody, _] = &results.versions;
+    let everybody = results.everybody();
     for (condition, row) in results.conditions.iter().zip(&everybody.rows) {
         table.add_row(
             false,

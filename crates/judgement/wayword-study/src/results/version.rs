@@ -3,6 +3,7 @@
 
 use super::{
     CONFIDENCE_LEVEL,
+    exclusions::counts_answer,
     judgements::{AnsweredItem, ParticipantFilter, TextJudgement},
     measure::{MeasureKind, StudyMeasure},
     pairs::PairResults,
@@ -18,8 +19,11 @@ use wayword_metrics::{
 /// The figures under one rule of which participants count.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ResultVersion {
-    /// A short name: `everybody` or `finished`.
+    /// A short name: `everybody`, `finished` or `kept`.
     pub name: &'static str,
+    /// Its heading.
+    #[serde(skip)]
+    pub(super) title: &'static str,
     /// Which answers count, in words.
     pub rule: &'static str,
     /// How many participants gave an answer that counts.
@@ -88,7 +92,7 @@ impl ResultVersion {
         most_failed: usize,
     ) -> Self {
         let counted: Vec<&AnsweredItem<'_>> =
-            answered.iter().filter(|one| filter.accepts_participant(one.participant, most_failed)).collect();
+            answered.iter().filter(|one| counts_answer(filter, one, data, most_failed)).collect();
         let judgements: Vec<TextJudgement<'_>> = counted.iter().flat_map(|one| one.text_judgements(data)).collect();
         let measures = StudyMeasure::for_mode(data.plan.mode);
         let scales = super::scales_for_mode(data.plan.mode);
@@ -96,17 +100,26 @@ impl ResultVersion {
             (0..data.plan.conditions.len()).map(|at| condition_row(data, &judgements, at, measures, scales)).collect();
         let is_pair = data.plan.mode == StudyTask::Pair;
         let others = if is_pair { 0..0 } else { 1..data.plan.conditions.len() };
-        let (name, rule) = match filter {
+        let (name, title, rule) = match filter {
             ParticipantFilter::Everybody => (
                 "everybody",
+                "All answers",
                 "All answers, also of those who did not finish or failed attention checks; none of those who were screened out.",
             ),
-            ParticipantFilter::Finished => {
-                ("finished", "Only answers of those who finished and passed the attention checks.")
-            }
+            ParticipantFilter::Finished => (
+                "finished",
+                "Finished and passed",
+                "Only answers of those who finished and passed the attention checks.",
+            ),
+            ParticipantFilter::Kept => (
+                "kept",
+                "Finished, passed, and no rule broken",
+                "Only answers of those who finished and passed the attention checks, without the answers that an exclusion rule leaves out.",
+            ),
         };
         Self {
             name,
+            title,
             rule,
             persons: counted.iter().map(|one| one.person).collect::<BTreeSet<_>>().len(),
             answers: counted.len(),

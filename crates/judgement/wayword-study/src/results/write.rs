@@ -1,6 +1,6 @@
 //! Writes the files of the results into a folder.
 
-use super::{StudyReport, latex, markdown, page, sheet};
+use super::{StudyReport, analysis_script, latex, markdown, page, sheet};
 use crate::StudyError;
 use std::{
     fs,
@@ -36,6 +36,7 @@ impl StudyReport {
         ];
         files.extend(self.sheets.iter().map(|sheet| (sheet.file, sheet.to_csv())));
         files.push((codebook.file, codebook.to_csv()));
+        files.push(("analysis.R", analysis_script::render_script(self)));
         Ok(files)
     }
 }

@@ -61,6 +61,9 @@ fn show_plan(args: &StudyPlan, output: &CommandOutput) -> Result<(), CommandErro
     question.check()?;
     let study = Study::open(&args.study)?;
     let outlook = StudyOutlook::new(&study.plan, &study.settings, &study.items, &question);
+    if let Some(file) = &args.out {
+        study.write_preregistration(&outlook, file)?;
+    }
     output.print_result(&outlook, &outlook);
     Ok(())
 }

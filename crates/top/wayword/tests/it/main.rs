@@ -47,6 +47,7 @@ mod similarity_pictures;
 mod spans;
 mod steps;
 mod study;
+mod study_planning;
 mod turning_worlds;
 mod view;
 mod workers;

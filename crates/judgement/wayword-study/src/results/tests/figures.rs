@@ -46,6 +46,7 @@ fn a_study_without_answers_can_be_read() {
                 name.ends_with(".csv")
                     || text.contains("no answers yet")
                     || name == "results.tex"
+                    || name == "analysis.R"
                     || name == "results.json",
                 "{name}"
             );
@@ -68,7 +69,7 @@ fn answers_of_those_who_were_screened_out_or_practised_are_in_no_figure() {
 #[test]
 fn the_second_version_leaves_out_those_who_did_not_finish_or_failed() {
     let results = of(&small(StudyTask::Rate));
-    let [everybody, finished] = &results.versions;
+    let [everybody, finished] = &results.versions[..] else { panic!("there are no exclusion rules") };
     assert_eq!([everybody.persons, everybody.answers], [7, 36]);
     assert_eq!([finished.persons, finished.answers], [4, 24]);
     let people = &results.people;
@@ -148,6 +149,35 @@ fn strengths_that_cannot_be_computed_have_a_reason() {
     };
     let files = results.render_files().unwrap();
     assert!(files[1].1.contains(why.as_str()), "{why}");
+}
+
+/// One participant, or one route, gives figures without intervals, as docs/STUDY.md says.
+#[test]
+fn one_participant_or_one_route_has_no_interval() {
+    for mode in [StudyTask::Follow, StudyTask::Rate, StudyTask::Pair] {
+        let data = small(mode);
+        let person = data.participants[0].id.clone();
+        let (mut of_one_person, mut of_one_route) = (data.clone(), data.clone());
+        of_one_person.slots.retain(|slot| slot.participant == person);
+        of_one_route.slots.retain(|slot| data.items[slot.item as usize].route == 0);
+        for data in [of_one_person, of_one_route] {
+            let results = of(&data);
+            for version in &results.versions {
+                let figures = version.rows.iter().flat_map(|row| row.figures.values());
+                let first_and_second = |difference: &'_ wayword_metrics::FigureDifference| difference.interval;
+                let differences = version.differences.iter().flat_map(|one| one.figures.values().map(first_and_second));
+                assert!(figures.map(|figure| figure.interval).chain(differences).all(|interval| interval.is_none()));
+                if let Some(pairs) = &version.pairs {
+                    assert!(
+                        pairs.rows.iter().filter_map(|row| row.share.as_ref()).all(|share| share.interval.is_none())
+                    );
+                    assert!(matches!(pairs.strengths, ConditionStrengths::Unknown { .. }), "{:?}", pairs.strengths);
+                }
+            }
+            let files = results.render_files().unwrap();
+            assert!(!files[1].1.contains(" 1 persons"), "{}", files[1].1);
+        }
+    }
 }
 
 #[test]
