@@ -8,7 +8,7 @@ use crate::{
     json_values, levels,
 };
 use serde_json::Value;
-use std::path::Path;
+use std::{collections::BTreeSet, fs, path::Path};
 use wayword_core::{DMat3, DVec3, PlatformError, ViewpointGraph, ViewpointId, graph::GraphError};
 
 /// The end of such a file's name, after the name of the scene.
@@ -20,6 +20,8 @@ const MAX_VIEWPOINTS: usize = 4096;
 /// Largest file, bytes; the largest real one has 1.5 MB. Parsed in memory, a list of zeros takes about fifty times its
 /// size.
 const MAX_BYTES: u64 = 4 << 20;
+/// Most files of a folder that are examined for ways in one direction.
+const MAX_EXAMINED_FILES: usize = 5000;
 
 /// A building's viewpoints.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,6 +76,43 @@ impl ConnectivityGraph {
         }
         Ok(graph)
     }
+
+    /// The pairs of viewpoints of which only the first lists the other as its neighbour.
+    #[must_use]
+    pub fn one_way_edges(&self) -> Vec<(&ViewpointId, &ViewpointId)> {
+        let all: BTreeSet<(usize, usize)> = self.edges.iter().copied().collect();
+        let one_way = self.edges.iter().filter(|(from, to)| !all.contains(&(*to, *from)));
+        let id = |at: usize| self.viewpoints.get(at).map(|viewpoint| &viewpoint.id);
+        one_way.filter_map(|(from, to)| id(*from).zip(id(*to))).collect()
+    }
+}
+
+/// The edges in one direction of all graphs in a folder, in a line for the user; `None` if there are none. A file that cannot be
+/// read is passed over, because whoever uses it gets its error.
+#[must_use]
+pub fn describe_one_way_edges(folder: &Path) -> Option<String> {
+    let entries = fs::read_dir(folder).ok()?.filter_map(Result::ok).take(MAX_EXAMINED_FILES);
+    let mut files: Vec<_> = entries
+        .map(|entry| entry.path())
+        .filter(|file| file.to_string_lossy().ends_with(CONNECTIVITY_FILE_SUFFIX))
+        .collect();
+    files.sort();
+    let (mut edges, mut scenes, mut first) = (0, 0, None);
+    for file in files {
+        let Ok(Some(graph)) = read_connectivity_file(&file, "") else { continue };
+        let found = graph.one_way_edges();
+        edges += found.len();
+        scenes += usize::from(!found.is_empty());
+        if let (None, Some((from, to))) = (&first, found.first()) {
+            let name = file.file_name().unwrap_or_default().display();
+            first = Some(format!("{name} lists {to} as a neighbour of {from}, but not the other way"));
+        }
+    }
+    let more = match edges {
+        0 | 1 => String::new(),
+        _ => format!("; there are {edges} such edges in {scenes} of the graphs"),
+    };
+    Some(format!("{}{more}", first?))
 }
 
 /// Reads a connectivity file; `None` if there is none. `hint` is the advice to the user in an error about a broken file.
@@ -196,6 +235,29 @@ mod tests {
                 .unwrap();
         assert_eq!(read.viewpoints.len(), 2);
         assert_eq!(read.edges, [(0, 1), (1, 0)]);
+    }
+
+    #[test]
+    fn an_edge_in_one_direction_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, value: &Value| std::fs::write(folder.path().join(name), value.to_string()).unwrap();
+        write("whole_connectivity.json", &row(4));
+        write("broken_connectivity.json", &json!({}));
+        assert_eq!(describe_one_way_edges(folder.path()), None);
+        let mut cut = row(4);
+        cut[2]["unobstructed"][1] = json!(false);
+        // A viewpoint that is not included has no edges.
+        cut[3]["included"] = json!(false);
+        cut[3]["unobstructed"][2] = json!(false);
+        let read = parsed(&cut).unwrap();
+        let one_way: Vec<_> = read.one_way_edges().iter().map(|(from, to)| (from.as_str(), to.as_str())).collect();
+        assert_eq!(one_way, [("v1", "v2")]);
+        write("cut_connectivity.json", &cut);
+        let told = describe_one_way_edges(folder.path()).unwrap();
+        assert_eq!(told, "cut_connectivity.json lists v2 as a neighbour of v1, but not the other way");
+        cut[0]["unobstructed"][1] = json!(false);
+        write("more_connectivity.json", &cut);
+        assert!(describe_one_way_edges(folder.path()).unwrap().ends_with("3 such edges in 2 of the graphs"));
     }
 
     #[test]

@@ -90,6 +90,16 @@ pub fn open_and_warn(name: &str, place: PlatformPlace<'_>) -> Result<Box<dyn Pla
     Ok(platform)
 }
 
+/// The edges that the viewpoint graphs of the settings' data have in one direction alone, in a line for the user; `None` if there are
+/// none. The program walks them in both directions.
+pub fn one_way_edges(settings: &RunSettings) -> Option<String> {
+    if let Some(folder) = &settings.connectivity {
+        return wayword_world::connectivity::describe_one_way_edges(&stores::local_data(folder).ok()?);
+    }
+    let data = settings.data.as_ref().filter(|_| settings.platform == "matterport")?;
+    MatterportPlatform::one_way_edges(&stores::local_data(data).ok()?)
+}
+
 /// Opens a platform by its name, with the folder or file of its data, or the address of a running one, and the island
 /// of its navmesh on which paths are drawn.
 ///

@@ -69,6 +69,12 @@ pub(crate) fn run_doctor(args: &DoctorArgs, output: &CommandOutput) -> Result<Ex
         findings.extend(scenes::scene_findings(&examined));
     }
     findings.extend(world_findings(&job.settings));
+    findings.extend(platforms::one_way_edges(&job.settings).map(|told| DoctorFinding {
+        state: DoctorGrade::Warning,
+        about: "viewpoint graphs".to_owned(),
+        told,
+        hint: Some("edges are walked in both directions; if one cannot be, take it out of the file".to_owned()),
+    }));
     if job.settings.roles.prompts.is_some() {
         findings.push(match settings_prompts(&job.settings) {
             Ok(prompts) => {

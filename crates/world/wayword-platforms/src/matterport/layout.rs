@@ -65,6 +65,11 @@ impl MatterportLayout {
         })
     }
 
+    /// The folder of the connectivity files.
+    pub(crate) fn connectivity_folder(&self) -> &Path {
+        &self.connectivity
+    }
+
     /// The scenes that have a connectivity file, sorted.
     pub(crate) fn list_scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
         let mut scenes = Vec::new();

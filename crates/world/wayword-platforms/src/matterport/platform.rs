@@ -18,7 +18,10 @@ use wayword_core::{
     Frame, GroundTruth, Image, ObjectId, ObjectLabel, Path, PathRequest, PlacedObject, Platform, PlatformError, Pose,
     RecentCache, SceneCatalogue, SceneFiles, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
-use wayword_world::{connectivity::PanoramaViewpoint, graph_walk};
+use wayword_world::{
+    connectivity::{self, PanoramaViewpoint},
+    graph_walk,
+};
 
 /// Number of viewpoints with their boxes in memory.
 const MAX_VIEWPOINTS_WITH_BOXES: usize = 256;
@@ -68,6 +71,12 @@ impl MatterportPlatform {
     #[must_use]
     pub fn lack_of_objects(data: &FilePath) -> Option<String> {
         MatterportLayout::find_data(data).ok()?.lack_of_objects(data)
+    }
+
+    /// The edges in one direction of all graphs below a folder, in a line for the user; `None` if there are none.
+    #[must_use]
+    pub fn one_way_edges(data: &FilePath) -> Option<String> {
+        connectivity::describe_one_way_edges(MatterportLayout::find_data(data).ok()?.connectivity_folder())
     }
 
     /// The scene, which is read from its files on first use.
