@@ -15,6 +15,7 @@
 //! Architecture invariant: no code here depends on a single platform.
 
 pub mod connectivity;
+mod credentials;
 pub mod episode_path;
 pub mod files;
 pub mod floor_path;
@@ -29,6 +30,7 @@ pub mod region_letters;
 pub mod seen_from;
 pub mod survey;
 
+pub use credentials::mask_credentials;
 pub use episode_path::{labels_around, path_over_viewpoints};
 pub use floor_path::frames_over_floor;
 pub use seen_from::seen_from;

@@ -1,6 +1,7 @@
 //! Reads the output of a child process or a socket up to a size limit, and makes it safe to show to a person.
 
 use std::{
+    borrow::Cow,
     io::{BufRead, Read},
     sync::Arc,
 };
@@ -42,16 +43,41 @@ pub fn read_line(from: &mut impl BufRead, max_bytes: usize) -> OutputLine {
 
 /// Whether a character is invisible and yet changes a terminal or the text around it: it moves the cursor, changes the
 /// direction of writing, or has no width. The two joiners are an exception: they have no width either, but words of
-/// Hindi, Telugu or Persian need them.
+/// Hindi, Telugu or Persian need them. [`show_unseen`] shows them where no such word can be.
 #[must_use]
 pub fn is_unseen(c: char) -> bool {
     c.is_control()
         || matches!(c,
             // Soft hyphen, and characters that only join, separate or reverse others (Unicode's category Cf).
             '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
-            | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}'
+            | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{1bca0}'..='\u{1bca3}' | '\u{1d173}'..='\u{1d17a}'
+            // Tags and further selectors of variants, in which a whole text can hide.
+            | '\u{e0000}'..='\u{e0fff}'
+            // Letters and marks without a shape.
+            | '\u{34f}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}' | '\u{3164}' | '\u{ffa0}'
             // Ends of lines and paragraphs.
             | '\u{2028}' | '\u{2029}')
+}
+
+/// A text in which unseen characters are shown by their numbers, as in `\u{202e}`, so that a reader sees what is there. Ends of lines
+/// and tabs stay, and so do joiners within words of scripts that need them.
+#[must_use]
+pub fn show_unseen(text: &str) -> Cow<'_, str> {
+    let is_joiner = |c: char| matches!(c, '\u{200c}' | '\u{200d}');
+    if !text.chars().any(|c| is_joiner(c) || is_unseen(c) && !matches!(c, '\n' | '\t')) {
+        return Cow::Borrowed(text);
+    }
+    let (mut shown, mut before) = (String::with_capacity(text.len()), ' ');
+    for c in text.chars() {
+        let is_hidden = if is_joiner(c) { before.is_ascii() } else { is_unseen(c) && !matches!(c, '\n' | '\t') };
+        if is_hidden {
+            shown.extend(c.escape_unicode());
+        } else {
+            shown.push(c);
+        }
+        before = c;
+    }
+    Cow::Owned(shown)
 }
 
 /// A text without characters that could move a cursor, break a line or reverse it, cut to `max_chars` characters.
@@ -78,6 +104,20 @@ mod tests {
             assert_eq!(to_safe_text(word, 100), word);
         }
         assert_eq!(to_safe_text("a\u{200b}b\u{200e}c\u{200f}d", 100), "abcd");
+    }
+
+    #[test]
+    fn show_unseen_shows_what_hides_and_keeps_what_words_need() {
+        for (text, shown) in [
+            ("turn \u{202e}tfel\u{2069}\u{200b}!\n\t", "turn \\u{202e}tfel\\u{2069}\\u{200b}!\n\t"),
+            ("a\u{1b}[31mb\r\u{7f}\u{9b}", "a\\u{1b}[31mb\\u{d}\\u{7f}\\u{9b}"),
+            ("pass\u{200d}word\u{e0041}\u{e0100}\u{3164}", "pass\\u{200d}word\\u{e0041}\\u{e0100}\\u{3164}"),
+        ] {
+            assert_eq!(show_unseen(text), shown);
+        }
+        for text in ["caf\u{e9} \u{4e2d}\u{6587} \u{627}", "\u{915}\u{94d}\u{200d}\u{937}", "\u{2764}\u{fe0f}"] {
+            assert_eq!(show_unseen(text), text);
+        }
     }
 
     #[test]
