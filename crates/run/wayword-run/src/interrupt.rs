@@ -1,5 +1,5 @@
-//! Handles Ctrl-C, SIGTERM and SIGUSR1 (which Slurm sends shortly before the time limit): a command finishes the items that it
-//! works on, or ends at once, with exit code 6.
+//! Handles Ctrl-C, SIGTERM, SIGHUP (the terminal is gone) and SIGUSR1 (which Slurm sends shortly before the time limit): a
+//! command finishes the items that it works on, or ends at once, with exit code 6.
 //!
 //! Inside another program, the host catches the signals and calls [`ask_to_stop`].
 //!
@@ -9,7 +9,7 @@
 use crate::{calls::ModelCalls, error::CommandError, output::CommandOutput};
 #[cfg(unix)]
 use signal_hook::{
-    consts::{SIGINT, SIGTERM, SIGUSR1, SIGXFSZ},
+    consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGXFSZ},
     iterator::Signals,
 };
 use std::{
@@ -102,13 +102,23 @@ pub fn forget_interrupt() {
 /// Interrupts that are not handled yet.
 pub struct PendingSignals(#[cfg(unix)] Option<Signals>);
 
-/// Catches SIGINT, SIGTERM and SIGUSR1 from now on. SIGHUP is left alone, because `nohup` has to work. SIGXFSZ is caught so that a file
-/// beyond the user's limit is an error of its write, and does not end the process without a word.
+/// Catches SIGINT, SIGTERM, SIGUSR1 and SIGHUP from now on. SIGHUP stays ignored where `nohup` or a parent has the process ignore it.
+/// SIGXFSZ is caught so that a file beyond the user's limit is an error of its write, and does not end the process without a word.
 #[cfg(unix)]
 #[must_use]
 pub fn catch_signals() -> PendingSignals {
     // Without a handler the signals end the process, as usual.
-    PendingSignals(Signals::new([SIGINT, SIGTERM, SIGUSR1, SIGXFSZ]).ok())
+    let signals = [SIGINT, SIGTERM, SIGUSR1, SIGXFSZ].into_iter().chain((!ignores_hangup()).then_some(SIGHUP));
+    PendingSignals(Signals::new(signals).ok())
+}
+
+/// Whether this process was started with SIGHUP ignored. True where the system does not say so.
+#[cfg(unix)]
+fn ignores_hangup() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(u64::MAX);
+    mask & (1 << (SIGHUP - 1)) != 0
 }
 
 /// Handles interrupts until the process ends, those since [`catch_signals`] among them.
