@@ -10,6 +10,9 @@ pub enum LedgerError {
     /// The file is not a ledger. It was left as it is.
     #[error("{}: this file is not a ledger\nhint: give a ledger with --ledger FILE, or leave the flag out for the default", .0.display())]
     NoLedger(PathBuf),
+    /// The name is that of a folder, a pipe, a device or a socket. Opening a pipe would wait for ever.
+    #[error("{}: this is a folder, a pipe or a device, not a file\nhint: give a ledger with --ledger FILE, or leave the flag out for the default", .0.display())]
+    NotAFile(PathBuf),
     /// A newer version of the program made the file. It was left as it is.
     #[error("{}: a newer version of this program made this ledger (format {format})\nhint: use that version, or give another ledger with --ledger FILE", path.display())]
     Newer {

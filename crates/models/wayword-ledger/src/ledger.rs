@@ -6,7 +6,7 @@ use crate::{
     LedgerError, RunSpending,
     flight::CallFlights,
     recording,
-    store::{CallStore, ChunkStore, SqliteStore, check_file_system, spent_in},
+    store::{CallStore, ChunkStore, SqliteStore, check_place, spent_in},
 };
 use std::{
     path::{Path, PathBuf},
@@ -40,9 +40,9 @@ impl Ledger {
     /// Checks whether a ledger may be kept at a path. It neither opens nor creates a file.
     ///
     /// # Errors
-    /// When the path is on a network file system.
+    /// When the path is no file, or is on a network file system.
     pub fn check_place(path: &Path) -> Result<(), LedgerError> {
-        check_file_system(path)
+        check_place(path)
     }
 
     /// A ledger in memory, which ends with the process.

@@ -45,6 +45,14 @@ impl StudyStore {
     /// # Errors
     /// When it cannot be opened, or is of a later version.
     pub(crate) fn open(file: &Path) -> Result<Self, StudyError> {
+        // Opening a pipe would wait for ever.
+        if std::fs::metadata(file).is_ok_and(|about| !about.is_file()) {
+            return Err(StudyError::File {
+                path: file.to_owned(),
+                problem: "this is a folder, a pipe or a device, not a file".to_owned(),
+                hint: "put back a copy of the study's folder",
+            });
+        }
         let db = Connection::open(file)?;
         db.busy_timeout(BUSY_TIMEOUT)?;
         db.pragma_update(None, "journal_mode", "WAL")?;

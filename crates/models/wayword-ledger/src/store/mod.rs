@@ -20,7 +20,7 @@ pub(crate) use chunks::{ChunkEntry, ChunkStore, spent_in};
 pub use postgres::LEDGER_TABLES;
 #[cfg(feature = "postgres")]
 pub(crate) use postgres::{LeaseTiming, PostgresStore};
-pub(crate) use sqlite::{SqliteStore, check_file_system};
+pub(crate) use sqlite::{SqliteStore, check_place};
 
 /// Stores calls and requests, and enforces limits. Every function may be called by many threads at once.
 pub(crate) trait CallStore: CallQueries + fmt::Debug + Send + Sync {

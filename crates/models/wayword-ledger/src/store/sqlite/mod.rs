@@ -39,7 +39,7 @@ impl SqliteStore {
     pub(crate) fn open(path: &Path) -> Result<Self, LedgerError> {
         // SQLite gives names such as ":memory:" a special meaning. An absolute path is always a file.
         let path = &std::path::absolute(path).map_err(LedgerError::io_error(path, "find the ledger"))?;
-        check_file_system(path)?;
+        check_place(path)?;
         if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
             fs::create_dir_all(folder).map_err(LedgerError::io_error(folder, "make the folder"))?;
         }
@@ -192,8 +192,11 @@ impl CallStore for SqliteStore {
     }
 }
 
-/// Refuses a path on a file system on which the database is not reliable.
-pub(crate) fn check_file_system(path: &Path) -> Result<(), LedgerError> {
+/// Refuses a path that is no file, or lies on a file system on which the database is not reliable.
+pub(crate) fn check_place(path: &Path) -> Result<(), LedgerError> {
+    if fs::metadata(path).is_ok_and(|about| !about.is_file()) {
+        return Err(LedgerError::NotAFile(path.to_owned()));
+    }
     match network_at(path) {
         Some(kind) => Err(LedgerError::Network { path: path.to_owned(), kind }),
         None => Ok(()),
