@@ -68,7 +68,7 @@ pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
             };
             walks.add_text(path, text);
         }
-        return Ok(walks.all);
+        return walks.expect_texts(file, 0);
     }
     let mut items = 0;
     for episode in wayword_formats::read_any_format(file)? {
@@ -80,14 +80,7 @@ pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
             walks.add_text(path.clone(), FileText::from_dataset(&path, words.clone(), tag));
         }
     }
-    if walks.all.is_empty() {
-        let problem = format!("{}: {} without an instruction", file.display(), count_phrase(items, "item"));
-        return Err(CommandError::usage(
-            problem,
-            "give a file whose items have instructions; test splits of some datasets have none",
-        ));
-    }
-    Ok(walks.all)
+    walks.expect_texts(file, items)
 }
 
 /// Texts about paths, gathered by their paths.
@@ -116,6 +109,24 @@ struct PathTextIndex {
 type PathEvidenceKey = (SceneId, bool, Vec<(([u64; 3], Option<ViewpointId>), u64, Option<u32>)>);
 
 impl PathTextIndex {
+    /// The paths of a file with so many items. A file without a text is an error: a check of nothing must not look like a check
+    /// that passed.
+    fn expect_texts(self, file: &FilePath, items: usize) -> Result<Vec<PathTexts>, CommandError> {
+        if !self.all.is_empty() {
+            return Ok(self.all);
+        }
+        Err(match items {
+            0 => CommandError::usage(
+                format!("{}: there is no instruction in it", file.display()),
+                "give a file with instructions; errors.jsonl and rejected.jsonl of a run say what became of its texts",
+            ),
+            items => CommandError::usage(
+                format!("{}: {} without an instruction", file.display(), count_phrase(items, "item")),
+                "give a file whose items have instructions; test splits of some datasets have none",
+            ),
+        })
+    }
+
     /// Adds a text to its path, and numbers it.
     fn add_text(&mut self, path: Path, text: FileText) {
         let frames =
