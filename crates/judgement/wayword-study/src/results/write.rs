@@ -50,6 +50,10 @@ fn write_file(folder: &Path, name: &str, text: &str) -> Result<PathBuf, StudyErr
         file.sync_all()?;
         fs::rename(&temporary, &place)
     });
+    if written.is_err() {
+        // The first failure is the one to report.
+        let _ = fs::remove_file(&temporary);
+    }
     written.map_err(StudyError::io_error(&place, "write"))?;
     Ok(place)
 }

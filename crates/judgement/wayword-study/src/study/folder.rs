@@ -187,6 +187,10 @@ impl Study {
             file.sync_all()?;
             fs::rename(&temporary, &place)
         });
+        if written.is_err() {
+            // The first failure is the one to report.
+            let _ = fs::remove_file(&temporary);
+        }
         written.map_err(StudyError::io_error(place, "write"))
     }
 }

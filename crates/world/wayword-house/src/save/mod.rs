@@ -12,7 +12,11 @@ pub use gltf::encode_glb;
 pub use navigation::navigation_json;
 pub use semantic::{semantic_glb, semantic_txt};
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::{
+    ffi::OsString,
+    fs, io,
+    path::{Path, PathBuf},
+};
 use wayword_core::graph::GraphError;
 
 /// Why a house cannot be saved.
@@ -73,7 +77,7 @@ pub fn save_house(house: &House, folder: &Path, navmesh: Option<&[u8]>) -> Resul
     let name = scene_name(house.seed);
     let write = |ending: &str, bytes: &[u8]| {
         let file = folder.join(format!("{name}.{ending}"));
-        match std::fs::write(&file, bytes) {
+        match write_whole(&file, bytes) {
             Ok(()) => Ok(file),
             Err(source) => Err(SaveError::File { file, source }),
         }
@@ -91,6 +95,20 @@ pub fn save_house(house: &House, folder: &Path, navmesh: Option<&[u8]>) -> Resul
             write("semantic.txt", semantic_txt(house).as_bytes())?,
         ],
     })
+}
+
+/// Writes a file under a hidden name first, so that a half one never has its name.
+fn write_whole(file: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut hidden = OsString::from(".");
+    hidden.push(file.file_name().unwrap_or_default());
+    hidden.push(".part");
+    let part = file.with_file_name(hidden);
+    let written = fs::write(&part, bytes).and_then(|()| fs::rename(&part, file));
+    if written.is_err() {
+        // The first failure is the one to report.
+        let _ = fs::remove_file(&part);
+    }
+    written
 }
 
 #[cfg(test)]
