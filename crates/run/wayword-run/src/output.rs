@@ -11,6 +11,7 @@ use std::{
     time::Duration,
 };
 use wayword_world::output_lines::is_unseen;
+pub use wayword_world::{mask_credentials, output_lines::show_unseen};
 
 /// How the program prints.
 #[derive(Clone)]
@@ -47,14 +48,16 @@ impl fmt::Debug for CommandOutput {
 /// off.
 const MAX_ERROR_CHARS: usize = 1000;
 
-/// A text without control characters. Every text from a model, a server, a child process or a file goes through here before it is
-/// printed.
+/// A text without secrets of addresses, and in which unseen characters are shown. Every text from a model, a server, a child process
+/// or a file goes through here before it is printed.
 pub(crate) fn tame_text(text: &str) -> String {
-    text.chars().map(|c| if is_unseen(c) && !matches!(c, '\n' | '\t') { '\u{fffd}' } else { c }).collect()
+    show_unseen(&mask_credentials(text)).into_owned()
 }
 
 /// As [`tame_text`], for an error; a long one is cut.
 fn tame_error(text: &str) -> String {
+    // Before the cut, which could leave a part of a secret that is no longer known as one.
+    let text = mask_credentials(text);
     let mut tamed = tame_text(&text.chars().take(MAX_ERROR_CHARS).collect::<String>());
     if text.chars().nth(MAX_ERROR_CHARS).is_some() {
         tamed.push_str(" ...");
@@ -62,8 +65,9 @@ fn tame_error(text: &str) -> String {
     tamed
 }
 
-/// As [`tame_text`], for JSON: control characters become JSON escapes, so that the value stays the same.
+/// As [`tame_text`], for JSON: unseen characters become JSON escapes, so that the value stays the same.
 fn tame_json(json: &str) -> String {
+    let json = mask_credentials(json);
     let mut tamed = String::with_capacity(json.len());
     for c in json.chars() {
         if is_unseen(c) {
@@ -113,7 +117,7 @@ impl CommandOutput {
             json.unwrap_or_else(|error| format!("{{\"error\":{:?}}}", error.to_string()))
         };
         if let Some(listener) = &self.listener {
-            return listener.take_result(json());
+            return listener.take_result(mask_credentials(&json()).into_owned());
         }
         let line = if self.json { tame_json(&json()) } else { tame_text(&text.to_string()) };
         let _ = writeln!(io::stdout(), "{}", line.trim_end());
@@ -244,13 +248,17 @@ mod tests {
 
     #[test]
     fn errors_are_fit_for_a_terminal() {
-        assert_eq!(tame_text("a\x1b[31mb\nc"), "a\u{fffd}[31mb\nc");
+        assert_eq!(tame_text("a\x1b[31mb\nc"), "a\\u{1b}[31mb\nc");
+        assert_eq!(tame_error("https://me:geheim@h/: gone"), "https://***@h/: gone");
         assert_eq!(tame_error(&"x".repeat(5000)).chars().count(), MAX_ERROR_CHARS + 4);
     }
 
     #[test]
     fn nothing_turns_the_line_round_or_hides_in_it() {
-        assert_eq!(tame_text("turn \u{202e}tfel\u{2069} now\u{200b}!\n"), "turn \u{fffd}tfel\u{fffd} now\u{fffd}!\n");
+        assert_eq!(
+            tame_text("turn \u{202e}tfel\u{2069} now\u{200b}!\n"),
+            "turn \\u{202e}tfel\\u{2069} now\\u{200b}!\n"
+        );
         assert_eq!(tame_text("caf\u{e9} \u{4e2d}\u{6587}"), "caf\u{e9} \u{4e2d}\u{6587}");
         let joined = "\u{c15}\u{c4d}\u{200c}\u{c37} \u{915}\u{94d}\u{200d}\u{937}";
         assert_eq!((tame_text(joined), tame_json(joined)), (joined.to_owned(), joined.to_owned()));

@@ -30,7 +30,7 @@ mod texts;
 
 use item_view::ItemView;
 use link_targets::item_anchor;
-use minijinja::{AutoEscape, Environment, UndefinedBehavior, Value, context};
+use minijinja::{AutoEscape, Environment, Output, State, UndefinedBehavior, Value, context, escape_formatter};
 use page::ReportPageView;
 use pictures::PagePictures;
 use records::ReportRecords;
@@ -38,13 +38,14 @@ use report_files::{ReportFiles, WALKS_PER_PAGE};
 use rows::TextList;
 use serde::Serialize;
 use std::{
+    borrow::Cow,
     fmt,
     fs::{self, File},
     io::{self, BufWriter, Write},
     ops::Range,
     path::{Path, PathBuf},
 };
-use wayword_run::{count::count_phrase, error::CommandError};
+use wayword_run::{count::count_phrase, error::CommandError, output::show_unseen};
 
 /// Result of a report: its files, and how much of the run they show.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -216,6 +217,7 @@ fn load_templates() -> Result<Environment<'static>, minijinja::Error> {
     let mut templates = Environment::new();
     templates.set_undefined_behavior(UndefinedBehavior::Strict);
     templates.set_auto_escape_callback(|name| if name.ends_with(".css") { AutoEscape::None } else { AutoEscape::Html });
+    templates.set_formatter(write_shown);
     templates.set_trim_blocks(true);
     templates.set_lstrip_blocks(true);
     templates.set_keep_trailing_newline(true);
@@ -245,6 +247,14 @@ fn load_templates() -> Result<Environment<'static>, minijinja::Error> {
     templates.add_template("doubts.html", include_str!("doubts/page.html"))?;
     templates.add_template("replay.html", include_str!("replay/replay.html"))?;
     Ok(templates)
+}
+
+/// Writes a value into a page, as minijinja does, with its unseen characters shown.
+fn write_shown(out: &mut Output<'_>, state: &State<'_, '_>, value: &Value) -> Result<(), minijinja::Error> {
+    match value.as_str().filter(|_| !value.is_safe()).map(show_unseen) {
+        Some(Cow::Owned(shown)) => escape_formatter(out, state, &Value::from(shown)),
+        _ => escape_formatter(out, state, value),
+    }
 }
 
 // A closure's argument cannot be a reference where `map_err` gives the value away.

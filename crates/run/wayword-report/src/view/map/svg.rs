@@ -6,7 +6,7 @@ use super::{
 };
 use crate::pages::data_uri;
 use std::fmt::Write;
-use wayword_run::error::CommandError;
+use wayword_run::{error::CommandError, output::show_unseen};
 
 /// The drawing as text; `title` is shown when the user points at it.
 ///
@@ -82,9 +82,9 @@ fn css_colour([r, g, b]: InkColour) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// A text between tags. Characters that XML forbids become U+FFFD.
+/// A text between tags. Unseen characters are shown, and those that XML forbids become U+FFFD.
 fn escape_xml(text: &str) -> String {
-    text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
+    show_unseen(text).chars().fold(String::with_capacity(text.len()), |mut out, c| {
         match c {
             '&' => out.push_str("&amp;"),
             '<' => out.push_str("&lt;"),
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn svg_escapes_names_from_files() {
-        assert_eq!(escape_xml("a<b>&\"c\u{1}"), "a&lt;b&gt;&amp;&quot;c\u{fffd}");
+        assert_eq!(escape_xml("a<b>&\"c\u{1}"), "a&lt;b&gt;&amp;&quot;c\\u{1}");
         let mark =
             MapMark::Disc { at: [1.0, 2.0], radius: 3.0, ink: [255, 0, 0], title: Some("</title><script>".into()) };
         let sketch = MapSketch { size: [10.0, 10.0], picture: None, marks: vec![mark] };
