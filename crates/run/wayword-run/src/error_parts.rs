@@ -4,6 +4,7 @@ use crate::error::{CommandError, Exit};
 use std::{fmt::Display, path::Path};
 use wayword_core::PlatformError;
 use wayword_formats::FormatError;
+use wayword_world::mask_credentials;
 
 /// The text before a hint in the errors of this program.
 const HINT_PREFIX: &str = "\nhint: ";
@@ -26,6 +27,13 @@ impl ErrorParts {
     /// The parts of an error.
     #[must_use]
     pub fn from_error(error: &CommandError) -> Self {
+        let Self { kind, what, place, hint } = Self::with_credentials(error);
+        let masked = |text: String| mask_credentials(&text).into_owned();
+        Self { kind, what: masked(what), place: place.map(masked), hint: hint.map(masked) }
+    }
+
+    /// The parts, with the secrets that addresses in them may hold.
+    fn with_credentials(error: &CommandError) -> Self {
         let kind = error_kind(error);
         let at_place = |place: &Path, what: &dyn Display, hint: &str| Self {
             kind,

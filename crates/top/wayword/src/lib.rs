@@ -31,8 +31,12 @@ mod runs;
 
 use clap::Parser;
 use cli::WaywordCli;
-use std::ffi::OsString;
-use wayword_run::{error::Exit, interrupt, output::CommandOutput};
+use std::{borrow::Cow, ffi::OsString};
+use wayword_run::{
+    error::Exit,
+    interrupt,
+    output::{CommandOutput, mask_credentials, print_foreign_line},
+};
 /// Runs the program; `arguments` begins with its name. Returns the exit code.
 #[must_use]
 pub fn main(arguments: Vec<OsString>) -> u8 {
@@ -42,8 +46,11 @@ pub fn main(arguments: Vec<OsString>) -> u8 {
     let cli = match WaywordCli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(parse_error) => {
-            // A closed output is no error.
-            let _ = parse_error.print();
+            // A closed output is no error. A value that is quoted may be an address with a password in it.
+            match mask_credentials(&parse_error.render().to_string()) {
+                Cow::Owned(masked) if parse_error.use_stderr() => print_foreign_line(masked.trim_end()),
+                _ => drop(parse_error.print()),
+            }
             return u8::try_from(parse_error.exit_code()).unwrap_or(u8::MAX);
         }
     };

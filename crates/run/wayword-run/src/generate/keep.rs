@@ -11,6 +11,7 @@ use crate::{
 use wayword_core::FailureKind;
 use wayword_formats::jsonl::InstructionRecord;
 use wayword_synthesis::repair::WritingOutcome;
+use wayword_world::mask_credentials;
 
 /// The outcome of an item.
 pub(super) enum ItemFate {
@@ -35,7 +36,7 @@ pub(super) fn keep_item(
         Ok(()) => Ok(ItemFate::Made),
         Err(error) => match error.item_failure() {
             Some(failure) => {
-                let reason = error.to_string();
+                let reason = mask_credentials(&error.to_string()).into_owned();
                 run.errors.append(&FailedItem { item: item.id(), failure, reason: reason.clone() })?;
                 Ok(ItemFate::Failed(failure, reason))
             }

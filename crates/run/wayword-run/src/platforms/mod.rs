@@ -9,7 +9,7 @@ mod remembering;
 use crate::{
     error::CommandError,
     output,
-    settings::{AskedPlatform, RunSettings},
+    settings::{AskedPlatform, RunSettings, refuse_credentials},
     similar::did_you_mean,
     stores,
 };
@@ -119,7 +119,8 @@ pub fn open_named(
 /// # Errors
 /// When there is none of that name in this build, its data cannot be opened, or it does not use a part of `place`.
 pub fn open_at(name: &str, place: PlatformPlace<'_>) -> Result<Box<dyn Platform>, CommandError> {
-    let PlatformPlace { data, island, connectivity, .. } = place;
+    let PlatformPlace { data, at, island, connectivity } = place;
+    at.map_or(Ok(()), |at| refuse_credentials("--at", at))?;
     if let Some((flag, example)) = unused_flag(name, place) {
         let default = if name == "house" { ", the default," } else { "" };
         return Err(CommandError::usage(

@@ -10,6 +10,7 @@ mod sources;
 use crate::error::CommandError;
 use serde::{Deserialize, Serialize};
 use std::{
+    borrow::Cow,
     collections::BTreeMap,
     ops::RangeInclusive,
     path::{Path, PathBuf},
@@ -20,6 +21,7 @@ use wayword_synthesis::{
     dialogue::{DEFAULT_MAX_QUESTIONS, DialogueMode},
     walk::FrameSelection,
 };
+use wayword_world::mask_credentials;
 
 pub use asked_settings::{AskedFrames, AskedPlatform, AskedSettings, Draw, Walks, Writing};
 pub use role_player::{RolePlayer, UnknownPlayer, is_in_process};
@@ -302,6 +304,7 @@ impl AskedSettings {
                 "give fewer: after about nine questions a dialogue brings little that is new",
             ));
         }
+        platform.at.as_deref().map_or(Ok(()), |at| refuse_credentials("--at", at))?;
         let request = resolve_request(walks.hops.as_deref(), walks.metres.as_deref())?;
         let roles = roles.resolve()?;
         let looks_at_pictures =
@@ -372,14 +375,30 @@ fn resolve_evidence(writing: &Writing, roles: &RunRoles) -> Result<EvidenceSourc
     }
 }
 
-/// Refuses a path that a run folder cannot keep: settings are UTF-8 text, and a file's name need not be.
+/// Refuses a path that a run folder cannot keep: settings are UTF-8 text, and a file's name need not be. An address must not hold a
+/// secret, as [`refuse_credentials`] says.
 pub fn refuse_unnameable(flag: &str, path: Option<&Path>) -> Result<(), CommandError> {
     match path {
         Some(path) if path.to_str().is_none() => Err(CommandError::usage(
             format!("{flag} {}: this name is not valid UTF-8, and a run keeps it as text", path.display()),
             "rename it, or make a symbolic link to it with a plain name and give that",
         )),
+        Some(path) if path.to_string_lossy().contains("://") => refuse_credentials(flag, &path.to_string_lossy()),
         _ => Ok(()),
+    }
+}
+
+/// Refuses an address with a password or a key in it, because run folders, reports and lists of processes would show it.
+///
+/// # Errors
+/// When it has one.
+pub fn refuse_credentials(flag: &str, address: &str) -> Result<(), CommandError> {
+    match mask_credentials(address) {
+        Cow::Borrowed(_) => Ok(()),
+        Cow::Owned(masked) => Err(CommandError::usage(
+            format!("{flag} {masked}: a password, a key or a token stands in the address (here as ***)"),
+            "leave it out: a run keeps the address in its folder, and others can read it there",
+        )),
     }
 }
 

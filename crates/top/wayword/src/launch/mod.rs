@@ -4,6 +4,7 @@ pub(crate) mod args;
 use crate::launch::args::{LaunchArgs, LaunchCommand, LaunchKubernetes, LaunchSlurm};
 use serde_json::json;
 use std::{
+    borrow::Cow,
     fs,
     io::Write,
     process::{Command, Stdio},
@@ -15,7 +16,7 @@ use wayword_queue::launch::{
 };
 use wayword_run::{
     error::{CommandError, Exit},
-    output::CommandOutput,
+    output::{CommandOutput, mask_credentials},
 };
 
 pub(crate) fn run_launch(args: &LaunchArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
@@ -90,6 +91,12 @@ fn make_worker(program: &str, arguments: &[String], workers: u32) -> Result<Laun
         return Err(CommandError::usage(
             "the workers have no folder",
             "add --out DIR, a folder that all of them share",
+        ));
+    }
+    if arguments.iter().any(|typed| matches!(mask_credentials(typed), Cow::Owned(_))) {
+        return Err(CommandError::usage(
+            "an argument of the workers has a password, a key or a token in it, and the text would show it to others",
+            "give it to the workers in an environment variable: --export, or --secret",
         ));
     }
     Ok(LaunchWorker { program: program.to_owned(), arguments: arguments.to_vec(), workers })
