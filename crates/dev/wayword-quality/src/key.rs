@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use wayword_run::error::CommandError;
+use wayword_run::{error::CommandError, written_files::write_file};
 use wayword_world::files;
 
 /// The format of a key, with its version.
@@ -109,7 +109,7 @@ impl CorruptionKey {
 
     pub(crate) fn write(&self, file: &Path) -> Result<(), CommandError> {
         let text = serde_json::to_string_pretty(self).map_err(std::io::Error::from);
-        text.and_then(|text| std::fs::write(file, text + "\n")).map_err(CommandError::io(file, "write it"))
+        write_file(file, text.map_err(CommandError::io(file, "write"))? + "\n")
     }
 
     pub(crate) fn read(file: &Path) -> Result<Self, CommandError> {

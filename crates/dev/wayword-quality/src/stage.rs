@@ -20,6 +20,7 @@ use wayword_run::{
         Service, Walks, Writing,
     },
     team::RoleTeam,
+    written_files::write_file,
 };
 use wayword_testkit::provider::{
     BarcodePlatform, ModelScript, PictureGallery, ProviderBehaviour, ProviderDialect, ScriptedProvider,
@@ -150,7 +151,7 @@ impl MeasurementStage {
         let file = self.folder.path().join("prices.toml");
         let row = "usd_per_million_in = 10.0\nusd_per_million_out = 20.0\nas_of = \"2026-11-01\"\n";
         let text = format!("[\"server/words\"]\n{row}[\"server/eye\"]\n{row}");
-        std::fs::write(&file, text).map_err(CommandError::io(&file, "write"))?;
+        write_file(&file, text)?;
         Ok(file)
     }
 

@@ -70,8 +70,27 @@ impl fmt::Display for ItemPlace {
 }
 
 /// Advice about an error of the system, after a semicolon; empty where its message is enough.
-fn io_advice(error: &std::io::Error) -> &'static str {
-    if error.kind() == std::io::ErrorKind::NotFound { "; check the spelling of the path" } else { "" }
+fn io_advice(error: &std::io::Error) -> String {
+    let advice = match error.kind() {
+        std::io::ErrorKind::NotFound => Some("check the spelling of the path"),
+        _ => disk_advice(error),
+    };
+    advice.map_or_else(String::new, |advice| format!("; {advice}"))
+}
+
+/// Advice where the disk is full, a quota is used up, or a file is larger than the user's limit allows.
+#[must_use]
+pub fn disk_advice(error: &std::io::Error) -> Option<&'static str> {
+    match error.kind() {
+        std::io::ErrorKind::StorageFull => Some("free some space, and give the same command again"),
+        std::io::ErrorKind::QuotaExceeded => {
+            Some("your quota on this disk is used up: free some space, and give the same command again")
+        }
+        std::io::ErrorKind::FileTooLarge => Some(
+            "the file is larger than your limit (`ulimit -f`) or the disk allows: raise the limit, and give the same command again",
+        ),
+        _ => None,
+    }
 }
 
 /// The item's id in brackets, for a message; nothing where it is not known.

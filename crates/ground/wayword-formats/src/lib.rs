@@ -14,6 +14,7 @@
 //! - `limits`: all limits on a file. `input`, `bounded_tokens` and `strict_json` keep to them.
 //! - [`jsonl`]: Wayword's own records, with their version.
 //! - [`trajectories`]: walks in single actions, and their shards. [`vlnce_actions`] has VLN-CE's files of them.
+//! - [`OutputFile`]: the one writer of files that a user names; [`OutputPlace`]: whether that is a file, a pipe or standard output.
 //! - `official`: the official splits of scenes.
 //! - `table`, with the feature `parquet`: the columns of tables, in `schema.txt` and in `columns.rs` in the same order.
 //! - [`habitat`]: where poses change between Wayword's frame and Habitat's.
@@ -46,6 +47,8 @@ mod limits;
 mod matterport;
 mod official;
 mod output;
+mod output_file;
+mod output_place;
 pub mod r2r;
 mod read_tally;
 pub mod reverie;
@@ -62,10 +65,12 @@ mod vocabulary;
 
 pub use dataset_format::{DatasetFormat, UnknownFormat};
 pub use episode::{Episode, InHabitat};
-pub use error::{FormatError, ItemPlace, WrongItem};
+pub use error::{FormatError, ItemPlace, WrongItem, disk_advice};
 pub use format::{detect_format, read_any_format};
 pub(crate) use item::DatasetItem;
 pub use official::OfficialSplit;
-pub use output::{is_stream, write_sidecar};
+pub use output::write_sidecar;
+pub use output_file::OutputFile;
+pub use output_place::OutputPlace;
 pub use splits::split_by_scene;
 pub use vocabulary::TokenVocabulary;

@@ -23,12 +23,12 @@ impl Ledger {
         Ok(rows)
     }
 
-    /// Writes calls as JSON lines, in the order of their keys. Returns how many.
+    /// Writes calls as JSON lines to `out`, which `place` names in errors, in the order of their keys. Returns how many.
     ///
     /// # Errors
     /// When the ledger cannot be read or the lines cannot be written.
-    pub fn export_calls(&self, filter: &LedgerFilter, mut out: impl Write) -> Result<usize, LedgerError> {
-        let failed = LedgerError::io_error(self.store().ledger_location(), "export");
+    pub fn export_calls(&self, filter: &LedgerFilter, place: &Path, mut out: impl Write) -> Result<usize, LedgerError> {
+        let failed = LedgerError::io_error(place, "write");
         let mut count = 0;
         self.store().for_each_call(filter, CallOrder::Key, &mut |row| {
             let mut line = serde_json::to_vec(&row).map_err(|error| failed(error.into()))?;
@@ -36,23 +36,6 @@ impl Ledger {
             count += 1;
             out.write_all(&line).map_err(&failed)
         })?;
-        Ok(count)
-    }
-
-    /// Writes calls to a file, as [`Ledger::export_calls`] does. The file is complete or does not exist.
-    ///
-    /// # Errors
-    /// When the ledger cannot be read or the file cannot be written.
-    pub fn export_to(&self, filter: &LedgerFilter, path: &Path) -> Result<usize, LedgerError> {
-        let mut name = path.file_name().unwrap_or_default().to_owned();
-        name.push(".new");
-        let unfinished = path.with_file_name(name);
-        let failed = LedgerError::io_error(&unfinished, "write");
-        let mut file = std::io::BufWriter::new(std::fs::File::create(&unfinished).map_err(&failed)?);
-        let count = self.export_calls(filter, &mut file)?;
-        let file = file.into_inner().map_err(|error| failed(error.into_error()))?;
-        file.sync_all().map_err(&failed)?;
-        std::fs::rename(&unfinished, path).map_err(LedgerError::io_error(path, "write"))?;
         Ok(count)
     }
 

@@ -12,6 +12,7 @@ use crate::{
     store::{PendingRequest, RequestEnd, SentRequest},
 };
 use std::{
+    io::Write,
     path::{Path, PathBuf},
     sync::{Arc, Mutex, PoisonError},
     time::Instant,
@@ -222,12 +223,13 @@ impl LedgerRun {
         *self.state.totals.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Writes every call that this run has used, in the order of their keys. Returns how many.
+    /// Writes every call that this run has used to `out`, as [`Ledger::export_calls`] does. Returns how many.
     ///
     /// # Errors
     /// When the ledger cannot be read or the file cannot be written.
-    pub fn record_calls(&self, path: &Path) -> Result<usize, LedgerError> {
-        self.ledger.export_to(&LedgerFilter { run: Some(self.state.id.clone()), ..LedgerFilter::default() }, path)
+    pub fn record_calls(&self, place: &Path, out: impl Write) -> Result<usize, LedgerError> {
+        let filter = LedgerFilter { run: Some(self.state.id.clone()), ..LedgerFilter::default() };
+        self.ledger.export_calls(&filter, place, out)
     }
 
     /// Whether the ledger keeps rates for all programs together, see [`LedgerRun::wait_turn`].

@@ -8,6 +8,7 @@ use crate::{
     people::{ClaimSample, LabelNames, belongs_to_case, is_known, read_people_walks, sample_claims},
     platforms,
     settings::{AskedPlatform, AskedSettings},
+    written_files::{find_output_place, write_file},
 };
 use clap::Args;
 use serde::Serialize;
@@ -37,6 +38,7 @@ pub struct CalibrateArgs {
 /// # Errors
 /// When the platform cannot be opened, the texts cannot be read, or the file cannot be written.
 pub fn run_calibrate(args: &CalibrateArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
+    let output = &output.beside_data(&find_output_place(&args.out)?);
     let platform = platforms::open_platform(&AskedSettings::from(args.platform.clone()).resolve()?)?;
     let (walks, surveys) = read_people_walks(platform.as_ref(), &args.from)?;
     let texts = walks.iter().map(|walk| walk.texts.len()).sum();
@@ -60,7 +62,7 @@ pub fn run_calibrate(args: &CalibrateArgs, output: &CommandOutput) -> Result<Exi
     let observed: Vec<ClaimObservation<'_>> = observed.collect();
     let from = args.from.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let calibration = Calibration::fit_names(platform.name(), &from, texts, &observed);
-    std::fs::write(&args.out, calibration_text(&calibration)).map_err(CommandError::io(&args.out, "write"))?;
+    write_file(&args.out, calibration_text(&calibration))?;
     let summary = CalibrationSummary { names: calibration.names.len(), texts, claims: observed.len() };
     output.print_result(&summary, format!("{} names from {} claims of {texts} texts", summary.names, summary.claims));
     Ok(Exit::Done)

@@ -1,11 +1,13 @@
 //! The errors of the program, and its exit codes.
 
 use std::{
+    error::Error,
     io::{self, ErrorKind},
     path::PathBuf,
+    sync::Arc,
 };
 use wayword_core::{FailureKind, ModelError, PlatformError, platform::is_lost_disk};
-use wayword_formats::FormatError;
+use wayword_formats::{FormatError, disk_advice};
 #[cfg(feature = "experiments")]
 use wayword_navigation::WalkError;
 use wayword_queue::QueueError;
@@ -32,16 +34,29 @@ pub enum Exit {
 // clap itself exits with 2 when the command line is wrong.
 
 /// The hint that is printed with an error of the file system.
-fn io_advice(error: &io::Error) -> &'static str {
-    match error.kind() {
+fn io_advice(error: &io::Error) -> String {
+    if let Some(advice) = disk_advice(error) {
+        return format!("\nhint: {advice}");
+    }
+    let hint = match error.kind() {
         ErrorKind::NotFound => "\nhint: check the spelling of the path, and that its folder exists",
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
             "\nhint: give another path, or change its permissions"
         }
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "\nhint: free some space, and give the same command again",
         ErrorKind::IsADirectory => "\nhint: give a file; this is a folder",
+        ErrorKind::NotADirectory => {
+            "\nhint: give the name of a folder; a file has this name, or the name of a folder above it"
+        }
         _ => "\nhint: check the file and its disk, and give the same command again",
-    }
+    };
+    hint.to_owned()
+}
+
+/// Whether an error comes from a disk that is full, or from a file beyond a limit: no room is left for it.
+fn has_no_room(error: &(dyn Error + 'static)) -> bool {
+    let of_system = |error: &io::Error| disk_advice(error).is_some();
+    let shared = error.downcast_ref::<Arc<io::Error>>().map(AsRef::as_ref);
+    error.downcast_ref::<io::Error>().or(shared).is_some_and(of_system) || error.source().is_some_and(has_no_room)
 }
 
 /// An error of a command.
@@ -183,13 +198,17 @@ impl CommandError {
 
     /// Whether the disk is full or gone.
     fn is_disk_failure(&self) -> bool {
-        let is_full = |error: &io::Error| matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded);
+        if has_no_room(self) {
+            return true;
+        }
         match self {
-            Self::Io { source, .. } => is_full(source) || is_lost_disk(source),
+            Self::Io { source, .. } => is_lost_disk(source),
             Self::Ledger(error) => error.is_lost(),
             Self::Queue(error) => error.is_lost(),
             #[cfg(feature = "queue")]
             Self::Database(error) => error.is_lost(),
+            #[cfg(feature = "study")]
+            Self::Study(error) => error.is_lost(),
             error => matches!(error.model_error(), Some(ModelError::Stopped { is_lost: true, .. })),
         }
     }
@@ -252,7 +271,13 @@ mod tests {
     #[test]
     fn exit_code_is_lost_for_a_full_disk_and_bad_input_for_a_refused_file() {
         let error = |kind| CommandError::io("walks.jsonl", "write")(IoError::from(kind)).exit_code();
-        assert_eq!(error(ErrorKind::StorageFull), Exit::Lost);
+        for full in [ErrorKind::StorageFull, ErrorKind::QuotaExceeded, ErrorKind::FileTooLarge] {
+            assert_eq!(error(full), Exit::Lost, "{full}");
+            let of_format = FormatError::Io { file: "texts.json".into(), doing: "write", source: IoError::from(full) };
+            assert_eq!(CommandError::from(of_format).exit_code(), Exit::Lost, "{full}");
+            let of_house = wayword_house::SaveError::File { file: "house.glb".into(), source: IoError::from(full) };
+            assert_eq!(CommandError::from(of_house).exit_code(), Exit::Lost, "{full}");
+        }
         assert_eq!(error(ErrorKind::PermissionDenied), Exit::BadInput);
         let stopped = |is_lost| {
             CommandError::from(ModelError::Stopped { reason: "no more".into(), hint: "wait".into(), is_lost })

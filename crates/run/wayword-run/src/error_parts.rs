@@ -3,7 +3,7 @@
 use crate::error::{CommandError, Exit};
 use std::{fmt::Display, path::Path};
 use wayword_core::PlatformError;
-use wayword_formats::FormatError;
+use wayword_formats::{FormatError, disk_advice};
 use wayword_world::mask_credentials;
 
 /// The text before a hint in the errors of this program.
@@ -44,7 +44,8 @@ impl ErrorParts {
         match error {
             CommandError::Format(FormatError::Io { file, doing, source }) => {
                 let is_missing = source.kind() == std::io::ErrorKind::NotFound;
-                let hint = if is_missing { "check the spelling of the path" } else { "" };
+                let hint = disk_advice(source).or(is_missing.then_some("check the spelling of the path"));
+                let hint = hint.unwrap_or_default();
                 at_place(file, &format!("cannot {doing} it: {source}"), hint)
             }
             CommandError::Format(FormatError::Document { file, problem, hint }) => at_place(file, problem, hint),

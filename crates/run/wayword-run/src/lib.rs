@@ -15,7 +15,7 @@
 //! - [`check`]: `check/worlds.rs` chooses the world of a text, `detecting.rs` is `--detector`, `run_texts.rs` for texts edited after an export.
 //! - [`follow`], [`doubts`], [`walk_ranking`]: what the program does with the follower.
 //! - [`episode_paths`]: an episode of a dataset as a path. [`platforms`]: platforms by name. [`scene_selection`]: which scenes a run leaves out. [`terms`]: what needs `--i-have-the-right`.
-//! - [`error`]: errors and exit codes. [`interrupt`]: Ctrl-C and signals. [`output`]: the only place that prints.
+//! - [`error`]: errors and exit codes. [`interrupt`]: Ctrl-C and signals. [`output`]: the only place that prints. [`written_files`]: files that a user names.
 //! - [`own_format`]: format and version at the head of our files. [`watch`]: spans, with `lines.rs` and `telemetry/`.
 
 mod advice;
@@ -60,3 +60,4 @@ pub mod terms;
 pub mod text_file;
 pub mod walk_ranking;
 pub mod watch;
+pub mod written_files;

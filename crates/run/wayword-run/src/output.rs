@@ -1,15 +1,17 @@
 //! The only place that writes to the terminal: results to standard output, messages and progress to standard error. Inside
 //! another program (the Python package) a listener gets them instead.
 
+use crate::error::CommandError;
 pub use indicatif::ProgressBar;
 use indicatif::{HumanDuration, ProgressDrawTarget, ProgressState, ProgressStyle};
 use serde::Serialize;
 use std::{
     fmt::{self, Display},
     io::{self, IsTerminal, Write},
-    sync::Arc,
+    sync::{Arc, OnceLock},
     time::Duration,
 };
+use wayword_formats::OutputPlace;
 use wayword_world::output_lines::is_unseen;
 pub use wayword_world::{mask_credentials, output_lines::show_unseen};
 
@@ -20,6 +22,10 @@ pub struct CommandOutput {
     json: bool,
     /// Whether messages and progress are left out.
     quiet: bool,
+    /// Whether standard output carries the data of the command. Then results are printed on standard error.
+    carries_data: bool,
+    /// Why a result could not be printed, if that happened.
+    lost_result: Arc<OnceLock<io::Error>>,
     /// Gets everything in place of the terminal, if there is one.
     listener: Option<Arc<dyn CommandOutputListener>>,
 }
@@ -38,7 +44,7 @@ pub trait CommandOutputListener: Send + Sync {
 
 impl fmt::Debug for CommandOutput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { json, quiet, listener } = self;
+        let Self { json, quiet, listener, .. } = self;
         let fields = ("json", json, "quiet", quiet, "is_heard", listener.is_some());
         f.debug_struct("Output").field(fields.0, fields.1).field(fields.2, fields.3).field(fields.4, &fields.5).finish()
     }
@@ -94,13 +100,28 @@ impl CommandOutput {
     /// `json`: results as JSON; `quiet`: no messages, no progress.
     #[must_use]
     pub fn new(json: bool, quiet: bool) -> Self {
-        Self { json, quiet, listener: None }
+        Self { json, quiet, carries_data: false, lost_result: Arc::default(), listener: None }
     }
 
     /// Results as JSON, messages and bars for a listener; the terminal stays empty.
     #[must_use]
     pub fn heard_by(listener: Arc<dyn CommandOutputListener>) -> Self {
-        Self { json: true, quiet: false, listener: Some(listener) }
+        Self { listener: Some(listener), ..Self::new(true, false) }
+    }
+
+    /// The same output for a command whose data goes to `place`: where that is standard output, nothing else is printed there.
+    #[must_use]
+    pub fn beside_data(&self, place: &OutputPlace) -> Self {
+        Self { carries_data: self.carries_data || *place == OutputPlace::StandardOutput, ..self.clone() }
+    }
+
+    /// The error of a result that could not be printed, because standard output is full.
+    ///
+    /// # Errors
+    /// When a result could not be printed.
+    pub fn expect_printed(&self) -> Result<(), CommandError> {
+        let failed = CommandError::io("standard output", "write");
+        self.lost_result.get().map_or(Ok(()), |error| Err(failed(error.kind().into())))
     }
 
     /// Whether results are printed as JSON.
@@ -109,7 +130,8 @@ impl CommandOutput {
         self.json
     }
 
-    /// Prints a result: `value` as JSON if that is wanted, else the text. A closed standard output is no error.
+    /// Prints a result: `value` as JSON if that is wanted, else the text. A closed standard output is no error; for a full one see
+    /// [`CommandOutput::expect_printed`].
     pub fn print_result(&self, value: &impl Serialize, text: impl Display) {
         let json = || {
             // A file name that is not UTF-8 cannot be written as JSON.
@@ -120,7 +142,17 @@ impl CommandOutput {
             return listener.take_result(mask_credentials(&json()).into_owned());
         }
         let line = if self.json { tame_json(&json()) } else { tame_text(&text.to_string()) };
-        let _ = writeln!(io::stdout(), "{}", line.trim_end());
+        let line = line.trim_end();
+        if self.carries_data {
+            if !self.quiet {
+                print_to_stderr(line);
+            }
+        } else if let Err(error) = writeln!(io::stdout(), "{line}")
+            && error.kind() != io::ErrorKind::BrokenPipe
+        {
+            // The first error is the one to report.
+            let _ = self.lost_result.set(error);
+        }
     }
 
     /// Prints a message.

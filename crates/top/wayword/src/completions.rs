@@ -9,6 +9,11 @@ pub(crate) fn print_completions(shell: clap_complete::Shell) -> Result<Exit, Com
     // `clap_complete` panics when it cannot write. A closed pipe is not an error.
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut WaywordCli::command(), "wayword", &mut script);
-    let _ = io::stdout().write_all(&script);
-    Ok(Exit::Done)
+    let mut out = io::stdout();
+    match out.write_all(&script).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(CommandError::io("standard output", "write")(error))
+        }
+        _ => Ok(Exit::Done),
+    }
 }

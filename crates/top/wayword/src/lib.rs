@@ -56,7 +56,7 @@ pub fn main(arguments: Vec<OsString>) -> u8 {
     };
     let output = CommandOutput::new(cli.json, cli.quiet);
     interrupt::listen_for_signals(pending, &output);
-    match commands::run_command(cli.command, &output) {
+    match commands::run_command(cli.command, &output).and_then(|exit| output.expect_printed().map(|()| exit)) {
         Ok(exit) => exit as u8,
         Err(error) => {
             output.print_error(&error);

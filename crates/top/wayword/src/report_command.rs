@@ -12,6 +12,7 @@ use wayword_run::{
     error::{CommandError, Exit},
     output::CommandOutput,
     run_folder::{file, is_comparison, refuse_unmerged},
+    written_files::find_output_place,
 };
 
 /// `wayword report`.
@@ -45,6 +46,7 @@ const MAX_NAMED_ITEMS: usize = 3;
 pub(crate) fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     expect_run(&args.run)?;
     let out = args.out.clone().unwrap_or_else(|| args.run.join(file::REPORT));
+    let output = &output.beside_data(&find_output_place(&out)?);
     if is_comparison(&args.run) {
         #[cfg(not(feature = "experiments"))]
         return Err(CommandError::not_built("the folder holds a comparison, which this build cannot show"));
@@ -56,6 +58,9 @@ pub(crate) fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Ex
         }
     }
     let written = pages::write_report(&args.run, &out, args.items.unwrap_or(MAX_REPORT_ITEMS))?;
+    if written.items + written.left_out == 0 {
+        output.say("the run has no item yet, so the page shows none; see errors.jsonl for items that failed");
+    }
     output.print_result(&written, &written);
     Ok(Exit::Done)
 }

@@ -19,7 +19,7 @@ use wayword_follower::{
     alignment::{AlignmentCase, AlignmentLearner, AlignmentSlope, AlignmentWeights, PartReading, PartedText},
     learn::FitPlan,
 };
-use wayword_run::{error::CommandError, output::CommandOutput};
+use wayword_run::{error::CommandError, output::CommandOutput, written_files::write_file};
 
 /// The flags of `fit-alignment`.
 #[derive(Debug, Args)]
@@ -95,7 +95,7 @@ pub fn fit_alignment_weights(flags: &FitAlignmentArgs, output: &CommandOutput) -
              {hold_fine} --out FILE"
         );
         let text = AlignmentWeights::to_json(&words, &counts, &origin, &command);
-        std::fs::write(out, text).map_err(CommandError::io(out, "write"))?;
+        write_file(out, text)?;
     }
     Ok(())
 }

@@ -21,6 +21,7 @@ use wayword_run::{
     people::{ClaimSample, LabelNames, PeopleWalk, left_out, read_people_walks, sample_claims},
     platforms,
     settings::{AskedPlatform, AskedSettings},
+    written_files::write_file,
 };
 
 /// Rooms in groups of like evidence. Rooms of one group share weights.
@@ -77,7 +78,7 @@ pub fn fit_evidence_weights(
         report_fit(&[("fitted", &fitted, &samples), ("left out", &apart, &apart_samples)], &weights),
     );
     if let Some(out) = out {
-        std::fs::write(out, weights_file_text(&weights, episodes)).map_err(CommandError::io(out, "write"))?;
+        write_file(out, weights_file_text(&weights, episodes))?;
     }
     Ok(())
 }

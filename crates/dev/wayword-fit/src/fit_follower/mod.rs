@@ -20,7 +20,7 @@ use wayword_follower::{
     learn::{FitPlan, FitSlope, WeightLearner},
     online::{OnwardLearner, OnwardSlope, OnwardWeights},
 };
-use wayword_run::{error::CommandError, output::CommandOutput, people::left_out};
+use wayword_run::{error::CommandError, output::CommandOutput, people::left_out, written_files::write_file};
 
 /// The weight of the contrast between a text and the same text with one turn flipped.
 const CONTRAST_WEIGHT: f64 = 1.0;
@@ -98,11 +98,10 @@ pub fn fit_follower_weights(flags: &FitFollowerArgs, output: &CommandOutput) -> 
             "wayword-measure fit-follower --data DATA{episode_flags} --seed {seed} --rounds {rounds} --walker-rounds \
              {walker_rounds} --out DIR"
         );
-        std::fs::create_dir_all(out).map_err(CommandError::io(out, "make"))?;
         for (name, text) in
             [("map.json", map.to_json(&origin, &command)), ("walker.json", walking.to_json(&origin, &command))]
         {
-            std::fs::write(out.join(name), text).map_err(CommandError::io(out, "write"))?;
+            write_file(&out.join(name), text)?;
         }
     }
     Ok(())

@@ -2,19 +2,16 @@
 //! of their name before the first point.
 
 use super::{ActionTrajectory, pictures::picture_name, trajectory_line};
+use crate::OutputFile;
 use std::{
-    fmt,
-    fs::{self, File},
-    io::{self, BufWriter, Write},
+    fmt, io,
     path::{Path, PathBuf},
 };
 
 /// A shard that is being written, under another name until it is whole.
 pub struct ShardWriter {
     file: PathBuf,
-    /// The name that the shard has while it is written.
-    temporary_file: PathBuf,
-    tar: tar::Builder<BufWriter<File>>,
+    tar: tar::Builder<OutputFile>,
 }
 
 impl fmt::Debug for ShardWriter {
@@ -29,9 +26,7 @@ impl ShardWriter {
     /// # Errors
     /// When the file cannot be made.
     pub fn begin(file: &Path) -> io::Result<Self> {
-        let beside = file.with_extension("tar.part");
-        let tar = tar::Builder::new(BufWriter::new(File::create(&beside)?));
-        Ok(Self { file: file.to_owned(), temporary_file: beside, tar })
+        Ok(Self { file: file.to_owned(), tar: tar::Builder::new(OutputFile::begin(file)?) })
     }
 
     /// Adds a walk with its pictures.
@@ -58,9 +53,6 @@ impl ShardWriter {
     /// # Errors
     /// When it cannot be written.
     pub fn finish(self) -> io::Result<()> {
-        let mut out = self.tar.into_inner()?;
-        out.flush()?;
-        out.get_ref().sync_all()?;
-        fs::rename(&self.temporary_file, &self.file)
+        self.tar.into_inner()?.finish()
     }
 }

@@ -49,11 +49,17 @@ impl StudyError {
         move |source| Self::Io { path, doing, source }
     }
 
-    /// Whether the disk is full or cannot be written.
+    /// Whether the database's disk is full or fails.
+    #[must_use]
+    pub fn is_lost(&self) -> bool {
+        use rusqlite::ErrorCode::{DiskFull, SystemIoFailure};
+        matches!(self, Self::Store { source } if matches!(source.sqlite_error_code(), Some(DiskFull | SystemIoFailure)))
+    }
+
+    /// Whether the disk is full, fails or cannot be written.
     pub(crate) fn is_of_disk(&self) -> bool {
-        use rusqlite::ErrorCode::{DiskFull, ReadOnly, SystemIoFailure};
-        let Self::Store { source } = self else { return false };
-        matches!(source.sqlite_error_code(), Some(DiskFull | ReadOnly | SystemIoFailure))
+        let is_read_only = |source: &rusqlite::Error| source.sqlite_error_code() == Some(rusqlite::ErrorCode::ReadOnly);
+        self.is_lost() || matches!(self, Self::Store { source } if is_read_only(source))
     }
 
     pub(crate) fn refused_request(problem: impl Into<String>, hint: impl Into<String>) -> Self {

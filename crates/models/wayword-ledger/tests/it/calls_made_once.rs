@@ -236,7 +236,7 @@ fn replay_answers_the_recorded_calls_and_no_others() {
         }
         ask(&run, 3).unwrap();
         let file = folder.path().join("recording.jsonl");
-        assert_eq!(run.record_calls(&file).unwrap(), 11);
+        assert_eq!(run.record_calls(&file, std::fs::File::create(&file).unwrap()).unwrap(), 11);
         let replayed = Ledger::replay_recording(&file).unwrap().start_run("c", RunLimits::default()).unwrap();
         assert_eq!(ask(&replayed, 3).unwrap().text, "3!");
         let missing = ask(&replayed, 4).unwrap_err();

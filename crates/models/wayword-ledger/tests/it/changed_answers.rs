@@ -5,6 +5,7 @@
 use crate::common::{Store, shared_stores};
 use rusqlite::Connection;
 use serde_json::json;
+use std::path::Path;
 use wayword_ledger::{
     CallAnswer, Ledger, LedgerError, LedgerFilter, LedgerRun, ModelCall, OnceError, RequestRefusedError, RunLimits,
 };
@@ -62,7 +63,7 @@ fn a_changed_answer_is_reported_and_never_used() {
                 matches!(ledger.list_calls(&LedgerFilter::default()), Err(LedgerError::Changed { .. })),
                 "{change}"
             );
-            let exported = ledger.export_calls(&LedgerFilter::default(), Vec::new());
+            let exported = ledger.export_calls(&LedgerFilter::default(), Path::new("out"), Vec::new());
             assert!(matches!(exported, Err(LedgerError::Changed { .. })), "{change}");
             assert!(ask(&run(&store), 2).is_ok(), "the others are as they were");
 

@@ -188,7 +188,7 @@ fn a_chunk_can_be_replayed_and_has_no_second_file() {
     assert_eq!(ask(&replayed, 2).unwrap().text, "2!");
     assert!(matches!(ask(&replayed, 3), Err(OnceError::NotRecorded { .. })));
     let recording = folder.path().join("recording");
-    assert_eq!(run.record_calls(&recording).unwrap(), 3);
+    assert_eq!(run.record_calls(&recording, std::fs::File::create(&recording).unwrap()).unwrap(), 3);
     assert!(Ledger::replay_recording(&recording).is_ok());
 }
 

@@ -63,7 +63,7 @@ fn a_recording_answers_without_any_service() {
     let file = folder.path().join("calls.jsonl");
     let recorded = run();
     assert!(asked(&model(&server, "", &recorded), "Hello?").is_ok());
-    recorded.record_calls(&file).unwrap();
+    recorded.record_calls(&file, std::fs::File::create(&file).unwrap()).unwrap();
     let replayed = Ledger::replay_recording(&file).unwrap().start_run("replay", RunLimits::default()).unwrap();
     // A replay needs no key.
     let model = model(&server, "key_env = \"WAYWORD_NO_SUCH_KEY\"", &replayed);
@@ -122,7 +122,7 @@ fn a_picture_is_sent_as_jpeg_and_stored_as_a_hash() {
     assert_eq!(model(&server, "", &run).complete_requests(&[request])[0].as_ref().unwrap().text, "Red.");
     assert!(server.requests()[0].contains("data:image/jpeg;base64,/9j/"));
     let file = folder.path().join("calls.jsonl");
-    assert_eq!(run.record_calls(&file).unwrap(), 1);
+    assert_eq!(run.record_calls(&file, std::fs::File::create(&file).unwrap()).unwrap(), 1);
     let row = std::fs::read_to_string(&file).unwrap();
     assert!(
         row.contains("\"image_sha256\":\"") && row.contains("\"picture_px\":512") && !row.contains("/9j/"),

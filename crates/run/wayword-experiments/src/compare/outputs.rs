@@ -10,7 +10,7 @@ use wayword_navigation::{
 };
 use wayword_report::pages;
 use wayword_robustness::sets::FollowResult;
-use wayword_run::{error::CommandError, run_folder::write_whole};
+use wayword_run::{error::CommandError, written_files::write_file};
 
 /// Everything that the files need from the walks, collected in one pass.
 #[derive(Default)]
@@ -72,9 +72,9 @@ pub(super) fn write_outputs(
 ) -> Result<(), CommandError> {
     let json = serde_json::to_string_pretty(comparison)
         .map_err(|error| CommandError::usage(format!("the result cannot be kept: {error}"), "report this as a bug"))?;
-    write_whole(&folder.join(file::COMPARISON), &json)?;
-    write_whole(&folder.join(file::MARKDOWN), &pages::comparison::markdown_tables(comparison))?;
-    write_whole(&folder.join(file::LATEX), &pages::comparison::latex_table(comparison))?;
+    write_file(&folder.join(file::COMPARISON), &json)?;
+    write_file(&folder.join(file::MARKDOWN), pages::comparison::markdown_tables(comparison))?;
+    write_file(&folder.join(file::LATEX), pages::comparison::latex_table(comparison))?;
     let mut lines = String::new();
     for result in &gathered.followed {
         let line = serde_json::to_string(result)
@@ -82,7 +82,7 @@ pub(super) fn write_outputs(
         lines.push_str(&line);
         lines.push('\n');
     }
-    write_whole(&folder.join(file::FOLLOWED), &lines)?;
+    write_file(&folder.join(file::FOLLOWED), &lines)?;
     let submissions = folder.join(file::SUBMISSIONS);
     fs::create_dir_all(&submissions).map_err(CommandError::io(&submissions, "make the folder"))?;
     for ((agent, set), submitted) in &gathered.submissions {

@@ -23,7 +23,7 @@ use wayword_run::{
     error::{CommandError, Exit},
     output::CommandOutput,
     platforms,
-    run_folder::write_whole,
+    written_files::{find_output_place, write_file},
 };
 
 /// How much of the episodes a submission was scored on.
@@ -45,6 +45,8 @@ struct SubmissionCoverage {
 /// When an input cannot be read, the submission has problems or no trajectory, a rule cannot be applied, or `--per-item` names an input.
 pub fn run_evaluate(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
     refuse_to_overwrite(args)?;
+    let place = args.per_item.as_deref().map(find_output_place).transpose()?;
+    let output = &place.map_or_else(|| output.clone(), |place| output.beside_data(&place));
     let platform = platforms::open_at(args.platform.name(), (&args.platform).into())?;
     let mut split = episodes::read_split(&args.episodes, platform.as_ref())?;
     let hidden = if args.partial && !split.known.is_empty() { std::mem::take(&mut split.hidden) } else { Vec::new() };
@@ -151,5 +153,5 @@ fn write_score_lines(file: &Path, scores: &SubmissionScores) -> Result<(), Comma
         lines.push_str(&line);
         lines.push('\n');
     }
-    write_whole(file, &lines)
+    write_file(file, &lines)
 }

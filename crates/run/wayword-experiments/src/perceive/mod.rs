@@ -29,6 +29,7 @@ use wayword_run::{
     settings::{Perception, RolePlayer, RunJob, RunSettings},
     settings_file,
     team::RoleTeam,
+    written_files::{find_output_place, write_file},
 };
 use wayword_synthesis::{
     detection::{CaptionDetector, seek_in_view},
@@ -86,6 +87,8 @@ struct ScoredCaption {
 /// # Errors
 /// When the settings are wrong, the platform cannot be opened, a file cannot be written, and as [`measure_perception`].
 pub fn run_perceive(args: &PerceiveArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
+    let place = args.figures.as_deref().map(find_output_place).transpose()?;
+    let output = &place.map_or_else(|| output.clone(), |place| output.beside_data(&place));
     let mut asked = args.asked_settings().or_file(settings_file::read_settings(args.config.as_deref())?);
     // As many random paths as views are enough, because each new path gives at least one view.
     asked.walks.paths = asked.walks.episodes.is_none().then_some(args.views);
@@ -249,7 +252,7 @@ fn correct_captions(
 fn write_detector_figures(file: &Path, figures: &DetectorFigures) -> Result<(), CommandError> {
     let text =
         toml::to_string(figures).map_err(|error| CommandError::usage(error.to_string(), "report this as a defect"))?;
-    std::fs::write(file, own_format::with_header::<DetectorFigures>(&text)).map_err(CommandError::io(file, "write"))
+    write_file(file, own_format::with_header::<DetectorFigures>(&text))
 }
 
 /// Scores a caption against the labels of its view; `None`, with a message, if the model failed on this view.

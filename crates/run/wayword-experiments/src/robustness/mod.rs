@@ -47,6 +47,7 @@ use wayword_run::{
     settings::{AskedSettings, RolePlayer, RunJob, RunSettings},
     settings_file,
     team::RoleTeam,
+    written_files::{expect_output_folder, write_file},
 };
 use write_texts::{ArmContext, ArmTextWriter};
 
@@ -141,7 +142,7 @@ pub fn run_robustness(args: &RobustnessArgs, output: &CommandOutput) -> Result<E
     let json = serde_json::to_string_pretty(&results).map_err(|error| {
         CommandError::usage(format!("the results cannot be written: {error}"), "report this as a bug")
     })?;
-    run_folder::write_whole(&out.join(file::RESULTS), &json)?;
+    write_file(&out.join(file::RESULTS), &json)?;
     pages::robustness::write_robustness(&out.join(run_folder::file::REPORT), &results)?;
     output.print_result(&results, screen::format_results(&results));
     output.say(format_args!("texts, figures and page: {}", out.display()));
@@ -210,7 +211,7 @@ fn sort_changes(changes: Vec<Change>, setting: &ChangeSetting<'_>) -> (Vec<Chang
 
 /// Makes or continues the folder, and locks it against other processes.
 fn begin_folder(args: &RobustnessArgs, base: &BaseRun, out: &FilePath) -> Result<run_folder::FolderLock, CommandError> {
-    run_folder::refuse_file(out)?;
+    expect_output_folder(out)?;
     let folder = &base.folder;
     let kept = RobustnessSettings {
         run: folder.canonicalize().map_err(CommandError::io(folder, "find"))?,

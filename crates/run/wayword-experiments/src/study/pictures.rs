@@ -12,9 +12,8 @@ use wayword_report::view::{
     panorama::draw_panorama,
     path::film_steps::{FilmStep, film_steps},
     picture,
-    unfinished::UnfinishedFile,
 };
-use wayword_run::{error::CommandError, interrupt, output::CommandOutput};
+use wayword_run::{error::CommandError, interrupt, output::CommandOutput, written_files::write_file};
 use wayword_study::{FilmPicture, StudyScene, StudyViewpoint};
 
 /// Platforms for which this program draws pictures itself, at any place.
@@ -92,7 +91,7 @@ fn draw_place(
     // A command that was stopped goes on with the pictures that it has.
     if !file.is_file() {
         let whole = draw_panorama(platform, scene, &frame, Some(PANORAMA_PX), output)?;
-        UnfinishedFile::write_whole(&file, &picture::encode_jpeg(&whole)?)?;
+        write_file(&file, picture::encode_jpeg(&whole)?)?;
     }
     let neighbours = graph.neighbours_of(id).into_iter().cloned().collect();
     Ok(StudyViewpoint { position: position.to_array(), level, neighbours, panorama })
@@ -118,7 +117,7 @@ pub(super) fn draw_film(
             let view =
                 platform.look_from(&walk.path.scene, &step.frame, ViewGaze::quarter_view(step.frame.pose.heading))?;
             let Some(image) = view.image else { return Ok(None) };
-            UnfinishedFile::write_whole(&file, &picture::encode_jpeg(&image)?)?;
+            write_file(&file, picture::encode_jpeg(&image)?)?;
         }
         let before = number.checked_sub(1).map(|before| &steps[before]);
         Ok(Some(FilmPicture { file: name, alt: describe_motion(before, step, walk.path.motion.is_known()) }))

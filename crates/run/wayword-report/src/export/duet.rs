@@ -1,7 +1,7 @@
 //! Writes the files that the loaders of the agents VLN-DUET and VLN-HAMT read: the items of R2R, REVERIE or RxR, to which the token
 //! ids of each instruction are added. One file for each split.
 
-use super::{items, splits, tell_overwriting, tell_terms, tell_written};
+use super::{items, replace_file, splits, tell_terms, tell_written};
 use crate::export::args::{AgentDataset, ExportArgs, ExportFormat};
 use std::{
     collections::BTreeMap,
@@ -45,7 +45,6 @@ pub(super) fn write_duet(
     let mut files = Vec::new();
     for (split, indices) in indices_by_split {
         let file = out.join(file_name(dataset, split, is_xlm));
-        tell_overwriting(&file, output);
         files.extend(write_split(args, dataset, split, &file, (records, &ids, &indices), output)?);
     }
     tell_terms(records, output);
@@ -84,7 +83,7 @@ fn write_split(
         episode.split = Some(split.to_owned());
         episode.encodings = vec![ids[*index].clone()];
     }
-    let provenance_file = items::write_items(format, file, &split_records, episodes)?;
+    let provenance_file = replace_file(file, output, || items::write_items(format, file, &split_records, episodes))?;
     Ok([file.to_owned()].into_iter().chain(provenance_file).collect())
 }
 

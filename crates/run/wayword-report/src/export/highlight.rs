@@ -1,5 +1,6 @@
 //! `wayword export --highlight`: checks texts, and writes a page and a JSON file in which the doubtful words are marked.
 
+use super::replace_file;
 use crate::{
     export::args::ExportArgs,
     pages::doubts::{DoubtHighlights, write_json, write_page},
@@ -11,6 +12,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use wayword_core::DoubtGrade;
+use wayword_formats::OutputPlace;
 use wayword_run::{
     check::{CheckOptions, check_file},
     count::count_phrase,
@@ -18,6 +20,7 @@ use wayword_run::{
     output::CommandOutput,
     run_folder::{file, read_run_settings},
     settings::{AskedPlatform, AskedSettings},
+    written_files::find_output_place,
 };
 
 /// The written files, with how much in them is doubted. Printed at the end.
@@ -62,13 +65,11 @@ impl fmt::Display for WrittenHighlights {
 }
 
 pub(super) fn write_highlights(args: &ExportArgs, name: &Path, output: &CommandOutput) -> Result<Exit, CommandError> {
+    refuse_no_file(name)?;
     let highlights = find_highlights(args, output)?;
     let [page, file] = ["html", "json"].map(|end| file_with_ending(name, end));
-    for old in [&page, &file].into_iter().filter(|old| old.exists()) {
-        output.say(format_args!("overwriting the old file {}", old.display()));
-    }
-    write_json(&file, &highlights)?;
-    write_page(&page, &highlights)?;
+    replace_file(&file, output, || write_json(&file, &highlights))?;
+    replace_file(&page, output, || write_page(&page, &highlights))?;
     let summary = &highlights.summary;
     let counts = DoubtCounts {
         texts: summary.texts,
@@ -81,6 +82,17 @@ pub(super) fn write_highlights(args: &ExportArgs, name: &Path, output: &CommandO
     let written = WrittenHighlights { page, file, highlights: counts };
     output.print_result(&written, &written);
     Ok(Exit::Done)
+}
+
+/// Refuses standard output, a pipe and a device, because two files are written.
+fn refuse_no_file(name: &Path) -> Result<(), CommandError> {
+    let is_folder = name.is_dir() && name.as_os_str() != "-";
+    if is_folder || matches!(find_output_place(name)?, OutputPlace::File(_)) {
+        return Ok(());
+    }
+    let problem =
+        format!("--highlight {}: a page and a file of JSON are written, and this takes only one", name.display());
+    Err(CommandError::usage(problem, "give the name that both files have before their endings"))
 }
 
 /// The file with this name and ending. The user may have typed one of the two endings already; it is replaced.

@@ -14,6 +14,8 @@ mod steps;
 #[cfg(feature = "habitat")]
 mod steps;
 pub mod steps_args;
+#[cfg(feature = "parquet")]
+mod unfinished_folder;
 #[cfg(feature = "habitat")]
 pub use habitat_scenes::lay_on_navmesh;
 #[cfg(feature = "habitat")]
@@ -42,6 +44,7 @@ use wayword_run::{
     run_folder::{file, refuse_unmerged},
     settings::AskedPlatform,
     terms,
+    written_files::{expect_output_folder, find_output_place},
 };
 
 /// Most scenes for which the screen lists what the user has to do.
@@ -79,6 +82,7 @@ pub fn run_export(args: &ExportArgs, output: &CommandOutput) -> Result<Exit, Com
     }
     let (format, out) = check_dataset_args(args)?;
     refuse_what_does_not_fit(args, format)?;
+    let output = &output_beside(format, out, output)?;
     let mut records = read_records(&args.run, args.style.as_deref())?;
     if let Some(share) = args.val_share {
         split_by_scene(&mut records, share, args.seed);
@@ -112,6 +116,15 @@ fn check_dataset_args(args: &ExportArgs) -> Result<(ExportFormat, &Path), Comman
     }
     let format = args.format.ok_or_else(|| lacks("--format"))?;
     Ok((format, args.out.as_deref().ok_or_else(|| lacks("--out"))?))
+}
+
+/// Refuses a place that cannot take the format. The returned output keeps standard output free if the data goes there.
+fn output_beside(format: ExportFormat, out: &Path, output: &CommandOutput) -> Result<CommandOutput, CommandError> {
+    if matches!(format, ExportFormat::Duet | ExportFormat::Hf | ExportFormat::Steps) {
+        expect_output_folder(out)?;
+        return Ok(output.clone());
+    }
+    Ok(output.beside_data(&find_output_place(out)?))
 }
 
 fn refuse_what_does_not_fit(args: &ExportArgs, format: ExportFormat) -> Result<(), CommandError> {
@@ -178,10 +191,9 @@ fn write_one_file(
 ) -> Result<(), CommandError> {
     let Some(file_format) = format.file_format() else { return Ok(()) };
     let splits = splits_of(args, format, records, output)?;
-    tell_overwriting(out, output);
     let mut scene_needs = BTreeSet::new();
     let provenance = if file_format == DatasetFormat::Wayword {
-        jsonl::write_records(out, records)?;
+        replace_file(out, output, || Ok(jsonl::write_records(out, records)?))?;
         None
     } else {
         items::refuse_without_poses(format, records)?;
@@ -190,7 +202,7 @@ fn write_one_file(
             episode.split = Some(split);
         }
         scene_needs.extend(episodes.iter().filter_map(|episode| episode.in_habitat.scene_needs.clone()));
-        items::write_items(file_format, out, records, episodes)?
+        replace_file(out, output, || items::write_items(file_format, out, records, episodes))?
     };
     tell_needs(&scene_needs, output);
     tell_terms(records, output);
@@ -221,10 +233,18 @@ fn splits_of(
     Ok(Vec::new())
 }
 
-fn tell_overwriting(file: &Path, output: &CommandOutput) {
-    if file.is_file() {
-        output.say(format_args!("overwriting the old file {}", file.display()));
+/// Runs `write`, and says so if it replaced an old file.
+fn replace_file<T>(
+    file: &Path,
+    output: &CommandOutput,
+    write: impl FnOnce() -> Result<T, CommandError>,
+) -> Result<T, CommandError> {
+    let has_old_file = find_output_place(file)?.has_old_file();
+    let written = write()?;
+    if has_old_file {
+        output.say(format_args!("replaced the old file {}", file.display()));
     }
+    Ok(written)
 }
 
 fn tell_terms(records: &[InstructionRecord], output: &CommandOutput) {

@@ -1,17 +1,20 @@
 //! Writes Parquet tables: a single file, or a folder with a table for each split and a dataset card.
 
-use super::{card, splits, tell_overwriting, tell_terms, tell_written};
-use crate::{export::args::ExportArgs, view::unfinished::UnfinishedFile};
+use super::{card, replace_file, splits, tell_terms, tell_written};
+use crate::export::{args::ExportArgs, unfinished_folder::UnfinishedFolder};
 use std::{
     collections::{BTreeMap, BTreeSet},
-    fs,
     path::Path,
 };
 use wayword_formats::{
     jsonl::InstructionRecord,
     table::{self, ParquetRow},
 };
-use wayword_run::{error::CommandError, output::CommandOutput, terms};
+use wayword_run::{error::CommandError, interrupt, output::CommandOutput, terms, written_files::write_file};
+
+/// The folder of the tables, and the card: what a published folder holds.
+const DATA_FOLDER: &str = "data";
+const CARD_FILE: &str = "README.md";
 
 /// Writes one table, with the splits as a column.
 pub(super) fn write_table(
@@ -21,10 +24,9 @@ pub(super) fn write_table(
     output: &CommandOutput,
 ) -> Result<(), CommandError> {
     let splits = splits::splits_of_records(args, records)?;
-    tell_overwriting(out, output);
     let rows: Vec<ParquetRow<'_>> =
         records.iter().zip(&splits).map(|(record, split)| ParquetRow { record, split }).collect();
-    table::write_table(out, &rows)?;
+    replace_file(out, output, || Ok(table::write_table(out, &rows)?))?;
     tell_terms(records, output);
     tell_written(out, vec![out.to_owned()], &splits, output);
     Ok(())
@@ -39,23 +41,22 @@ pub(super) fn publish_tables(
 ) -> Result<(), CommandError> {
     check_terms(args, records)?;
     let splits = splits::splits_of_records(args, records)?;
-    check_folder(out)?;
     let card = card::card_text(args, out, records, &splits)?;
-    let data = out.join("data");
-    fs::create_dir_all(&data).map_err(CommandError::io(&data, "make the folder"))?;
+    let folder = UnfinishedFolder::begin(out)?;
     let mut rows_by_split: BTreeMap<&str, Vec<ParquetRow<'_>>> = BTreeMap::new();
     for (record, split) in records.iter().zip(&splits) {
         rows_by_split.entry(split).or_default().push(ParquetRow { record, split });
     }
     let mut files = Vec::new();
     for (split, rows) in rows_by_split {
-        let file = data.join(card::file_name(split));
-        table::write_table(&file, &rows)?;
-        files.push(file);
+        interrupt::check_interrupt()?;
+        let name = Path::new(DATA_FOLDER).join(card::file_name(split));
+        table::write_table(&folder.place().join(&name), &rows)?;
+        files.push(out.join(name));
     }
-    let file = out.join("README.md");
-    UnfinishedFile::write_whole(&file, card.as_bytes())?;
-    files.push(file);
+    write_file(&folder.place().join(CARD_FILE), card)?;
+    files.push(out.join(CARD_FILE));
+    folder.finish(&[DATA_FOLDER, CARD_FILE])?;
     tell_terms(records, output);
     tell_written(out, files, &splits, output);
     Ok(())
@@ -71,18 +72,4 @@ fn check_terms(args: &ExportArgs, records: &[InstructionRecord]) -> Result<(), C
         terms::check_right(platform, args.i_have_the_right, problem, "publish texts about")?;
     }
     Ok(())
-}
-
-/// Refuses a folder with files in it, because they would be published with the dataset.
-fn check_folder(out: &Path) -> Result<(), CommandError> {
-    let is_empty = match fs::read_dir(out) {
-        Ok(mut entries) => entries.next().is_none(),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => true,
-        Err(error) => return Err(CommandError::io(out, "look into")(error)),
-    };
-    if is_empty {
-        return Ok(());
-    }
-    let problem = format!("{}: the folder has files, and all of a dataset's folder is published", out.display());
-    Err(CommandError::usage(problem, "give a new folder, or empty this one"))
 }

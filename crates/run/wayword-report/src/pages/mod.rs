@@ -37,14 +37,8 @@ use records::ReportRecords;
 use report_files::{ReportFiles, WALKS_PER_PAGE};
 use rows::TextList;
 use serde::Serialize;
-use std::{
-    borrow::Cow,
-    fmt,
-    fs::{self, File},
-    io::{self, BufWriter, Write},
-    ops::Range,
-    path::{Path, PathBuf},
-};
+use std::{borrow::Cow, fmt, io::Write, ops::Range, path::Path};
+use wayword_formats::OutputFile;
 use wayword_run::{count::count_phrase, error::CommandError, output::show_unseen};
 
 /// Result of a report: its files, and how much of the run they show.
@@ -94,6 +88,7 @@ pub fn write_report(run: &Path, out: &Path, most_items: usize) -> Result<Written
 fn write_paged(run: &Path, out: &Path, most_items: usize, per_page: usize) -> Result<WrittenReport, CommandError> {
     let records = ReportRecords::read_run(run, most_items)?;
     let files = ReportFiles::new(out, run, records.items.len(), per_page);
+    files.expect_place_for_pages()?;
     files.refuse_to_replace_others()?;
     let mut written = WrittenReport {
         page: out.display().to_string(),
@@ -108,12 +103,14 @@ fn write_paged(run: &Path, out: &Path, most_items: usize, per_page: usize) -> Re
     let mut unfinished = Vec::new();
     for page in (1..=files.page_count()).map(Some).chain([None]) {
         let file = page.map_or_else(|| out.to_owned(), |page| files.page_file(page));
-        let (made, pictures) = UnfinishedPage::write_aside(&file, |take| source.draw_page(page, take))?;
-        unfinished.push(made);
+        let (made, pictures) = begin_page(&file, |take| source.draw_page(page, take))?;
+        unfinished.push((made, file));
         written.pictures += pictures.shown;
         written.pictures_left_out += pictures.left_out;
     }
-    unfinished.into_iter().try_for_each(UnfinishedPage::finish)?;
+    for (page, file) in unfinished {
+        page.finish().map_err(CommandError::io(file, "write"))?;
+    }
     files.remove_older_pages()?;
     Ok(written)
 }
@@ -126,42 +123,20 @@ fn replace_page<T>(
     out: &Path,
     render: impl FnOnce(&mut PageSink<'_>) -> Result<T, CommandError>,
 ) -> Result<T, CommandError> {
-    let (page, result) = UnfinishedPage::write_aside(out, render)?;
-    page.finish()?;
+    let (page, result) = begin_page(out, render)?;
+    page.finish().map_err(CommandError::io(out, "write"))?;
     Ok(result)
 }
 
-/// A page under a temporary name. If it is dropped before it is finished, it is removed.
-struct UnfinishedPage {
-    file: PathBuf,
-    out: PathBuf,
-}
-
-impl UnfinishedPage {
-    fn write_aside<T>(
-        out: &Path,
-        render: impl FnOnce(&mut PageSink<'_>) -> Result<T, CommandError>,
-    ) -> Result<(Self, T), CommandError> {
-        let mut name = out.file_name().unwrap_or_default().to_owned();
-        name.push(".new");
-        let unfinished = Self { file: out.with_file_name(name), out: out.to_owned() };
-        let file = &unfinished.file;
-        let mut page = BufWriter::new(File::create(file).map_err(CommandError::io(file, "write"))?);
-        let result = render(&mut |part| page.write_all(part.as_bytes()).map_err(CommandError::io(file, "write")))?;
-        page.into_inner().map_err(io::IntoInnerError::into_error).map_err(CommandError::io(file, "write"))?;
-        Ok((unfinished, result))
-    }
-
-    fn finish(self) -> Result<(), CommandError> {
-        fs::rename(&self.file, &self.out).map_err(CommandError::io(&self.out, "write"))
-    }
-}
-
-impl Drop for UnfinishedPage {
-    fn drop(&mut self) {
-        // After `finish` the file has another name, and this call fails without harm.
-        let _ = fs::remove_file(&self.file);
-    }
+/// Draws a page that gets its name later.
+fn begin_page<T>(
+    out: &Path,
+    render: impl FnOnce(&mut PageSink<'_>) -> Result<T, CommandError>,
+) -> Result<(OutputFile, T), CommandError> {
+    let failed = || CommandError::io(out, "write");
+    let mut page = OutputFile::begin(out).map_err(failed())?;
+    let result = render(&mut |part| page.write_all(part.as_bytes()).map_err(failed()))?;
+    Ok((page, result))
 }
 
 /// Everything from which the pages of a report are drawn.

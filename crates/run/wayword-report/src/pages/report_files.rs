@@ -9,7 +9,8 @@ use std::{
     ops::Range,
     path::{Path, PathBuf},
 };
-use wayword_run::error::CommandError;
+use wayword_formats::OutputPlace;
+use wayword_run::{error::CommandError, written_files::find_output_place};
 
 /// Paths on a page: with five pictures each, they make about ten megabytes, and thirty sheets of paper.
 pub(super) const WALKS_PER_PAGE: usize = 50;
@@ -106,6 +107,24 @@ impl<'a> ReportFiles<'a> {
         };
         let pages: Vec<PageLink> = (1..=self.page_count()).map(leaf).collect();
         (!pages.is_empty()).then(|| Pager { overview: file_address(self.out), pages })
+    }
+
+    /// Refuses a name that cannot take the report: one that leads to a folder, and for several pages one that is no file.
+    ///
+    /// # Errors
+    /// When the name is such a one.
+    pub(super) fn expect_place_for_pages(&self) -> Result<(), CommandError> {
+        let place = find_output_place(self.out)?;
+        if self.page_count() == 0 || matches!(place, OutputPlace::File(_)) {
+            return Ok(());
+        }
+        let problem = format!(
+            "--out {}: the report has {} items, and more than {} go to several files",
+            self.out.display(),
+            self.walks,
+            self.per_page
+        );
+        Err(CommandError::usage(problem, format!("give the name of a file, or --items {}", self.per_page)))
     }
 
     /// Refuses to replace files that are not pages of this report, because they may be another run's.

@@ -1,7 +1,10 @@
 //! The page of a small made-up run.
 
 use super::*;
-use std::collections::{BTreeMap, BTreeSet};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+};
 use wayword_core::{
     Caption, CaptionedView, CheckFinding, CheckKind, DVec3, DialogueExchange, FrameObservation, Heading, Instruction,
     InstructionPart, MentionKind, ObjectSighting, Path as WalkPath, PathMotion, PathTarget, SceneId, TextMention,

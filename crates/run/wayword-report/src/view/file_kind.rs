@@ -5,7 +5,8 @@ use std::{
     io::Read,
     path::Path,
 };
-use wayword_run::error::CommandError;
+use wayword_formats::OutputPlace;
+use wayword_run::{error::CommandError, written_files::find_output_place};
 
 /// A kind of file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,16 +68,16 @@ impl FileKind {
     /// Refuses to overwrite a file that this program cannot have written, and the platform's data.
     ///
     /// # Errors
-    /// When `out` exists and is not a file of this kind, or is within `data`.
+    /// When `out` is a folder, is a file of another kind, or is within `data`.
     pub(super) fn check_free(self, out: &Path, data: Option<&Path>) -> Result<(), CommandError> {
-        let Ok(real) = fs::canonicalize(out) else {
-            // The file does not exist, so there is no risk.
+        let OutputPlace::File(real) = find_output_place(out)? else {
+            // A pipe or a device is written through.
             return Ok(());
         };
-        check_foreign(out, data)?;
-        if !real.is_file() {
-            return Err(in_the_way(out, "it exists and is not a file"));
+        if !real.exists() {
+            return Ok(());
         }
+        check_foreign(out, data)?;
         let mut start = Vec::new();
         let read = File::open(&real).and_then(|file| file.take(16).read_to_end(&mut start));
         read.map_err(CommandError::io(out, "read"))?;

@@ -7,7 +7,6 @@ mod map;
 pub mod panorama;
 pub mod path;
 pub mod picture;
-pub mod unfinished;
 mod walk;
 
 use crate::view::args::{ViewArgs, ViewCommand};

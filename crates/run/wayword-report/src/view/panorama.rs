@@ -1,11 +1,11 @@
 //! `wayword view panorama`: joins the four views from a frame into one picture of 360 degrees.
 
-use super::{WrittenView, choose_scene, file_kind::FileKind, open_platform, picture, unfinished::UnfinishedFile};
+use super::{WrittenView, choose_scene, file_kind::FileKind, open_platform, picture};
 use crate::view::args::ViewPanorama;
 use std::sync::Arc;
 use wayword_core::{Frame, Heading, Image, PathRequest, Platform, Pose, SceneId, Side, View, ViewGaze, ViewpointId};
 use wayword_render::{QuarterView, join_panorama};
-use wayword_run::{error::CommandError, output::CommandOutput};
+use wayword_run::{error::CommandError, output::CommandOutput, written_files::write_file};
 
 /// The colour of a view without a picture.
 const MISSING_VIEW_GREY: [u8; 3] = [128; 3];
@@ -28,7 +28,7 @@ pub(super) fn write_panorama(args: &ViewPanorama, output: &CommandOutput) -> Res
     }
     let whole = draw_panorama(&*platform, &scene, &frame, args.width, output)?;
     let bytes = if kind == FileKind::Png { picture::encode_png(&whole)? } else { picture::encode_jpeg(&whole)? };
-    UnfinishedFile::write_whole(&args.out, &bytes)?;
+    write_file(&args.out, &bytes)?;
     let (width, height) = (whole.width_px(), whole.height_px());
     Ok(WrittenView { scene, files: vec![args.out.clone()], width, height, frames: 1, islands: Vec::new() })
 }

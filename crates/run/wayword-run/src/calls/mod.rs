@@ -15,19 +15,22 @@ use crate::{
     in_order::core_count,
     output::CommandOutput,
     settings::{RunJob, is_in_process},
+    written_files::find_output_place,
 };
 use configured::{check_call_store, open_ledger, service_concurrency, service_config};
 use local::LocalCalls;
 use std::{
     collections::BTreeMap,
-    fs::File,
+    fs::{self, File},
     path::{Path, PathBuf},
     sync::Arc,
 };
 use wayword_core::{LanguageModel, ObjectDetector};
+use wayword_formats::{OutputFile, OutputPlace};
 use wayword_ledger::{Ledger, LedgerRun, RunLimits};
 use wayword_remote::{ModelPrice, ModelServices, ServiceFinding};
 use wayword_synthesis::prompts::PromptManner;
+use wayword_world::files;
 
 pub use crate::settings::CallKeeping;
 pub use configured::ledger_path;
@@ -56,7 +59,7 @@ impl ModelCalls {
     ///
     /// # Errors
     /// When a provider is not known, a price is needed and not known, the ledger would be on a network file system, the
-    /// recording to replay is missing, or the folder for a new recording is.
+    /// recording to replay is missing, or a new one has no place.
     pub fn rehearse_job(job: &RunJob) -> Result<BTreeMap<String, Option<ModelPrice>>, CommandError> {
         let RunJob { settings, service, .. } = job;
         let rehearsal = Ledger::in_memory()?.start_run("rehearsal", RunLimits::default())?;
@@ -79,16 +82,20 @@ impl ModelCalls {
         let prices = settings.roles.model_names().into_iter().map(with_price).collect::<Result<_, CommandError>>()?;
         settings.roles.shown_pictures().into_iter().try_for_each(|name| services.takes_pictures(name))?;
         if let Some(recording) = &service.replay {
+            let about = fs::metadata(recording).map_err(CommandError::io(recording, "read the recording"))?;
+            if let Some(reason) = files::describe_irregular(&about) {
+                let problem = format!("--replay {}: this {reason}", recording.display());
+                return Err(CommandError::usage(problem, "give a file that --record wrote"));
+            }
             File::open(recording).map_err(CommandError::io(recording, "read the recording"))?;
         } else if !settings.roles.model_names().is_empty() {
             check_call_store(&job.keeping, service)?;
         }
-        let folder = service.record.as_deref().and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
-        if let Some(missing) = folder.filter(|folder| !folder.is_dir()) {
-            return Err(CommandError::usage(
-                format!("--record: the folder {} does not exist", missing.display()),
-                "make it, or give another file",
-            ));
+        if let Some(record) = &service.record
+            && find_output_place(record)? == OutputPlace::StandardOutput
+        {
+            let problem = format!("--record {}: the results of the command go to standard output", record.display());
+            return Err(CommandError::usage(problem, "give the name of a file"));
         }
         Ok(prices)
     }
@@ -230,7 +237,10 @@ impl ModelCalls {
             output.say(format_args!("warning: {note}"));
         }
         if let Some(file) = &self.record {
-            self.run.record_calls(file)?;
+            let failed = || CommandError::io(file, "write");
+            let mut recording = OutputFile::begin(file).map_err(failed())?;
+            self.run.record_calls(file, &mut recording)?;
+            recording.finish().map_err(failed())?;
         }
         Ok(())
     }

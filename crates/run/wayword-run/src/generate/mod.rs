@@ -20,11 +20,12 @@ use crate::{
     output::CommandOutput,
     plan::RunPlan,
     platforms::has_hops,
-    run_folder::{RunFolder, WorldData, continued_settings, is_begun, keep_id, refuse_file, run_id_or_fresh},
+    run_folder::{RunFolder, WorldData, continued_settings, is_begun, keep_id, run_id_or_fresh},
     settings::{RunJob, RunSettings},
     settings_file, stores,
     team::RoleTeam,
     watch::{self, CommandWatch},
+    written_files::expect_output_folder,
 };
 use fill::ItemWorkshop;
 use prepare::{ModelCheck, PreparedRun};
@@ -71,6 +72,7 @@ fn make_run(
         "a run of one machine cannot lie in an object store",
         "give --queue or --shard 0/1, whose chunks are sent when they are finished; or name a folder",
     )?;
+    expect_output_folder(out)?;
     if wayword_queue::ChunkPlan::find_plan(out)?.is_some() && !is_begun(out) {
         return Err(CommandError::usage(
             format!("{} holds a run that workers make", out.display()),
@@ -115,7 +117,7 @@ pub fn generate_into(folder: &Path, job: &RunJob, output: &CommandOutput) -> Res
     let prepared = PreparedRun::open(job, continued, check, output)?;
     let (plan, settings) = &prepared.plan_with_settings(output)?;
     // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.
-    refuse_file(folder)?;
+    expect_output_folder(folder)?;
     let begun = is_begun(folder).then(|| RunFolder::open(folder, settings)).transpose()?;
     let id = run_id_or_fresh(folder, "run")?;
     watch::record_run_id(&id);

@@ -1,12 +1,13 @@
 //! `config.toml` of a folder: the settings of its run, comparison or robustness test, with the format of the folder. The same
 //! file decides whether a command continues the folder or is refused.
 
-use super::{file, write_whole};
+use super::file;
 use crate::{
     error::CommandError,
     own_format::{self, OwnFormat},
     settings::RunSettings,
     text_file,
+    written_files::write_file,
 };
 use serde::Serialize;
 use std::{collections::BTreeSet, path::Path};
@@ -59,7 +60,7 @@ pub(super) fn keep_settings(folder: &Path, settings: &RunSettings) -> Result<(),
 }
 
 fn write_config<S: Serialize + OwnFormat>(path: &Path, settings: &S) -> Result<(), CommandError> {
-    write_whole(path, &config_text(settings)?)
+    write_file(path, config_text(settings)?)
 }
 
 /// Settings as `config.toml` has them.

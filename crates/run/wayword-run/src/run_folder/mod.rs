@@ -16,13 +16,14 @@ pub mod lines;
 mod record;
 mod world_data;
 
-use crate::{error::CommandError, item::RunItem, pictures, settings::RunSettings, text_file};
+use crate::{
+    error::CommandError, item::RunItem, pictures, settings::RunSettings, text_file, written_files::write_file,
+};
 use serde::{Deserialize, de::IgnoredAny};
 use sha2::{Digest, Sha256};
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs::{self, File},
-    io::Write,
     path::{Path, PathBuf},
     time::SystemTime,
 };
@@ -196,17 +197,6 @@ impl RunFolder {
     }
 }
 
-/// Refuses a run folder that is a file, before models are loaded.
-///
-/// # Errors
-/// When it is a file.
-pub fn refuse_file(folder: &Path) -> Result<(), CommandError> {
-    if !folder.exists() || folder.is_dir() {
-        return Ok(());
-    }
-    Err(CommandError::io(folder, "make the folder")(std::io::ErrorKind::NotADirectory.into()))
-}
-
 /// The name under which the ledger keeps a folder's spending: the one that the folder keeps, else a new one. This function does
 /// not write it, so that models can be loaded before the folder is made; [`keep_id`] does. A new run in place of a deleted one
 /// has another name, so it starts without spending.
@@ -223,7 +213,7 @@ pub fn run_id_or_fresh(folder: &Path, kind: &str) -> Result<String, CommandError
 /// When it cannot be read or written, or another process has kept its own since [`run_id_or_fresh`] gave this one.
 pub fn keep_id(folder: &Path, id: &str) -> Result<(), CommandError> {
     match kept_id(folder)? {
-        None => write_whole(&folder.join(file::ID), id),
+        None => write_file(&folder.join(file::ID), id),
         Some(kept) if kept == id => Ok(()),
         Some(_) => Err(CommandError::Busy(folder.to_owned())),
     }
@@ -279,24 +269,6 @@ struct PicturedPath {
 pub fn fresh_id(kind: &str) -> String {
     let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
     format!("{kind}-{:x}-{:x}", since.as_micros(), std::process::id())
-}
-
-/// Writes a small file so that it is whole or absent, whenever the process is killed. A pipe or a device is written to directly.
-pub fn write_whole(path: &Path, text: &str) -> Result<(), CommandError> {
-    if wayword_formats::is_stream(path) {
-        let stream = File::options().write(true).open(path);
-        return stream.and_then(|mut file| file.write_all(text.as_bytes())).map_err(CommandError::io(path, "write"));
-    }
-    let mut temporary = path.as_os_str().to_owned();
-    temporary.push(".new");
-    let temporary = PathBuf::from(temporary);
-    let write = || {
-        let mut file = File::create(&temporary)?;
-        file.write_all(text.as_bytes())?;
-        file.sync_data()
-    };
-    write().map_err(CommandError::io(&temporary, "write"))?;
-    fs::rename(&temporary, path).map_err(CommandError::io(path, "write"))
 }
 
 /// The beginning of the hash of an input file.

@@ -1,7 +1,7 @@
 //! Hashes of the files that a run's scenes are read from, so that a run is not continued after these files have changed.
 
-use super::{Sha256, file, short_hex, write_whole};
-use crate::{error::CommandError, text_file};
+use super::{Sha256, file, short_hex};
+use crate::{error::CommandError, text_file, written_files::write_file};
 use sha2::Digest;
 use std::{
     collections::BTreeMap,
@@ -103,7 +103,7 @@ impl WorldData {
             return Ok(());
         }
         let text = serde_json::to_string_pretty(&state.kept).unwrap_or_default();
-        write_whole(&self.path, &text)
+        write_file(&self.path, &text)
     }
 
     fn lock_state(&self) -> MutexGuard<'_, SceneHashes> {

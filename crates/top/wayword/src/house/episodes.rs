@@ -21,6 +21,7 @@ use wayword_run::{
     output::CommandOutput,
     run_folder::file,
     settings::{AskedSettings, Draw, Walks, Writing},
+    written_files::write_file,
 };
 
 /// The name of the split that all episodes are in.
@@ -90,7 +91,7 @@ pub(super) fn write_episodes(
     items::write_items(DatasetFormat::Vlnce, &files[0], &kept, episodes)?;
     vlnce_actions::write_actions(&files[1], &acted)?;
     let config = out.join(CONFIG_FILE);
-    fs::write(&config, config_text()).map_err(CommandError::io(&config, "write"))?;
+    write_file(&config, config_text())?;
     Ok(WrittenEpisodes { episodes: count, files, config, failed })
 }
 

@@ -19,6 +19,7 @@ use wayword_run::{
     interrupt,
     output::CommandOutput,
     run_folder::{file, lock_folder},
+    written_files::{expect_output_folder, write_file},
 };
 
 /// The file that lists the scenes, which Habitat takes as its scene dataset.
@@ -60,6 +61,7 @@ pub(crate) fn run_house(args: &HouseArgs, output: &CommandOutput) -> Result<Exit
         Some(records) => record_seeds(records)?,
         None => house_seeds(args)?,
     };
+    expect_output_folder(&args.out)?;
     fs::create_dir_all(&args.out).map_err(CommandError::io(&args.out, "make the folder"))?;
     let _held = lock_folder(&args.out)?;
     // Texts are made before houses, so that a run that cannot continue ends the command early.
@@ -81,7 +83,7 @@ pub(crate) fn run_house(args: &HouseArgs, output: &CommandOutput) -> Result<Exit
     let scene_set = args.out.join(SCENE_SET);
     let folders = format!("{}*", scene_name(0).trim_end_matches('0'));
     let set = serde_json::json!({ "stages": { "paths": { ".json": [folders] } } });
-    fs::write(&scene_set, format!("{set:#}\n")).map_err(CommandError::io(&scene_set, "write"))?;
+    write_file(&scene_set, format!("{set:#}\n"))?;
     let episodes = records.map(|records| write_records(&args.out, &records, output)).transpose()?.flatten();
     let has_loss = episodes.as_ref().is_some_and(|episodes| !episodes.failed.is_empty());
     let written = WrittenHouses { houses, scene_set, episodes };

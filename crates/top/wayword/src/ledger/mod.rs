@@ -4,6 +4,7 @@ pub(crate) mod args;
 use crate::ledger::args::{LedgerArgs as Args, LedgerCommand};
 use serde::Serialize;
 use std::fmt;
+use wayword_formats::OutputFile;
 use wayword_ledger::{CostLine, Ledger, LedgerEntry, LedgerFilter};
 use wayword_run::{
     calls::ledger_path,
@@ -11,6 +12,7 @@ use wayword_run::{
     error::{CommandError, Exit},
     output::CommandOutput,
     settings::Service,
+    written_files::find_output_place,
 };
 
 const SECONDS_PER_DAY: u64 = 86_400;
@@ -35,7 +37,11 @@ pub(crate) fn run_ledger(args: &Args, output: &CommandOutput) -> Result<Exit, Co
             output.print_result(&costs, &costs);
         }
         LedgerCommand::Export { filter, out } => {
-            let rows = ledger.export_to(&filter.to_filter(), out)?;
+            let output = &output.beside_data(&find_output_place(out)?);
+            let failed = || CommandError::io(out, "write");
+            let mut lines = OutputFile::begin(out).map_err(failed())?;
+            let rows = ledger.export_calls(&filter.to_filter(), out, &mut lines)?;
+            lines.finish().map_err(failed())?;
             let done = LedgerOutcome { ledger: path.display().to_string(), rows };
             output.print_result(&done, format_args!("{} written to {}", count_phrase(rows, "call"), out.display()));
         }

@@ -6,16 +6,18 @@ use std::{
     collections::BTreeMap,
     fmt,
     fs::{self, File},
-    io::{self, BufWriter, ErrorKind, Write},
+    io::{self, ErrorKind},
     path::{Path, PathBuf},
 };
+use wayword_formats::OutputFile;
 use wayword_queue::{ChunkPlan, ChunkRecord, chunk_folder, read_done_mark};
 use wayword_run::{
     count::count_phrase,
     error::{CommandError, Exit},
     output::CommandOutput,
-    run_folder::{file, is_begun, write_whole},
+    run_folder::{file, is_begun},
     stores::{self, RunPlace},
+    written_files::write_file,
 };
 
 /// The files of JSON lines, which are concatenated.
@@ -71,7 +73,7 @@ pub(super) fn run_merge(args: &RunsMerge, output: &CommandOutput) -> Result<Exit
     merge_data(folder, &chunks)?;
     // Written last, because a folder with this file counts as a run.
     if !is_begun(folder) {
-        write_whole(&folder.join(file::CONFIG), &plan.config)?;
+        write_file(&folder.join(file::CONFIG), &plan.config)?;
     }
     let sum = |count: fn(&ChunkRecord) -> usize| done.iter().map(count).sum();
     let merged = MergeSummary {
@@ -88,9 +90,9 @@ pub(super) fn run_merge(args: &RunsMerge, output: &CommandOutput) -> Result<Exit
 
 /// Concatenates the files of one name of all chunks.
 fn merge_lines(folder: &Path, chunks: &[PathBuf], name: &str) -> Result<(), CommandError> {
-    let (path, unfinished) = (folder.join(name), folder.join(format!("{name}.new")));
-    let failed = || CommandError::io(&unfinished, "write");
-    let mut all = BufWriter::new(File::create(&unfinished).map_err(failed())?);
+    let path = folder.join(name);
+    let failed = || CommandError::io(&path, "write");
+    let mut all = OutputFile::begin(&path).map_err(failed())?;
     for chunk in chunks {
         let part = chunk.join(name);
         match File::open(&part) {
@@ -98,9 +100,7 @@ fn merge_lines(folder: &Path, chunks: &[PathBuf], name: &str) -> Result<(), Comm
             Err(source) => return Err(CommandError::Io { path: part, doing: "read", source }),
         }
     }
-    all.flush().map_err(failed())?;
-    all.get_ref().sync_data().map_err(failed())?;
-    fs::rename(&unfinished, &path).map_err(CommandError::io(&path, "write"))
+    all.finish().map_err(failed())
 }
 
 /// Merges the hashes of scenes of all chunks (`data.json`), and refuses different hashes of one scene. A platform
@@ -125,7 +125,7 @@ fn merge_data(folder: &Path, chunks: &[PathBuf]) -> Result<(), CommandError> {
     if all.is_empty() {
         return Ok(());
     }
-    write_whole(&folder.join(file::DATA), &serde_json::to_string_pretty(&all).unwrap_or_default())
+    write_file(&folder.join(file::DATA), &serde_json::to_string_pretty(&all).unwrap_or_default())
 }
 
 /// Puts the pictures of all chunks into one folder: as hard links where the disk allows that, else as copies. Calls

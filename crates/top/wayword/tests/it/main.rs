@@ -34,6 +34,7 @@ mod lost_worlds;
 mod model_kills;
 mod models;
 mod models_in_process;
+mod outputs;
 mod platforms;
 mod real_data;
 mod recording;

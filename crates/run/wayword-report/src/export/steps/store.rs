@@ -162,10 +162,10 @@ impl TrajectoryMaker<'_> {
                 fs::remove_dir_all(old).map_err(CommandError::io(old, "remove what an earlier command left in"))?;
             }
         }
-        fs::create_dir_all(&unfinished).map_err(CommandError::io(&unfinished, "make the folder"))?;
-        for (number, picture) in pictures.iter().enumerate() {
-            let file = unfinished.join(picture_name(number));
-            fs::write(&file, picture).map_err(CommandError::io(&file, "write"))?;
+        if let Err(error) = write_pictures(&unfinished, pictures) {
+            // The first failure is the one to report. What stays is removed by the next command.
+            let _ = fs::remove_dir_all(&unfinished);
+            return Err(error);
         }
         fs::rename(&unfinished, &whole).map_err(CommandError::io(&whole, "name"))?;
         trajectory.sha256 = PictureDigest::from_pictures(pictures);
@@ -193,6 +193,16 @@ impl TrajectoryMaker<'_> {
         shard.finish().map_err(CommandError::io(&file, "write"))?;
         Ok(taken)
     }
+}
+
+/// Writes the pictures of a walk into a new folder.
+fn write_pictures(folder: &Path, pictures: &[Vec<u8>]) -> Result<(), CommandError> {
+    fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the folder"))?;
+    for (number, picture) in pictures.iter().enumerate() {
+        let file = folder.join(picture_name(number));
+        fs::write(&file, picture).map_err(CommandError::io(&file, "write"))?;
+    }
+    Ok(())
 }
 
 /// The walk as a failed item. Errors that do not concern this walk alone are passed on.

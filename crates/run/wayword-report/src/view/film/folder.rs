@@ -1,12 +1,9 @@
 //! Writes the pictures of a film as numbered PNG files in a folder.
 
-use super::{
-    super::{picture, unfinished::UnfinishedFile},
-    FilmWriter,
-};
+use super::{super::picture, FilmWriter};
 use std::{fs, path::PathBuf};
 use wayword_core::Image;
-use wayword_run::error::CommandError;
+use wayword_run::{error::CommandError, written_files::write_file};
 
 /// The folder, and the files that have been written so far.
 pub(super) struct FolderFilm {
@@ -48,11 +45,8 @@ fn number_of(name: &str) -> Option<usize> {
 
 impl FilmWriter for FolderFilm {
     fn add_picture(&mut self, picture: &Image) -> Result<(), CommandError> {
-        if self.files.is_empty() {
-            fs::create_dir_all(&self.folder).map_err(CommandError::io(&self.folder, "make the folder"))?;
-        }
         let file = self.folder.join(name_of(self.files.len() + 1));
-        UnfinishedFile::write_whole(&file, &picture::encode_png(picture)?)?;
+        write_file(&file, picture::encode_png(picture)?)?;
         self.files.push(file);
         Ok(())
     }

@@ -44,7 +44,7 @@ impl FilmPlace {
     /// When the ending is unknown, this build cannot write the kind, or the existing file must not be overwritten.
     pub(super) fn from_out(out: &Path, data: Option<&Path>) -> Result<Self, CommandError> {
         let is_folder = out.is_dir() || out.as_os_str().to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]);
-        if is_folder || (out.extension().is_none() && !out.exists()) {
+        if out.as_os_str() != "-" && (is_folder || (out.extension().is_none() && !out.exists())) {
             check_foreign(out, data)?;
             return Ok(Self::Folder(out.to_owned()));
         }

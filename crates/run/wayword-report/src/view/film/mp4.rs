@@ -1,6 +1,6 @@
 //! Writes the pictures of a film as an MP4 file with H.264.
 
-use super::{super::unfinished::UnfinishedFile, FilmWriter};
+use super::FilmWriter;
 use muxide::api::{Muxer, MuxerBuilder, MuxerError, VideoCodec};
 use openh264::{
     OpenH264API, Timestamp,
@@ -9,6 +9,7 @@ use openh264::{
 };
 use std::path::{Path, PathBuf};
 use wayword_core::Image;
+use wayword_formats::OutputFile;
 use wayword_run::error::CommandError;
 
 /// Least frames for each second. Some players cannot show fewer, so a picture is shown several times instead.
@@ -34,7 +35,7 @@ pub(super) fn open_video(out: &Path, fps: f64) -> Result<Box<dyn FilmWriter>, Co
         Encoder::with_api_config(OpenH264API::from_source(), config).map_err(|error| encoder_error(&error))?;
     Ok(Box::new(VideoFilm {
         encoder,
-        file: Some(UnfinishedFile::new(out)?),
+        file: Some(OutputFile::begin(out).map_err(CommandError::io(out, "write"))?),
         muxer: None,
         out: out.to_owned(),
         fps: fps * repeats,
@@ -47,9 +48,9 @@ pub(super) fn open_video(out: &Path, fps: f64) -> Result<Box<dyn FilmWriter>, Co
 struct VideoFilm {
     encoder: Encoder,
     /// `Some` until the first picture, which sets the size.
-    file: Option<UnfinishedFile>,
+    file: Option<OutputFile>,
     /// `Some` from the first picture on.
-    muxer: Option<Muxer<UnfinishedFile>>,
+    muxer: Option<Muxer<OutputFile>>,
     out: PathBuf,
     /// Frames for each second.
     fps: f64,
@@ -63,7 +64,7 @@ impl FilmWriter for VideoFilm {
         let (rgb, [width, height]) = crop_to_even(picture);
         if let Some(file) = self.file.take() {
             let muxer = MuxerBuilder::new(file).video(VideoCodec::H264, width as u32, height as u32, self.fps);
-            self.muxer = Some(muxer.build().map_err(muxer_error)?);
+            self.muxer = Some(muxer.build().map_err(muxer_error(&self.out))?);
         }
         let Some(muxer) = &mut self.muxer else { return Ok(()) };
         let pixels = YUVBuffer::from_rgb8_source(RgbSliceU8::new(&rgb, (width, height)));
@@ -72,7 +73,7 @@ impl FilmWriter for VideoFilm {
             let time = Timestamp::from_millis((1000.0 * at_s).round() as u64);
             let encoded = self.encoder.encode_at(&pixels, time).map_err(|error| encoder_error(&error))?;
             let is_key = matches!(encoded.frame_type(), FrameType::IDR | FrameType::I);
-            muxer.write_video(at_s, &encoded.to_vec(), is_key).map_err(muxer_error)?;
+            muxer.write_video(at_s, &encoded.to_vec(), is_key).map_err(muxer_error(&self.out))?;
             self.frames += 1;
         }
         Ok(())
@@ -80,8 +81,8 @@ impl FilmWriter for VideoFilm {
 
     fn finish(mut self: Box<Self>) -> Result<Vec<PathBuf>, CommandError> {
         if let Some(mut muxer) = self.muxer.take() {
-            muxer.finish_in_place().map_err(muxer_error)?;
-            muxer.into_writer().move_to_place()?;
+            muxer.finish_in_place().map_err(muxer_error(&self.out))?;
+            muxer.into_writer().finish().map_err(CommandError::io(&self.out, "write"))?;
         }
         Ok(vec![self.out])
     }
@@ -105,8 +106,9 @@ fn encoder_error(error: &openh264::Error) -> CommandError {
     CommandError::usage(format!("the pictures cannot become a video: {error}"), hint)
 }
 
-// A closure's argument cannot be a reference where `map_err` gives the value away.
-#[allow(clippy::needless_pass_by_value)]
-fn muxer_error(error: MuxerError) -> CommandError {
-    CommandError::usage(format!("the video cannot be written: {error}"), "report this as a bug")
+fn muxer_error(out: &Path) -> impl FnOnce(MuxerError) -> CommandError {
+    move |error| match error {
+        MuxerError::Io(source) => CommandError::io(out, "write")(source),
+        other => CommandError::usage(format!("the video cannot be written: {other}"), "report this as a bug"),
+    }
 }

@@ -6,12 +6,12 @@ mod paint;
 mod sketch;
 mod svg;
 
-use super::{WrittenView, choose_scene, file_kind::FileKind, open_platform, picture, unfinished::UnfinishedFile, walk};
+use super::{WrittenView, choose_scene, file_kind::FileKind, open_platform, picture, walk};
 use crate::view::args::{ShownPathArgs, ViewMap};
 use layout::MapPlan;
 use std::collections::BTreeSet;
 use wayword_core::{Path, SceneId, ViewpointGraph};
-use wayword_run::{error::CommandError, output::CommandOutput};
+use wayword_run::{error::CommandError, output::CommandOutput, written_files::write_file};
 
 pub(super) fn write_map(args: &ViewMap, output: &CommandOutput) -> Result<WrittenView, CommandError> {
     let kind = FileKind::one_among(&[FileKind::Svg, FileKind::Png], &args.out)?;
@@ -43,7 +43,7 @@ pub(super) fn write_map(args: &ViewMap, output: &CommandOutput) -> Result<Writte
         let painted = paint::paint_sketch(&sketch)?;
         (picture::encode_png(&painted)?, [painted.width_px(), painted.height_px()])
     };
-    UnfinishedFile::write_whole(&args.out, &bytes)?;
+    write_file(&args.out, &bytes)?;
     let islands = platform.ground().ground_islands(&scene)?;
     Ok(WrittenView { scene, files: vec![args.out.clone()], width, height, frames: 1, islands })
 }

@@ -13,7 +13,7 @@ use std::{collections::BTreeSet, fs, path::Path};
 
 /// Refuses a folder that holds a run of one machine.
 pub(super) fn refuse_other_folder(out: &Path) -> Result<(), CommandError> {
-    crate::run_folder::refuse_file(out)?;
+    crate::written_files::expect_output_folder(out)?;
     if is_begun(out) && wayword_queue::ChunkPlan::find_plan(out)?.is_none() {
         return Err(CommandError::usage(
             format!("{} holds a run that one machine makes", out.display()),
