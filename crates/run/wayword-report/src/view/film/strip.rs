@@ -1,13 +1,13 @@
 //! Writes pictures of a path side by side, as one PNG or JPEG.
 
 use super::{
-    super::{file_kind::FileKind, picture, unfinished::UnfinishedFile},
+    super::{file_kind::FileKind, picture},
     FilmWriter,
 };
 use image::{Rgb, RgbImage, imageops};
 use std::path::PathBuf;
 use wayword_core::Image;
-use wayword_run::error::CommandError;
+use wayword_run::{error::CommandError, written_files::write_file};
 
 /// White between two pictures, pixels.
 const GAP_PX: u32 = 4;
@@ -50,7 +50,7 @@ impl FilmWriter for PictureStrip {
             FileKind::Png => picture::encode_png(&strip)?,
             _ => picture::encode_jpeg(&strip)?,
         };
-        UnfinishedFile::write_whole(&self.file, &bytes)?;
+        write_file(&self.file, &bytes)?;
         Ok(vec![self.file])
     }
 }
