@@ -2,7 +2,7 @@
 //! the checks, and from ambiguity.
 
 use crate::follow::{FollowedPath, read_followable};
-use wayword_checks::{CheckWorld, TextFindings};
+use wayword_checks::TextFindings;
 use wayword_core::{TextAmbiguity, TextDoubt, doubt::separate_doubts};
 use wayword_follower::{
     FeatureWeights,
@@ -20,12 +20,12 @@ pub struct TextDoubts {
     pub unfollowed: Option<&'static str>,
 }
 
-/// Finds the words to doubt. In an open world, other wordings that would fit the walk better are tried; in a closed world the
-/// evidence decides about each word, so only failed checks and ambiguity count.
+/// Finds the words to doubt. With `tries_changes`, as in an open world, other wordings that would fit the walk better are tried.
+/// Otherwise, as in a closed world, where the evidence decides about each word, only failed checks and ambiguity count.
 pub(crate) fn find_doubts(
     followed: Option<&Result<FollowedPath<'_>, &'static str>>,
     (text, tag): (&str, Option<&str>),
-    checked: &TextFindings,
+    (checked, tries_changes): (&TextFindings, bool),
     ambiguity: Option<&TextAmbiguity>,
 ) -> TextDoubts {
     let followed =
@@ -38,7 +38,7 @@ pub(crate) fn find_doubts(
             let bounds_and_findings = (&DoubtBounds::default(), &checked.findings[..]);
             let changes =
                 || by_changes(&spelt, &guide, followed.known_path(), FeatureWeights::fitted(), bounds_and_findings);
-            let mut doubts = if checked.world == CheckWorld::Open { changes() } else { by_checks() };
+            let mut doubts = if tries_changes { changes() } else { by_checks() };
             let from_ambiguity = |ambiguity| from_checks::doubts_from_ambiguity(text, &guide, &reading, ambiguity);
             doubts.extend(ambiguity.into_iter().flat_map(from_ambiguity));
             (doubts, is_too_long(&guide).then(|| UnfollowedReason::TooManySteps.reason_words()))

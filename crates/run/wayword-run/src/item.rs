@@ -46,6 +46,22 @@ pub fn run_items(settings: &RunSettings, platform: &dyn Platform) -> Result<Vec<
     Ok(items)
 }
 
+/// The number of items that a run is to have, from its settings alone; `None` where its episodes cannot be read any more, or only
+/// the opened platform tells how many of its paths differ.
+#[must_use]
+pub fn planned_item_count(settings: &RunSettings) -> Option<usize> {
+    let number = match &settings.episodes {
+        Some(file) => {
+            let episodes = wayword_formats::read_any_format(file).ok()?;
+            let is_wanted = |scene: &str| settings.scan.is_empty() || settings.scan.iter().any(|scan| scan == scene);
+            episodes.iter().filter(|episode| is_wanted(episode.scene.as_str())).count()
+        }
+        None if settings.platform == RECORDING_PLATFORM && settings.paths > 1 => return None,
+        None => settings.paths,
+    };
+    Some(number.min(settings.limit.unwrap_or(usize::MAX)))
+}
+
 fn episode_items(
     file: &FilePath,
     settings: &RunSettings,

@@ -12,7 +12,8 @@
 //! - [`run_folder`]: what a run keeps and how it continues; `run_folder/world_data.rs`: which files may not change; `folder_lock.rs`: one process at a time.
 //! - `generate/keep.rs`, `progress.rs`: what becomes of failed items; `losses`: when a run ends because of them; `pace.rs`: the time left.
 //! - `generate/workers/`: one worker of many. [`stores`]: addresses of object stores in place of folders.
-//! - [`check`]: `check/worlds.rs` chooses the world of a text, `detecting.rs` is `--detector`, `run_texts.rs` for texts edited after an export.
+//! - [`check`]: `check/worlds.rs` chooses the world of a text, `detecting.rs` is `--detector`, `run_texts.rs` for texts edited after an export,
+//!   `again.rs` for those of a report.
 //! - [`follow`], [`doubts`], [`walk_ranking`]: what the program does with the follower.
 //! - [`episode_paths`]: an episode of a dataset as a path. [`platforms`]: platforms by name. [`scene_selection`]: which scenes a run leaves out. [`terms`]: what needs `--i-have-the-right`.
 //! - [`error`]: errors and exit codes. [`interrupt`]: Ctrl-C and signals. [`output`]: the only place that prints. [`written_files`]: files that a user names.

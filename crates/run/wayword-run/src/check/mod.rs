@@ -1,6 +1,7 @@
 //! `wayword check`: checks the instructions of a file against labels, a detector's finds, or the captions of a run, and reports
 //! a verdict for each.
 
+mod again;
 pub mod args;
 mod detecting;
 pub(crate) mod path_texts;
@@ -37,6 +38,7 @@ use wayword_core::{CheckFinding, Platform};
 use wayword_core::{Path, TextDoubt};
 use worlds::choose_world;
 
+pub use again::{CheckedAgain, SecondCheck, check_run_again, find_changed_texts};
 pub use report::{AmbiguousText, CheckReport, CheckedText, DoubtedText, VerdictCounts};
 
 /// Runs `wayword check`, and prints the report.
@@ -62,6 +64,7 @@ pub fn check_texts(args: &Args, output: &CommandOutput) -> Result<CheckReport, C
         reject_ambiguous: args.reject_ambiguous,
         calibration: args.calibration.as_deref(),
         doubts: args.doubts,
+        doubts_in_closed_world: false,
         captions: None,
     };
     if let Some(run) = &args.run {
@@ -90,6 +93,8 @@ pub struct CheckOptions<'a> {
     pub calibration: Option<&'a FilePath>,
     /// Whether to report the words that a reader should doubt.
     pub doubts: bool,
+    /// Whether the follower looks for words to doubt in a closed world, too, where the checks have decided about each.
+    pub doubts_in_closed_world: bool,
     /// A run with captions that are evidence: beside the labels of the platform, or alone where it has none.
     pub captions: Option<&'a FilePath>,
 }
@@ -146,8 +151,11 @@ pub fn find_text_doubts(
     Ok(report.doubted.into_iter().map(|text| text.doubts).collect())
 }
 
-/// The source of evidence for the texts of a path, and each text with its place in the file and its findings.
-type CheckedWalk = (&'static str, Vec<(usize, CheckedText, Vec<CheckFinding>)>);
+/// A text that was checked, with its place in the file and all its findings.
+type CheckedPlace = (usize, CheckedText, Vec<CheckFinding>);
+
+/// The source of evidence for the texts of a path, and the texts.
+type CheckedWalk = (&'static str, Vec<CheckedPlace>);
 
 /// Everything that the checks of all paths share.
 struct TextChecker<'a> {
@@ -185,10 +193,21 @@ impl<'a> TextChecker<'a> {
         }
     }
 
-    /// Checks the texts of all walks in parallel, and adds them to a report in the order of the file.
+    /// Checks the texts of all walks, and adds them to a report in the order of the file.
     fn check_walks(&self, walks: &[PathTexts], output: &CommandOutput) -> Result<CheckReport, CommandError> {
+        let calibration = self.how.calibration.map(|file| file.display().to_string());
+        let mut report = CheckReport { calibration, ..CheckReport::default() };
+        for text in walks.iter().flat_map(|walk| &walk.texts) {
+            self.styles.count_text(text, &mut report);
+        }
+        report.add_texts(self.check_each(walks, output)?);
+        Ok(report)
+    }
+
+    /// Checks the texts of all walks in parallel.
+    fn check_each(&self, walks: &[PathTexts], output: &CommandOutput) -> Result<Vec<CheckedWalk>, CommandError> {
         let bar = output.progress_bar(walks.len(), "paths");
-        let checked: Vec<_> = walks
+        let checked = walks
             .par_iter()
             .map(|walk| {
                 interrupt::check_interrupt()?;
@@ -196,26 +215,9 @@ impl<'a> TextChecker<'a> {
                 bar.inc(1);
                 checked
             })
-            .collect::<Result<_, _>>()?;
+            .collect();
         bar.finish_and_clear();
-        let calibration = self.how.calibration.map(|file| file.display().to_string());
-        let mut report = CheckReport { calibration, ..CheckReport::default() };
-        let mut texts = Vec::new();
-        for (source, walk_texts) in checked {
-            if !report.checked_against.iter().any(|other| other == source) {
-                report.checked_against.push(source.to_owned());
-            }
-            texts.extend(walk_texts);
-        }
-        for text in walks.iter().flat_map(|walk| &walk.texts) {
-            self.styles.count_text(text, &mut report);
-        }
-        // Back into the order of the file: the texts of one path were checked together.
-        texts.sort_by_key(|(at, _, _)| *at);
-        for (_, text, findings) in texts {
-            report.add_text(text, &findings);
-        }
-        Ok(report)
+        checked
     }
 
     /// Checks all texts of a path: collects the evidence once, follows each text, and checks it in its world.
@@ -300,7 +302,9 @@ impl<'a> TextChecker<'a> {
             }
             if how.doubts {
                 let words = (text.words.as_str(), text.tag.as_deref());
-                shown.doubted = Some(find_doubts(followed.as_ref(), words, &checked, ambiguity.as_ref()));
+                let tries_changes = how.doubts_in_closed_world || checked.world == CheckWorld::Open;
+                let found = find_doubts(followed.as_ref(), words, (&checked, tries_changes), ambiguity.as_ref());
+                shown.doubted = Some(found);
             }
             shown.ambiguity = ambiguity;
             if let Some(follower) = follower {

@@ -1,6 +1,6 @@
 //! The report of `wayword check`: counts by verdict and check, and the texts that did not pass.
 
-use super::path_texts::FileText;
+use super::{CheckedWalk, path_texts::FileText};
 use crate::{count::count_phrase, doubts::TextDoubts, follow::RouteShares};
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt};
@@ -176,9 +176,23 @@ impl CheckedText {
 }
 
 impl CheckReport {
+    /// Adds the texts of walks, in the order of their file, and the sources of their evidence.
+    pub(super) fn add_texts(&mut self, walks: Vec<CheckedWalk>) {
+        let mut texts = Vec::new();
+        for (source, walk_texts) in walks {
+            if !self.checked_against.iter().any(|other| other == source) {
+                self.checked_against.push(source.to_owned());
+            }
+            texts.extend(walk_texts);
+        }
+        // Back into the order of the file: the texts of one path were checked together.
+        texts.sort_by_key(|(at, _, _)| *at);
+        texts.into_iter().for_each(|(_, text, findings)| self.add_text(text, &findings));
+    }
+
     /// Counts a checked text by verdict, check and world, and keeps it if it did not pass. `findings` are all of its
     /// findings, those that passed among them.
-    pub(super) fn add_text(&mut self, mut text: CheckedText, findings: &[CheckFinding]) {
+    fn add_text(&mut self, mut text: CheckedText, findings: &[CheckFinding]) {
         if let Some(doubted) = text.doubted.take() {
             self.doubted.push(DoubtedText::from_checked(&text, doubted));
         }

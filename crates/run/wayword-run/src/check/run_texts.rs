@@ -1,7 +1,7 @@
 //! Checks texts that were edited after `wayword export` against the evidence of their own run.
 
 use super::{
-    CheckOptions, TextChecker,
+    CheckOptions, CheckedWalk, TextChecker,
     path_texts::{FileText, PathTexts, StyleReference},
     report::{CheckReport, CheckedText},
     styles::CheckStyles,
@@ -12,22 +12,23 @@ use crate::{
     output::CommandOutput,
     platforms,
     run_folder::{WalkRecord, file, lines, read_run_settings},
+    settings::RunSettings,
 };
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::Path as FilePath};
 use wayword_checks::{CheckSubject, Evidence, TurnJudge, WorldReach, check_own_text};
-use wayword_core::{CheckFinding, ObjectId, Path, SceneId, ViewpointId};
+use wayword_core::{ObjectId, Path, SceneId, ViewpointId};
 use wayword_formats::{DatasetFormat, jsonl};
 use wayword_synthesis::walk::ObservedWalk;
 
 /// A text, and how its path is found in the run.
-struct RunText {
-    text: FileText,
-    path: RunPathKey,
+pub(super) struct RunText {
+    pub(super) text: FileText,
+    pub(super) path: RunPathKey,
 }
 
 /// How a text in a file refers to a path of the run.
-enum RunPathKey {
+pub(super) enum RunPathKey {
     /// The id of the path.
     Id(String),
     /// The fields of a dataset. `names` are the ids of the episode and of its path; they count only if the dataset has
@@ -48,12 +49,30 @@ pub(super) fn check_file(
 ) -> Result<CheckReport, CommandError> {
     let settings = read_run_settings(run)?;
     let styles = CheckStyles::for_run(how.style, &settings)?;
+    let (walks, unmatched) = match_walks(read_texts(texts)?, run)?;
+    if let Some(unmatched) = unmatched.first() {
+        let problem = format!("{}: the run {} has no path {}", texts.display(), run.display(), unmatched.text.path);
+        return Err(CommandError::usage(problem, "give the run that the texts were exported from"));
+    }
+    let mut report = CheckReport::default();
+    walks.iter().flat_map(|(_, texts)| texts).for_each(|text| styles.count_text(text, &mut report));
+    report.add_texts(check_texts_of_run(run, walks, (&settings, &styles), how, output)?);
+    Ok(report)
+}
+
+/// Checks texts about walks of a run against the run's evidence.
+pub(super) fn check_texts_of_run(
+    run: &FilePath,
+    walks: Vec<(ObservedWalk, Vec<FileText>)>,
+    (settings, styles): (&RunSettings, &CheckStyles),
+    how: CheckOptions<'_>,
+    output: &CommandOutput,
+) -> Result<Vec<CheckedWalk>, CommandError> {
     let source = checked_against(run)?;
-    let walks = match_walks(texts, run)?;
     // A simulator may be in another state by now, and a command of the user's is not run for a check.
     let is_program = platforms::is_live(&settings.platform) || settings.platform == "process";
     if source.as_deref().is_some_and(|source| source.starts_with("labels")) && !is_program {
-        match platforms::open_platform(&settings) {
+        match platforms::open_platform(settings) {
             Ok(platform) => {
                 let seen = |(walk, _): &(ObservedWalk, Vec<FileText>)| {
                     Some((walk.path.id.clone(), RunCaptions::of_walk(walk)?))
@@ -65,8 +84,8 @@ pub(super) fn check_file(
                 let walks: Vec<PathTexts> =
                     walks.into_iter().map(|(walk, texts)| PathTexts { path: walk.path, texts }).collect();
                 let checking =
-                    TextChecker { is_own_run: true, captions, ..TextChecker::new(platform.as_ref(), &styles, how) };
-                return checking.check_walks(&walks, output);
+                    TextChecker { is_own_run: true, captions, ..TextChecker::new(platform.as_ref(), styles, how) };
+                return checking.check_each(&walks, output);
             }
             Err(error) => output
                 .say(format!("the platform of the run cannot be opened, so its captions are the evidence: {error}")),
@@ -74,12 +93,15 @@ pub(super) fn check_file(
     }
     // The finds of a detector are part of the captions.
     let captions_were_evidence = matches!(source.as_deref(), Some("captions" | "detector"));
-    Ok(check_by_captions(&walks, &styles, how, captions_were_evidence))
+    Ok(check_by_captions(&walks, styles, how, captions_were_evidence))
 }
 
-/// The walks of a run that a file has texts about, each with its texts.
-fn match_walks(texts: &FilePath, run: &FilePath) -> Result<Vec<(ObservedWalk, Vec<FileText>)>, CommandError> {
-    let mut wanted: Vec<Option<RunText>> = read_texts(texts)?.into_iter().map(Some).collect();
+/// The walks of a run that texts are about, each with its texts; and the texts whose path the run does not have.
+pub(super) fn match_walks(
+    texts: Vec<RunText>,
+    run: &FilePath,
+) -> Result<(Vec<(ObservedWalk, Vec<FileText>)>, Vec<RunText>), CommandError> {
+    let mut wanted: Vec<Option<RunText>> = texts.into_iter().map(Some).collect();
     let mut walks = Vec::new();
     lines::each_line(&run.join(file::WALKS), |line| {
         let record: WalkRecord = line.parse()?;
@@ -90,13 +112,7 @@ fn match_walks(texts: &FilePath, run: &FilePath) -> Result<Vec<(ObservedWalk, Ve
         }
         Ok(())
     })?;
-    match wanted.iter().flatten().next() {
-        Some(unmatched) => {
-            let problem = format!("{}: the run {} has no path {}", texts.display(), run.display(), unmatched.text.path);
-            Err(CommandError::usage(problem, "give the run that the texts were exported from"))
-        }
-        None => Ok(walks),
-    }
+    Ok((walks, wanted.into_iter().flatten().collect()))
 }
 
 /// Checks texts against the captions of their walks.
@@ -105,17 +121,10 @@ fn check_by_captions(
     styles: &CheckStyles,
     how: CheckOptions<'_>,
     captions_were_evidence: bool,
-) -> CheckReport {
-    let mut checked_texts: Vec<(usize, CheckedText, Vec<CheckFinding>)> = Vec::new();
-    let mut report = CheckReport::default();
-    for (walk, texts) in walks {
+) -> Vec<CheckedWalk> {
+    let check_walk = |(walk, texts): &(ObservedWalk, Vec<FileText>)| {
         let evidence = walk.evidence().unwrap_or_else(|| Evidence::for_path_alone(&walk.path));
-        let source = evidence.source_name();
-        if !report.checked_against.iter().any(|other| other == source) {
-            report.checked_against.push(source.to_owned());
-        }
-        for text in texts {
-            styles.count_text(text, &mut report);
+        let check_text = |text: &FileText| {
             let check_style = styles.style_or_any(text);
             let target = walk.path.target.as_ref();
             // If labels were the evidence, the captions show less than the texts were written from, so the world is open.
@@ -132,12 +141,11 @@ fn check_by_captions(
             let turns = TurnJudge::NotJudged("without the platform the text is not followed");
             let subject = CheckSubject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&check_style.copies) };
             let checked = check_own_text(&text.words, subject);
-            checked_texts.push((text.at, CheckedText::from_text(text, &checked), checked.findings));
-        }
-    }
-    checked_texts.sort_by_key(|(at, _, _)| *at);
-    checked_texts.into_iter().for_each(|(_, text, findings)| report.add_text(text, &findings));
-    report
+            (text.at, CheckedText::from_text(text, &checked), checked.findings)
+        };
+        (evidence.source_name(), texts.iter().map(check_text).collect())
+    };
+    walks.iter().map(check_walk).collect()
 }
 
 /// The captions of a walk as evidence.

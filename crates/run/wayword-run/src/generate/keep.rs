@@ -5,7 +5,7 @@ use crate::{
     item::RunItem,
     pictures,
     pipeline::{MadeItem, RunPlatform},
-    run_folder::{FailedItem, PathMap, RejectedText, RunFolder, WalkRecord, extra_fields},
+    run_folder::{FailedItem, PathMap, RejectedText, RunFolder, WalkRecord, add_text_hash, extra_fields},
     styles::MeasuredStyle,
 };
 use wayword_core::FailureKind;
@@ -75,6 +75,7 @@ fn write_made_item(
             WritingOutcome::Accepted(instruction) => {
                 let mut record = InstructionRecord::new(world.platform.name(), made.walk.path.clone(), instruction);
                 record.extra = extra_fields(&item.path_id(), number);
+                add_text_hash(&mut record.extra, &record.instruction.text);
                 cost.iter().for_each(|cost| cost.add_to(&mut record.extra));
                 run.instructions.append(&record)?;
             }

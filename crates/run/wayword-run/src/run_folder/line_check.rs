@@ -17,6 +17,21 @@ use wayword_core::Path;
 /// # Errors
 /// When a file cannot be read, or for the first such line.
 pub fn refuse_edited_lines(folder: &FilePath) -> Result<(), CommandError> {
+    check_lines(folder, TextLine::refuse_misfit)
+}
+
+/// As [`refuse_edited_lines`], but texts may have been changed: for readers that show them, and say so.
+///
+/// # Errors
+/// When a file cannot be read, or an item or a text has two lines.
+pub fn refuse_repeated_lines(folder: &FilePath) -> Result<(), CommandError> {
+    check_lines(folder, |_, _| Ok(()))
+}
+
+fn check_lines(
+    folder: &FilePath,
+    check_text: impl Fn(&TextLine, &RecordLine<'_>) -> Result<(), CommandError>,
+) -> Result<(), CommandError> {
     let mut walks = LineNumbers::default();
     lines::each_line(&folder.join(file::WALKS), |line| {
         let WalkPath { path } = line.parse()?;
@@ -25,7 +40,7 @@ pub fn refuse_edited_lines(folder: &FilePath) -> Result<(), CommandError> {
     let mut texts = LineNumbers::default();
     lines::each_line(&folder.join(file::INSTRUCTIONS), |line| {
         let read: TextLine = line.parse()?;
-        read.refuse_misfit(&line)?;
+        check_text(&read, &line)?;
         texts.note_line(&line, line_key(&read.path.id, &text_name(&read.style, read.number)), "path, style and number")
     })?;
     let mut rejected = LineNumbers::default();
@@ -159,6 +174,20 @@ mod tests {
             twice.starts_with("rejected.jsonl: line 2: it has the same item, style and number as line 1"),
             "{twice}"
         );
+    }
+
+    #[test]
+    fn a_changed_text_is_left_to_readers_that_show_it_but_a_line_twice_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |lines: &[Value]| {
+            let lines: String = lines.iter().map(|line| format!("{line}\n")).collect();
+            fs::write(folder.path().join(file::INSTRUCTIONS), lines).unwrap();
+        };
+        write(&[text("a", "Walk.")]);
+        assert!(refuse_edited_lines(folder.path()).is_err());
+        refuse_repeated_lines(folder.path()).unwrap();
+        write(&[text("a", "Walk."), text("a", "Walk.")]);
+        assert!(refuse_repeated_lines(folder.path()).is_err());
     }
 
     #[test]

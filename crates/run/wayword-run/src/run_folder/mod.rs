@@ -14,6 +14,7 @@ mod journal;
 mod line_check;
 pub mod lines;
 mod record;
+mod text_hash;
 mod world_data;
 
 use crate::{
@@ -38,8 +39,10 @@ pub use config::{continued_settings, is_begun, read_run_settings};
 pub use cost::{ItemCalls, TextCost};
 pub use folder_lock::{FolderLock, lock_folder};
 pub use journal::{Journal, read_lines};
-pub use line_check::refuse_edited_lines;
+pub use line_check::{refuse_edited_lines, refuse_repeated_lines};
 pub use record::{FailedItem, PathMap, RejectedText, WalkRecord, extra_fields, text_file_name, text_name};
+pub(crate) use text_hash::add_text_hash;
+pub use text_hash::hash_of_text;
 pub use world_data::WorldData;
 pub(crate) use world_data::scene_hashes;
 

@@ -1,0 +1,114 @@
+//! Checks the texts of a run folder again, for its report: somebody may have changed them since, and the follower doubts more
+//! words than the checks reject.
+
+use super::{
+    CheckOptions, CheckedText,
+    path_texts::{FileText, StyleReference},
+    run_texts::{RunPathKey, RunText, check_texts_of_run, match_walks},
+    styles::CheckStyles,
+};
+use crate::{
+    error::CommandError,
+    output::CommandOutput,
+    run_folder::{file, hash_of_text, lines, read_run_settings},
+};
+use serde::Deserialize;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path as FilePath,
+};
+use wayword_core::TextProvenance;
+
+/// The texts of a run as they were checked again.
+#[derive(Debug, Default)]
+pub struct CheckedAgain {
+    /// The texts by the numbers of their lines in `instructions.jsonl`, from 1. A text whose path the run does not have is not
+    /// here.
+    pub texts: BTreeMap<usize, CheckedText>,
+    /// What the texts were checked against.
+    pub checked_against: Vec<String>,
+    /// The lines whose text is not the one that the run wrote. Records of older versions do not tell.
+    pub changed: BTreeSet<usize>,
+}
+
+/// What is known of a text beside its record.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SecondCheck<'a> {
+    /// The text as it was checked again; `None` if it was not.
+    pub text: Option<&'a CheckedText>,
+    /// Whether somebody changed it after the run.
+    pub is_changed: bool,
+}
+
+impl CheckedAgain {
+    /// What is known of the text in a line of `instructions.jsonl`, from 1.
+    #[must_use]
+    pub fn of_line(&self, line: usize) -> SecondCheck<'_> {
+        SecondCheck { text: self.texts.get(&line), is_changed: self.changed.contains(&line) }
+    }
+}
+
+/// A line of `instructions.jsonl`, as far as it is checked.
+#[derive(Deserialize)]
+struct WrittenLine {
+    platform: String,
+    path: WrittenPathId,
+    text: String,
+    style: String,
+    provenance: TextProvenance,
+    #[serde(default)]
+    text_hash: Option<String>,
+}
+
+#[derive(Deserialize)]
+struct WrittenPathId {
+    id: String,
+}
+
+/// Checks every accepted text of a run against the evidence of the run, as `wayword check --run` does, and looks for words to
+/// doubt.
+///
+/// # Errors
+/// When the run or its styles cannot be read, a line is not of its kind, or the user interrupts.
+pub fn check_run_again(run: &FilePath, output: &CommandOutput) -> Result<CheckedAgain, CommandError> {
+    let settings = read_run_settings(run)?;
+    let styles = CheckStyles::for_run(None, &settings)?;
+    let mut again = CheckedAgain::default();
+    let (walks, _) = match_walks(read_written(run, &mut again.changed)?, run)?;
+    let how = CheckOptions { doubts: true, doubts_in_closed_world: true, ..CheckOptions::default() };
+    for (source, texts) in check_texts_of_run(run, walks, (&settings, &styles), how, output)? {
+        if !again.checked_against.iter().any(|other| other == source) {
+            again.checked_against.push(source.to_owned());
+        }
+        again.texts.extend(texts.into_iter().map(|(at, text, _)| (at, text)));
+    }
+    Ok(again)
+}
+
+/// Finds the texts of a run that somebody changed after it, and checks none.
+///
+/// # Errors
+/// When a line cannot be read, or is not of its kind.
+pub fn find_changed_texts(run: &FilePath) -> Result<CheckedAgain, CommandError> {
+    let mut again = CheckedAgain::default();
+    read_written(run, &mut again.changed)?;
+    Ok(again)
+}
+
+/// The accepted texts of a run. The place of each is the number of its line; those of texts that were changed are added to `changed`.
+fn read_written(run: &FilePath, changed: &mut BTreeSet<usize>) -> Result<Vec<RunText>, CommandError> {
+    let mut texts = Vec::new();
+    lines::each_line(&run.join(file::INSTRUCTIONS), |line| {
+        let WrittenLine { platform, path, text, style, provenance, text_hash } = line.parse()?;
+        if text_hash.is_some_and(|hash| hash != hash_of_text(&text)) {
+            changed.insert(line.number());
+        }
+        let style = StyleReference { name: style, hash: provenance.style_hash.clone() };
+        let key = RunPathKey::Id(path.id.clone());
+        let origin = Some((platform, provenance));
+        let text = FileText { at: line.number(), path: path.id, words: text, tag: None, style: Some(style), origin };
+        texts.push(RunText { text, path: key });
+        Ok(())
+    })?;
+    Ok(texts)
+}
