@@ -7,8 +7,9 @@
 //! - `export/card/`: the dataset card, its text in `card.md`.
 //! - `export/steps/`: walks in single actions: settings, parts of a text, pictures and shards, walking again.
 //! - `export/highlight.rs`, `pages/doubts/`: words to doubt.
-//! - `pages/item_order.rs`, `rows.rs`, `report_files.rs`, `page.rs`: which items a report shows, the list of texts, the files, the
-//!   head; the templates lie beside them.
+//! - `pages/suspicion.rs`: what speaks against a text, and which come first; `item_order.rs`, `rows.rs`, `report_files.rs`,
+//!   `picture_folder.rs`, `page.rs`: the items that a report shows, the list of texts, the files, the pictures beside them, the head.
+//!   The templates lie beside them, and the only script, `report.js`.
 //! - `pages/comparison/`, `pages/replay/`: tables, page and replays of a comparison.
 //! - `view/path/`, `view/film/`, `view/map/`: what `wayword view` writes.
 

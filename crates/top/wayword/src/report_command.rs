@@ -7,8 +7,9 @@ use std::{
 };
 #[cfg(feature = "experiments")]
 use wayword_experiments::compare;
-use wayword_report::pages;
+use wayword_report::pages::{self, ReportOptions};
 use wayword_run::{
+    check::{CheckedAgain, check_run_again, find_changed_texts},
     error::{CommandError, Exit},
     output::CommandOutput,
     run_folder::{file, is_comparison, refuse_unmerged},
@@ -18,20 +19,27 @@ use wayword_run::{
 /// `wayword report`.
 #[derive(Debug, Args)]
 #[command(
-    after_long_help = "Examples:\n  wayword report --run runs/val_seen\n  wayword report --run runs/val_seen --items 20 --out page.html"
+    after_long_help = "Examples:\n  wayword report --run runs/val_seen\n  wayword report --run runs/val_seen --items 20 --single-file --out page.html"
 )]
 pub struct ReportArgs {
     /// Run folder, or the folder of a comparison.
     #[arg(long, value_name = "DIR")]
     pub run: PathBuf,
-    /// Show at most this many items, those with rejected and unverified texts first. For a comparison: this many walks, with
+    /// Show at most this many items, those with the most suspicious texts first. For a comparison: this many walks, with
     /// successes and failures of each agent and set. [default: 1000; for a comparison 100]
     #[arg(long, value_name = "N")]
     pub items: Option<usize>,
-    /// HTML file to write. With more than 50 items it is an overview, and the items are on numbered pages in the same folder.
-    /// [default: report.html in the run folder]
+    /// HTML file to write. With more than 25 items it is the list, and the items are on numbered pages in the same folder. Pictures
+    /// lie in a folder beside it, report-files for report.html. [default: report.html in the run folder]
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// Write one file that contains its pictures, up to 64 MiB of them, instead of pages with a folder of pictures beside them.
+    #[arg(long)]
+    pub single_file: bool,
+    /// Show the verdicts of the run, and do not check its texts again. Without it, each text is checked as by `wayword check --run`,
+    /// because somebody may have changed it; texts that fail come first.
+    #[arg(long)]
+    pub no_check: bool,
 }
 
 /// Items of a run that are shown, unless `--items` gives another number.
@@ -57,7 +65,21 @@ pub(crate) fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Ex
             return Ok(Exit::Done);
         }
     }
-    let written = pages::write_report(&args.run, &out, args.items.unwrap_or(MAX_REPORT_ITEMS))?;
+    let checked = if args.no_check { find_changed_texts(&args.run) } else { check_run_again(&args.run, output) };
+    let (again, trouble) = match checked {
+        Ok(again) => (again, None),
+        Err(CommandError::Interrupted) => return Err(CommandError::Interrupted),
+        Err(error) => (CheckedAgain::default(), Some(error)),
+    };
+    let most_items = args.items.unwrap_or(MAX_REPORT_ITEMS);
+    let options = ReportOptions { most_items, is_single_file: args.single_file, again };
+    let written = pages::write_report_as(&args.run, &out, &options)?;
+    // Where the run itself is broken, the report has failed with the same error by now.
+    if let Some(error) = trouble {
+        output.say(format_args!(
+            "the texts were not checked again, so the report shows the verdicts of the run: {error}"
+        ));
+    }
     if written.items + written.left_out == 0 {
         output.say("the run has no item yet, so the page shows none; see errors.jsonl for items that failed");
     }

@@ -8,7 +8,7 @@ pub(crate) fn jpeg_uri(bytes: &[u8]) -> String {
 }
 
 /// Base64 as in RFC 4648, section 4, with padding.
-fn encode_base64(bytes: &[u8]) -> String {
+pub(crate) fn encode_base64(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for chunk in bytes.chunks(3) {
         let word = (0..3).fold(0u32, |word, at| word << 8 | chunk.get(at).copied().map_or(0, u32::from));

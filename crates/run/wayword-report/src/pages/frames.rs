@@ -25,11 +25,9 @@ const SAME_DIRECTION_RAD: f64 = 0.01;
 #[derive(Debug, Serialize)]
 pub(super) struct FrameView {
     /// From 0, as in run folders and on the terminal.
-    pub(super) number: usize,
+    number: usize,
     anchor: String,
     colour: FrameColour,
-    /// The keys of the parts of texts that it belongs to.
-    pub(super) parts: Vec<usize>,
     picture: Option<PagePicture>,
     /// The boxes of a detector, those with the highest score first.
     boxes: Vec<BoxView>,
@@ -84,7 +82,12 @@ struct ExchangeView {
 }
 
 /// The first `shown` frames of a walk.
-pub(super) fn frame_views(walk: &WalkRecord, item: &str, shown: usize, pictures: &mut PagePictures) -> Vec<FrameView> {
+pub(super) fn frame_views(
+    walk: &WalkRecord,
+    item: &str,
+    shown: usize,
+    pictures: &mut PagePictures<'_>,
+) -> Vec<FrameView> {
     let moves = walk.path.moves();
     let nothing = FrameObservation::default();
     let frame = |(at, frame): (usize, &wayword_core::Frame)| {
@@ -95,7 +98,6 @@ pub(super) fn frame_views(walk: &WalkRecord, item: &str, shown: usize, pictures:
             number: at,
             anchor: frame_anchor(item, at),
             colour: frame_colour(at, shown),
-            parts: Vec::new(),
             picture: if walk.has_pictures { pictures.take_picture(&walk.path.id, at) } else { None },
             boxes: box_views(&observation.looks, frame.pose.heading),
             alt: format!("View at frame {at}. {}", observation.summary),

@@ -1,10 +1,12 @@
-//! Decides which items of a run the report shows, and in which order: items with rejected texts first, then those with unverified
-//! ones, then the others.
+//! Decides which items of a run the report shows, and in which order: those with the most suspicious texts first.
 
-use super::item_record::TextState;
+use super::suspicion::unwritten_score;
 use serde::Deserialize;
-use std::{collections::BTreeMap, path::Path};
-use wayword_run::{error::CommandError, run_folder::lines};
+use std::{cmp::Reverse, collections::BTreeMap, path::Path};
+use wayword_run::{
+    error::CommandError,
+    run_folder::{ItemCalls, lines},
+};
 
 /// The field of a line that names its path.
 #[derive(Deserialize)]
@@ -17,27 +19,35 @@ pub(super) struct PathIdField {
     pub(super) id: String,
 }
 
-/// The worst state of each item's texts; items that are missing here passed.
+/// The line of a path, as far as all of them are read.
+#[derive(Deserialize)]
+struct ListedWalk {
+    path: PathIdField,
+    #[serde(default)]
+    used: Option<ItemCalls>,
+}
+
+/// The highest score of each item's texts. Items that are missing here have no text.
 #[derive(Default)]
-pub(super) struct WorstStates(BTreeMap<String, TextState>);
+pub(super) struct ItemScores(BTreeMap<String, u32>);
 
 /// The places of the shown items in the report, by the number of their line in the file of paths.
 pub(super) struct ItemOrder {
     places: BTreeMap<usize, usize>,
     left_bytes: usize,
+    /// Items in the file.
+    pub(super) items: usize,
+    /// Items without any text.
+    pub(super) unwritten: usize,
+    /// US dollars for the answers of models that all items used.
+    pub(super) usd: f64,
 }
 
-impl WorstStates {
-    /// Notes the state of a text.
-    pub(super) fn note_state(&mut self, item: String, state: TextState) {
-        if state != TextState::Passed {
-            let worst = self.0.entry(item).or_insert(state);
-            *worst = (*worst).min(state);
-        }
-    }
-
-    fn state_of_item(&self, item: &str) -> TextState {
-        self.0.get(item).copied().unwrap_or(TextState::Passed)
+impl ItemScores {
+    /// Notes the score of a text.
+    pub(super) fn note_score(&mut self, item: String, score: u32) {
+        let worst = self.0.entry(item).or_insert(score);
+        *worst = (*worst).max(score);
     }
 }
 
@@ -51,13 +61,16 @@ impl ItemOrder {
         walks: &Path,
         most: usize,
         most_bytes: usize,
-        worst: &WorstStates,
+        scores: &ItemScores,
     ) -> Result<Self, CommandError> {
-        let mut found: BTreeMap<TextState, Vec<(usize, usize)>> = BTreeMap::new();
-        let mut number = 0;
+        let mut found: BTreeMap<Reverse<u32>, Vec<(usize, usize)>> = BTreeMap::new();
+        let (mut number, mut unwritten, mut usd) = (0, 0, 0.0);
         lines::each_line(walks, |line| {
-            let named: PathLine = line.parse()?;
-            let same = found.entry(worst.state_of_item(&named.path.id)).or_default();
+            let ListedWalk { path, used } = line.parse()?;
+            let score = scores.0.get(&path.id).copied();
+            unwritten += usize::from(score.is_none());
+            usd += used.map_or(0.0, |used| used.usd);
+            let same = found.entry(Reverse(score.unwrap_or_else(unwritten_score))).or_default();
             if same.len() < most {
                 same.push((number, line.byte_count()));
             }
@@ -69,7 +82,7 @@ impl ItemOrder {
         // Once one is left out, all after it are too, so that the report shows the first items and not the small ones.
         let fitting = in_order.map_while(|(number, bytes)| take_bytes(&mut left_bytes, bytes).then_some(number));
         let places = fitting.enumerate().map(|(place, number)| (number, place)).collect();
-        Ok(Self { places, left_bytes })
+        Ok(Self { places, left_bytes, items: number, unwritten, usd })
     }
 
     /// The place of a line's item in the report; `None` if it is not shown.
@@ -99,16 +112,12 @@ mod tests {
         let file = folder.path().join("walks.jsonl");
         let line = |id: &str| format!("{{\"path\":{{\"id\":\"{id}\"}}}}\n");
         std::fs::write(&file, ["a", "b", "c", "d"].map(line).concat()).unwrap();
-        let mut worst = WorstStates::default();
-        for (item, state) in [
-            ("b", TextState::Unverified),
-            ("d", TextState::Passed),
-            ("d", TextState::Rejected),
-            ("d", TextState::Unverified),
-        ] {
-            worst.note_state(item.to_owned(), state);
+        let mut scores = ItemScores::default();
+        for (item, score) in [("a", 0), ("b", 4000), ("c", 0), ("d", 0), ("d", 6000), ("d", 4000)] {
+            scores.note_score(item.to_owned(), score);
         }
-        let order = ItemOrder::from_walks(&file, most, most_bytes, &worst).unwrap();
+        let order = ItemOrder::from_walks(&file, most, most_bytes, &scores).unwrap();
+        assert_eq!((order.items, order.unwritten), (4, 0));
         (0..4)
             .filter_map(|line| Some((order.place_of_line(line)?, line)))
             .collect::<BTreeMap<_, _>>()

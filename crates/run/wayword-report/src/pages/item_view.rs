@@ -6,11 +6,11 @@ use super::{
     link_targets::{LinkTargets, item_anchor},
     map::{BADGE_RADIUS, MapView},
     pictures::PagePictures,
-    texts::{PartView, TextView, text_views},
+    texts::{TextView, text_views},
 };
 use serde::Serialize;
 use wayword_core::{ObjectDistinction, PathTarget};
-use wayword_run::run_folder::ItemCalls;
+use wayword_run::{check::CheckedAgain, run_folder::ItemCalls};
 
 /// Most frames of an item that are shown.
 const MAX_ITEM_FRAMES: usize = 200;
@@ -42,17 +42,17 @@ pub(super) struct ItemView {
 
 impl ItemView {
     /// An item with its pictures; `number` from 1.
-    pub(super) fn new(number: usize, record: &ItemRecord, pictures: &mut PagePictures) -> Self {
+    pub(super) fn new(
+        number: usize,
+        record: &ItemRecord,
+        again: &CheckedAgain,
+        pictures: &mut PagePictures<'_>,
+    ) -> Self {
         let (path, anchor) = (&record.walk.path, item_anchor(number));
         let shown = path.frames.len().min(MAX_ITEM_FRAMES);
         let map = MapView::new(path, &record.walk.map, shown);
-        let texts = text_views(record, LinkTargets { item: &anchor, frames: path.frames.len(), shown });
-        let mut frames = frame_views(&record.walk, &anchor, shown, pictures);
-        for frame in &mut frames {
-            let has_frame = |part: &&PartView| (part.frames[0]..=part.frames[1]).contains(&frame.number);
-            let parts = texts.iter().flat_map(|text| &text.parts).filter(has_frame);
-            frame.parts = parts.filter_map(|part| part.key).collect();
-        }
+        let texts = text_views(record, again, LinkTargets { item: &anchor, frames: path.frames.len(), shown });
+        let frames = frame_views(&record.walk, &anchor, shown, pictures);
         let length_m = path.length_m().map(|length_m| format!("{length_m:.1}"));
         Self {
             number,

@@ -42,6 +42,8 @@ pub(super) struct AnnotatedPathView {
 /// A straight line between two frames.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct MapHop {
+    /// The place of its first frame on the trail, from 0.
+    pub(super) from: usize,
     pub(super) data: String,
     pub(super) fill: String,
     /// Whether it goes up or down stairs.
@@ -169,6 +171,7 @@ fn map_hops(trail: &MapTrail<'_>, at: &[[f64; 2]]) -> Vec<MapHop> {
     let hop = |from: usize| {
         let is_back = trail.backs.get(from).is_some_and(|is_back| *is_back);
         MapHop {
+            from,
             data: if is_back { bow_data(at[from], at[from + 1]) } else { line_data(at[from], at[from + 1]) },
             fill: frame_colour(from, at.len()).fill,
             climbs: ClimbDirection::from_rise(trail.stops[from + 1].z - trail.stops[from].z) != ClimbDirection::Level,

@@ -1,8 +1,8 @@
-//! Draws a run as HTML pages that load no other files: map, frames, dialogue, captions, instructions and checks.
+//! Draws a run as HTML pages: a list of all texts, and map, frames, dialogue, captions, instructions and checks of each path.
 //!
-//! A page is made item by item, so that memory does not limit its size, and the same run gives the same bytes.
-//! Everything from files or models is untrusted: the templates escape it, and the pages' content security policy
-//! forbids scripts and remote addresses.
+//! A page is made item by item, so that memory does not limit its size, and the same run gives the same bytes. The pictures
+//! lie in a folder beside the page, or within it. Everything from files or models is untrusted: the templates escape it, and
+//! the pages' content security policy forbids remote addresses and all scripts but `report.js`, by its hash.
 
 #[cfg(feature = "experiments")]
 pub mod comparison;
@@ -16,7 +16,9 @@ mod link_targets;
 pub(crate) mod map;
 mod page;
 pub(crate) mod palette;
+mod picture_folder;
 mod pictures;
+mod provenance_words;
 mod records;
 #[cfg(feature = "experiments")]
 pub mod replay;
@@ -26,20 +28,29 @@ pub mod robustness;
 mod rows;
 pub(crate) mod sheet;
 mod spans;
+mod suspicion;
 mod texts;
 
 use item_view::ItemView;
 use link_targets::item_anchor;
 use minijinja::{AutoEscape, Environment, Output, State, UndefinedBehavior, Value, context, escape_formatter};
 use page::ReportPageView;
+use picture_folder::ReportPictures;
 use pictures::PagePictures;
 use records::ReportRecords;
 use report_files::{ReportFiles, WALKS_PER_PAGE};
 use rows::TextList;
 use serde::Serialize;
-use std::{borrow::Cow, fmt, io::Write, ops::Range, path::Path};
+use sha2::{Digest, Sha256};
+use std::{
+    borrow::Cow,
+    fmt, fs,
+    io::Write,
+    ops::Range,
+    path::{Path, PathBuf},
+};
 use wayword_formats::OutputFile;
-use wayword_run::{count::count_phrase, error::CommandError, output::show_unseen};
+use wayword_run::{check::CheckedAgain, count::count_phrase, error::CommandError, output::show_unseen};
 
 /// Result of a report: its files, and how much of the run they show.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -56,6 +67,19 @@ pub struct WrittenReport {
     pub pictures: usize,
     /// Pictures of these items that are not shown: missing, not a JPEG, too large, or the page was full.
     pub pictures_left_out: usize,
+    /// Texts of the dataset that fail a check.
+    pub wrong: usize,
+}
+
+/// How a report is written.
+#[derive(Debug)]
+pub struct ReportOptions {
+    /// Most items that are shown; those with the most suspicious texts come first.
+    pub most_items: usize,
+    /// Whether the report is one file, with its pictures inside.
+    pub is_single_file: bool,
+    /// The texts as they were checked again; empty if they were not.
+    pub again: CheckedAgain,
 }
 
 impl fmt::Display for WrittenReport {
@@ -71,25 +95,48 @@ impl fmt::Display for WrittenReport {
         if self.pictures_left_out > 0 {
             write!(f, "; {} left out", count_phrase(self.pictures_left_out, "picture"))?;
         }
+        if self.wrong > 0 {
+            write!(
+                f,
+                "; {} of the dataset {} a check",
+                count_phrase(self.wrong, "text"),
+                if self.wrong == 1 { "fails" } else { "fail" }
+            )?;
+        }
         Ok(())
     }
 }
 
-/// Writes the report of a run, with at most `most_items` of its items; those with texts that did not pass come first.
-/// The new files replace old ones only when all of them are complete.
+/// Writes the report of a run with the verdicts of the run, as [`write_report_as`] does.
+///
+/// # Errors
+/// As [`write_report_as`].
+pub fn write_report(run: &Path, out: &Path, most_items: usize) -> Result<WrittenReport, CommandError> {
+    let options = ReportOptions { most_items, is_single_file: false, again: CheckedAgain::default() };
+    write_report_as(run, out, &options)
+}
+
+/// Writes the report of a run. The new files replace old ones only when all of them are complete.
 ///
 /// # Errors
 /// When `run` is not a run folder, a line of it is not of its kind, another report's file is where a page of paths
-/// belongs, or a page cannot be written.
-pub fn write_report(run: &Path, out: &Path, most_items: usize) -> Result<WrittenReport, CommandError> {
-    write_paged(run, out, most_items, WALKS_PER_PAGE)
+/// belongs, or a page or a picture cannot be written.
+pub fn write_report_as(run: &Path, out: &Path, options: &ReportOptions) -> Result<WrittenReport, CommandError> {
+    let per_page = if options.is_single_file { usize::MAX } else { WALKS_PER_PAGE };
+    write_paged(run, out, options, per_page)
 }
 
-fn write_paged(run: &Path, out: &Path, most_items: usize, per_page: usize) -> Result<WrittenReport, CommandError> {
-    let records = ReportRecords::read_run(run, most_items)?;
+fn write_paged(
+    run: &Path,
+    out: &Path,
+    options: &ReportOptions,
+    per_page: usize,
+) -> Result<WrittenReport, CommandError> {
+    let records = ReportRecords::read_run(run, options.most_items, &options.again)?;
     let files = ReportFiles::new(out, run, records.items.len(), per_page);
     files.expect_place_for_pages()?;
     files.refuse_to_replace_others()?;
+    let folder = (!options.is_single_file).then(|| ReportPictures::beside_page(out)).transpose()?;
     let mut written = WrittenReport {
         page: out.display().to_string(),
         pages: (1..=files.page_count()).map(|page| files.page_file(page).display().to_string()).collect(),
@@ -97,9 +144,11 @@ fn write_paged(run: &Path, out: &Path, most_items: usize, per_page: usize) -> Re
         left_out: records.left_out,
         pictures: 0,
         pictures_left_out: 0,
+        wrong: records.counts.values().map(|counts| counts.wrong).sum(),
     };
     let templates = load_templates().map_err(template_error)?;
-    let source = ReportPageSource { records: &records, book: &files, templates: &templates, run };
+    let source =
+        ReportPageSource { records: &records, book: &files, templates: &templates, run, folder: folder.as_ref() };
     let mut unfinished = Vec::new();
     for page in (1..=files.page_count()).map(Some).chain([None]) {
         let file = page.map_or_else(|| out.to_owned(), |page| files.page_file(page));
@@ -112,6 +161,7 @@ fn write_paged(run: &Path, out: &Path, most_items: usize, per_page: usize) -> Re
         page.finish().map_err(CommandError::io(file, "write"))?;
     }
     files.remove_older_pages()?;
+    folder.map_or(Ok(()), |folder| folder.remove_unused())?;
     Ok(written)
 }
 
@@ -141,16 +191,18 @@ fn begin_page<T>(
 
 /// Everything from which the pages of a report are drawn.
 struct ReportPageSource<'a> {
-    records: &'a ReportRecords,
+    records: &'a ReportRecords<'a>,
     /// The files of the report, with the links between them.
     book: &'a ReportFiles<'a>,
     templates: &'a Environment<'static>,
     run: &'a Path,
+    /// Where the pictures go; `None` if the pages contain them.
+    folder: Option<&'a ReportPictures>,
 }
 
-impl ReportPageSource<'_> {
+impl<'a> ReportPageSource<'a> {
     /// Draws a page of paths (from 1), or the overview for `None`, and hands it to `take` part by part.
-    fn draw_page(&self, page: Option<usize>, take: &mut PageSink<'_>) -> Result<PagePictures, CommandError> {
+    fn draw_page(&self, page: Option<usize>, take: &mut PageSink<'_>) -> Result<PagePictures<'a>, CommandError> {
         let Self { records, book, .. } = self;
         let pager = book.pager_for_page(page);
         let walks: Range<usize> = match page {
@@ -160,25 +212,30 @@ impl ReportPageSource<'_> {
         };
         let all = records.items.len() + records.left_out;
         let (first, last, shown) = (walks.start + 1, walks.end, records.items.len());
-        let around = context! { pager, first, last, shown, walks => all, platform => records.settings.platform };
+        let has_files = self.folder.is_some();
+        let around =
+            context! { pager, first, last, shown, has_files, walks => all, platform => records.settings.platform };
+        let mut pictures = PagePictures::from_run(self.run, self.folder);
         match page {
             Some(_) => {
                 let view = context! { page_of => book.page_of(), ..around.clone() };
                 self.draw_part("leaf.html", view, take)?;
             }
             None => {
-                let rows = TextList::from_records(records, |walk| book.walk_address(walk, &item_anchor(walk + 1)));
+                let href = |walk: usize| book.walk_address(walk, &item_anchor(walk + 1));
+                let rows = TextList::from_records(records, href, &mut pictures);
                 let view = context! { ..Value::from_serialize(ReportPageView::new(records)), ..Value::from_serialize(rows), ..around.clone() };
                 self.draw_part("head.html", view, take)?;
             }
         }
-        let mut pictures = PagePictures::from_run(self.run);
         for (at, record) in walks.clone().zip(&records.items[walks]) {
-            let view = Value::from_serialize(ItemView::new(at + 1, record, &mut pictures));
+            let view = Value::from_serialize(ItemView::new(at + 1, record, records.again, &mut pictures));
+            pictures.expect_written()?;
             self.draw_part("item.html", view, take)?;
         }
-        self.draw_part("pager.html", around, take)?;
-        take(include_str!("foot.html"))?;
+        pictures.expect_written()?;
+        self.draw_part("pager.html", context! { pager_name => "Pages, again", ..around }, take)?;
+        self.draw_part("script.html", context! {}, take)?;
         Ok(pictures)
     }
 
@@ -187,6 +244,9 @@ impl ReportPageSource<'_> {
         take(&part.map_err(template_error)?)
     }
 }
+
+/// The only script of the pages. Their content security policy has its hash, so that no other one runs.
+const SCRIPT: &str = include_str!("report.js");
 
 fn load_templates() -> Result<Environment<'static>, minijinja::Error> {
     let mut templates = Environment::new();
@@ -202,10 +262,12 @@ fn load_templates() -> Result<Environment<'static>, minijinja::Error> {
     templates.add_template("open.html", include_str!("open.html"))?;
     templates.add_template("head.html", include_str!("head.html"))?;
     templates.add_template("rows.html", include_str!("rows.html"))?;
-    templates.add_global("lit_parts", texts::MAX_LIT_PARTS);
-    templates.add_template("parts.css", include_str!("parts.css"))?;
+    templates.add_global("script", SCRIPT);
+    templates.add_global("script_hash", format!("sha256-{}", data_uri::encode_base64(&Sha256::digest(SCRIPT))));
+    templates.add_template("script.html", include_str!("script.html"))?;
+    templates.add_template("list_controls.html", include_str!("list_controls.html"))?;
+    templates.add_template("item.css", include_str!("item.css"))?;
     templates.add_template("rows.css", include_str!("rows.css"))?;
-    templates.add_template("filter.css", include_str!("filter.css"))?;
     templates.add_template("leaf.html", include_str!("leaf.html"))?;
     templates.add_template("pager.html", include_str!("pager.html"))?;
     templates.add_template("map.html", include_str!("map.html"))?;

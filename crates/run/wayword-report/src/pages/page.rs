@@ -4,6 +4,7 @@ use super::records::{ReportRecords, RolesPlayed, StyleCounts};
 use serde::Serialize;
 use std::path::Path;
 use wayword_run::{
+    count::count_phrase,
     platforms::has_hops,
     settings::{EvidenceSources, Perception, RolePlayer, RunSettings, TargetMode},
 };
@@ -12,6 +13,9 @@ use wayword_synthesis::walk::FrameSelection;
 /// The template's values for the top of the report.
 #[derive(Debug, Serialize)]
 pub(super) struct ReportPageView {
+    /// How many paths the run has, of how many if it is not finished.
+    paths: String,
+    is_unfinished: bool,
     settings: Vec<(&'static str, String)>,
     roles: Vec<RolesView>,
     outcome: Vec<StyleOutcomeView>,
@@ -19,8 +23,12 @@ pub(super) struct ReportPageView {
     /// Items that failed, shown or not.
     failed: usize,
     failed_left_out: usize,
-    /// Whether a text of the run may mean several places or objects.
-    is_ambiguous: bool,
+    /// Claims that nothing decides.
+    claims: usize,
+    /// The cost of all answers of models, if there was any.
+    usd: Option<String>,
+    /// Whether the texts were checked again.
+    checked: String,
 }
 
 /// Who asked, answered, wrote and checked: each line has a name and its part in the work.
@@ -35,27 +43,58 @@ struct StyleOutcomeView {
     passed: usize,
     unverified: usize,
     rejected: usize,
+    wrong: usize,
     ambiguous: usize,
+    doubtful: usize,
 }
 
 impl ReportPageView {
-    pub(super) fn new(records: &ReportRecords) -> Self {
+    pub(super) fn new(records: &ReportRecords<'_>) -> Self {
         let style = |(name, counts): (&String, &StyleCounts)| StyleOutcomeView {
             name: name.clone(),
             passed: counts.passed,
             unverified: counts.unverified,
             rejected: counts.rejected,
+            wrong: counts.wrong,
             ambiguous: counts.ambiguous,
+            doubtful: counts.doubtful,
         };
+        let failed = records.failed.len() + records.failed_left_out;
+        let all = StyleCounts::of_all(records.counts.values());
+        let (paths, is_unfinished) = describe_progress(records, failed);
         Self {
+            paths,
+            is_unfinished,
             settings: settings_in_words(&records.settings),
             roles: records.roles.iter().map(role_lines).collect(),
             outcome: records.counts.iter().map(style).collect(),
             left_out: records.left_out,
-            failed: records.failed.len() + records.failed_left_out,
+            failed,
             failed_left_out: records.failed_left_out,
-            is_ambiguous: records.counts.values().any(|counts| counts.ambiguous > 0),
+            claims: all.claims,
+            usd: (records.usd > 0.0).then(|| format!("${:.2}", records.usd)),
+            checked: describe_check(records),
         }
+    }
+}
+
+/// How many paths the run has, and whether it lacks some.
+fn describe_progress(records: &ReportRecords<'_>, failed: usize) -> (String, bool) {
+    let done = records.items.len() + records.left_out;
+    match records.planned {
+        Some(planned) if done + failed < planned => {
+            (format!("{done} of {} so far", count_phrase(planned, "path")), true)
+        }
+        _ if records.unwritten > 0 => (format!("{} so far", count_phrase(done, "path")), true),
+        _ => (count_phrase(done, "path"), false),
+    }
+}
+
+/// Whether the texts were checked again, and against what.
+fn describe_check(records: &ReportRecords<'_>) -> String {
+    match &records.again.checked_against[..] {
+        [] => "verdicts of the run; the texts were not checked again".to_owned(),
+        sources => format!("texts checked again against {}", sources.join(", ")),
     }
 }
 

@@ -1,24 +1,27 @@
 //! Reads a run for the report: loads the items that are shown, and only counts the others.
 //!
-//! The files are read twice: first for the verdicts of each item, then for the content of the shown items. Rejected
-//! and unverified texts come first, because readers open a report to see those.
+//! The files are read twice: first for what speaks against each text, then for the content of the shown items. The most
+//! suspicious texts come first, because readers open a report to see those.
 
 use super::{
-    item_order::{ItemOrder, PathIdField, PathLine, WorstStates, take_bytes},
-    item_record::{ItemRecord, TextState, state_from_verdict},
+    item_order::{ItemOrder, ItemScores, PathIdField, PathLine, take_bytes},
+    item_record::{AcceptedText, ItemRecord, TextState},
+    suspicion::TextSuspicion,
 };
 use serde::Deserialize;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
 };
-use wayword_core::{FailureKind, TextAmbiguity, TextProvenance, Verdict};
+use wayword_core::{CheckFinding, FailureKind, TextAmbiguity, TextProvenance, Verdict};
 use wayword_run::{
+    check::CheckedAgain,
     error::CommandError,
+    item::planned_item_count,
     run_folder::{
-        FailedItem, RejectedText, WalkRecord, file,
+        FailedItem, RejectedText, TextCost, WalkRecord, file,
         lines::{self, RecordLine},
-        read_run_settings, refuse_edited_lines,
+        read_run_settings, refuse_repeated_lines,
     },
     settings::RunSettings,
 };
@@ -31,10 +34,9 @@ const MAX_ROLE_SETS: usize = 16;
 const MAX_COUNTED_STYLES: usize = 64;
 
 /// A run as far as the page shows it.
-pub(super) struct ReportRecords {
+pub(super) struct ReportRecords<'a> {
     pub(super) settings: RunSettings,
-    /// The items that are shown: those with a rejected text, those with an unverified one, then the others; each of
-    /// these in the order of the run.
+    /// The items that are shown, those with the most suspicious texts first, and else in the order of the run.
     pub(super) items: Vec<ItemRecord>,
     /// Items with a path that are not shown.
     pub(super) left_out: usize,
@@ -44,6 +46,14 @@ pub(super) struct ReportRecords {
     pub(super) failed_left_out: usize,
     /// Counts of all items, by style.
     pub(super) counts: BTreeMap<String, StyleCounts>,
+    /// Items that have a path but no text.
+    pub(super) unwritten: usize,
+    /// Items that the run is to have, if that is known.
+    pub(super) planned: Option<usize>,
+    /// US dollars for the answers of models that all items used.
+    pub(super) usd: f64,
+    /// The second check of the texts.
+    pub(super) again: &'a CheckedAgain,
     /// The different sets of roles of all accepted instructions.
     pub(super) roles: BTreeSet<RolesPlayed>,
 }
@@ -54,8 +64,16 @@ pub(super) struct StyleCounts {
     pub(super) passed: usize,
     pub(super) unverified: usize,
     pub(super) rejected: usize,
+    /// Accepted texts that fail a check.
+    pub(super) wrong: usize,
     /// Accepted texts that may mean several places or objects.
     pub(super) ambiguous: usize,
+    /// Accepted texts with words that the follower doubts.
+    pub(super) doubtful: usize,
+    /// Claims of accepted texts that nothing decides.
+    pub(super) claims: usize,
+    /// Texts that a person should look at.
+    pub(super) look: usize,
 }
 
 /// Who asked, answered, wrote and checked.
@@ -76,21 +94,31 @@ pub(super) struct RolesPlayed {
 struct InstructionHeader {
     path: PathIdField,
     style: String,
+    text: String,
     verdict: Verdict,
+    findings: Vec<CheckFinding>,
     provenance: TextProvenance,
     #[serde(default)]
     ambiguity: Option<TextAmbiguity>,
 }
 
-impl ReportRecords {
+/// The field of an instruction's line with its cost.
+#[derive(Deserialize)]
+struct TextCostLine {
+    #[serde(default)]
+    cost: Option<TextCost>,
+}
+
+impl<'a> ReportRecords<'a> {
     /// Reads a run folder, at most `most_items` of its items whole.
     ///
     /// # Errors
     /// When it is not a run folder, a file cannot be read, or a line is not of its kind.
-    pub(super) fn read_run(run: &Path, most_items: usize) -> Result<Self, CommandError> {
+    pub(super) fn read_run(run: &Path, most_items: usize, again: &'a CheckedAgain) -> Result<Self, CommandError> {
         let settings = read_run_settings(run)?;
-        refuse_edited_lines(run)?;
+        refuse_repeated_lines(run)?;
         let mut records = Self {
+            planned: planned_item_count(&settings),
             settings,
             items: Vec::new(),
             left_out: 0,
@@ -98,33 +126,35 @@ impl ReportRecords {
             failed_left_out: 0,
             counts: BTreeMap::new(),
             roles: BTreeSet::new(),
+            unwritten: 0,
+            usd: 0.0,
+            again,
         };
-        let mut worst = WorstStates::default();
-        lines::each_line(&run.join(file::INSTRUCTIONS), |line| records.count_accepted(&line, &mut worst))?;
-        lines::each_line(&run.join(file::REJECTED), |line| records.count_rejected(&line, most_items, &mut worst))?;
+        let mut scores = ItemScores::default();
+        lines::each_line(&run.join(file::INSTRUCTIONS), |line| records.count_accepted(&line, &mut scores))?;
+        lines::each_line(&run.join(file::REJECTED), |line| records.count_rejected(&line, most_items, &mut scores))?;
         lines::each_line(&run.join(file::ERRORS), |line| {
             records.note_failed(line.parse()?, most_items);
             Ok(())
         })?;
-        let order = ItemOrder::from_walks(&run.join(file::WALKS), most_items, MAX_LOADED_BYTES, &worst)?;
+        let order = ItemOrder::from_walks(&run.join(file::WALKS), most_items, MAX_LOADED_BYTES, &scores)?;
+        (records.unwritten, records.usd) = (order.unwritten, order.usd);
+        records.left_out = order.items;
         records.take_items(run, &order)?;
         Ok(records)
     }
 
-    fn count_accepted(&mut self, line: &RecordLine<'_>, worst: &mut WorstStates) -> Result<(), CommandError> {
-        let named: InstructionHeader = line.parse()?;
-        if let Some(counts) = self.counts_of(&named.style) {
-            *match named.verdict {
-                Verdict::Pass => &mut counts.passed,
-                Verdict::Unverified => &mut counts.unverified,
-                Verdict::Fail => &mut counts.rejected,
-            } += 1;
-            counts.ambiguous += usize::from(named.ambiguity.is_some_and(|ambiguity| ambiguity.is_ambiguous()));
+    fn count_accepted(&mut self, line: &RecordLine<'_>, scores: &mut ItemScores) -> Result<(), CommandError> {
+        let InstructionHeader { path, style, text, verdict, findings, provenance, ambiguity } = line.parse()?;
+        let second = self.again.of_line(line.number());
+        let suspicion = TextSuspicion::of_accepted((&text, verdict, &findings), ambiguity.as_ref(), second);
+        if let Some(counts) = self.counts_of(&style) {
+            counts.count_text(&suspicion);
         }
         if self.roles.len() < MAX_ROLE_SETS {
-            self.roles.insert(named.provenance.into());
+            self.roles.insert(provenance.into());
         }
-        worst.note_state(named.path.id, state_from_verdict(named.verdict));
+        scores.note_score(path.id, suspicion.score);
         Ok(())
     }
 
@@ -132,7 +162,7 @@ impl ReportRecords {
         &mut self,
         line: &RecordLine<'_>,
         most_items: usize,
-        worst: &mut WorstStates,
+        scores: &mut ItemScores,
     ) -> Result<(), CommandError> {
         let rejected: RejectedText = line.parse()?;
         if rejected.style.is_empty() {
@@ -141,10 +171,11 @@ impl ReportRecords {
             self.note_failed(FailedItem { item, failure: FailureKind::Broken, reason }, most_items);
             return Ok(());
         }
+        let suspicion = TextSuspicion::of_rejected(&rejected);
         if let Some(counts) = self.counts_of(&rejected.style) {
-            counts.rejected += 1;
+            counts.count_text(&suspicion);
         }
-        worst.note_state(rejected.item, TextState::Rejected);
+        scores.note_score(rejected.item, suspicion.score);
         Ok(())
     }
 
@@ -166,18 +197,18 @@ impl ReportRecords {
 
     /// Loads the items that are shown.
     fn take_items(&mut self, run: &Path, order: &ItemOrder) -> Result<(), CommandError> {
-        let mut walks: BTreeMap<usize, WalkRecord> = BTreeMap::new();
+        let mut walks: BTreeMap<usize, (usize, WalkRecord)> = BTreeMap::new();
         let mut number = 0;
         lines::each_line(&run.join(file::WALKS), |line| {
             if let Some(place) = order.place_of_line(number) {
-                walks.insert(place, line.parse()?);
+                walks.insert(place, (number, line.parse()?));
             }
             number += 1;
             Ok(())
         })?;
-        let whole = |walk| ItemRecord { walk, accepted: Vec::new(), rejected: Vec::new() };
+        let whole = |(place, walk)| ItemRecord { place, walk, accepted: Vec::new(), rejected: Vec::new() };
         self.items = walks.into_values().map(whole).collect();
-        self.left_out = number - self.items.len();
+        self.left_out -= self.items.len();
         let mut places = BTreeMap::new();
         for (place, item) in self.items.iter().enumerate() {
             places.entry(item.walk.path.id.clone()).or_insert(place);
@@ -188,7 +219,8 @@ impl ReportRecords {
             if let Some(item) =
                 self.item_by_id(&places, &named.path.id).filter(|_| take_bytes(&mut left_bytes, line.byte_count()))
             {
-                item.accepted.push(line.parse()?);
+                let TextCostLine { cost } = line.parse()?;
+                item.accepted.push(AcceptedText { line: line.number(), instruction: line.parse()?, cost });
             }
             Ok(())
         })?;
@@ -207,6 +239,35 @@ impl ReportRecords {
 
     fn item_by_id(&mut self, places: &BTreeMap<String, usize>, id: &str) -> Option<&mut ItemRecord> {
         self.items.get_mut(*places.get(id)?)
+    }
+}
+
+impl StyleCounts {
+    fn count_text(&mut self, suspicion: &TextSuspicion) {
+        *match suspicion.state {
+            TextState::Wrong => &mut self.wrong,
+            TextState::Rejected => &mut self.rejected,
+            TextState::Unverified => &mut self.unverified,
+            TextState::Passed => &mut self.passed,
+        } += 1;
+        self.ambiguous += usize::from(suspicion.is_ambiguous);
+        self.doubtful += usize::from(suspicion.is_doubtful);
+        self.look += usize::from(suspicion.needs_look());
+        self.claims += suspicion.unverified;
+    }
+
+    /// All texts of several styles together.
+    pub(super) fn of_all<'c>(counts: impl Iterator<Item = &'c Self>) -> Self {
+        counts.fold(Self::default(), |all, one| Self {
+            passed: all.passed + one.passed,
+            unverified: all.unverified + one.unverified,
+            rejected: all.rejected + one.rejected,
+            wrong: all.wrong + one.wrong,
+            ambiguous: all.ambiguous + one.ambiguous,
+            doubtful: all.doubtful + one.doubtful,
+            claims: all.claims + one.claims,
+            look: all.look + one.look,
+        })
     }
 }
 

@@ -12,8 +12,8 @@ use std::{
 use wayword_formats::OutputPlace;
 use wayword_run::{error::CommandError, written_files::find_output_place};
 
-/// Paths on a page: with five pictures each, they make about ten megabytes, and thirty sheets of paper.
-pub(super) const WALKS_PER_PAGE: usize = 50;
+/// Paths on a page: without pictures, they make one or two megabytes, so that a phone can open it.
+pub(super) const WALKS_PER_PAGE: usize = 25;
 
 /// Characters that are escaped in an address: all but letters, digits and `-._~`.
 const ESCAPED_IN_ADDRESS: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
@@ -37,6 +37,9 @@ pub(super) struct Pager {
     /// The address of the overview.
     overview: String,
     pages: Vec<PageLink>,
+    /// The addresses of the pages before and after this one.
+    previous: Option<String>,
+    next: Option<String>,
 }
 
 /// A link to a page of paths.
@@ -106,7 +109,11 @@ impl<'a> ReportFiles<'a> {
             }
         };
         let pages: Vec<PageLink> = (1..=self.page_count()).map(leaf).collect();
-        (!pages.is_empty()).then(|| Pager { overview: file_address(self.out), pages })
+        let address =
+            |page: usize| (1..=self.page_count()).contains(&page).then(|| file_address(&self.page_file(page)));
+        let previous = here.and_then(|here| address(here - 1));
+        let next = address(here.map_or(1, |here| here + 1));
+        (!pages.is_empty()).then(|| Pager { overview: file_address(self.out), pages, previous, next })
     }
 
     /// Refuses a name that cannot take the report: one that leads to a folder, and for several pages one that is no file.
@@ -170,7 +177,7 @@ fn page_mark(page_of: &str) -> String {
 }
 
 /// The link to a file in the same folder.
-fn file_address(file: &Path) -> String {
+pub(super) fn file_address(file: &Path) -> String {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     utf8_percent_encode(&name, ESCAPED_IN_ADDRESS).to_string()
 }
@@ -191,6 +198,9 @@ mod tests {
         assert_eq!(many.walk_address(50, "w51"), "my%20report-2.html#w51");
         let pager = many.pager_for_page(Some(3)).unwrap();
         assert_eq!(pager.overview, "my%20report.html");
+        assert_eq!((pager.previous.as_deref(), pager.next), (Some("my%20report-2.html"), None));
+        let from_overview = many.pager_for_page(None).unwrap();
+        assert_eq!((from_overview.previous, from_overview.next.as_deref()), (None, Some("my%20report-1.html")));
         let told: Vec<_> = pager.pages.iter().map(|leaf| (leaf.first, leaf.last, leaf.is_here)).collect();
         assert_eq!(told, [(1, 50, false), (51, 100, false), (101, 101, true)]);
     }

@@ -1,17 +1,24 @@
-//! The list of all texts at the top of a report: item, scene, style, text and state, with choices to filter it.
+//! The list of all texts of a report, on its first page: item, scene, style and text, and what speaks against it. The worst come
+//! first; the page's script filters, sorts, searches and samples the rows.
 
 use super::{
-    item_record::{ItemRecord, TextState, state_from_verdict},
+    item_record::{ItemRecord, TextState},
+    pictures::{PagePicture, PagePictures},
     records::ReportRecords,
+    spans::{TextMarks, cut_segments},
+    suspicion::{SuspicionSign, TextSuspicion, failed_score, unwritten_score},
 };
 use serde::Serialize;
-use std::collections::BTreeSet;
+use std::{cmp::Reverse, collections::BTreeSet};
+use wayword_core::{CheckFinding, CheckKind, Verdict};
 use wayword_run::run_folder::FailedItem;
 
 /// Most characters of a text in a row. The rest is cut off; the section of the path shows the whole text.
 const MAX_ROW_CHARS: usize = 700;
+/// Most characters of a sign in a row.
+const MAX_SIGN_CHARS: usize = 200;
 /// Most styles, and most scenes, that a reader can choose from. With more of them there is no choice.
-const MAX_FILTER_CHOICES: usize = 200;
+const MAX_FILTER_CHOICES: usize = 500;
 /// Most rows that are printed on paper; the screen shows all.
 const MAX_PRINTED_ROWS: usize = 100;
 
@@ -19,17 +26,47 @@ const MAX_PRINTED_ROWS: usize = 100;
 #[derive(Debug, Serialize)]
 pub(super) struct TextList {
     rows: Vec<TextRow>,
-    /// The reader's choices: states with their counts, and styles and scenes if there are several.
-    states: Vec<(TextRowState, usize)>,
+    /// The reader's choices: kinds of texts with their counts, and styles and scenes if there are several.
+    kinds: Vec<KindCount>,
     styles: Vec<String>,
     scenes: Vec<String>,
+    /// Whether the texts differ in cost.
+    has_costs: bool,
     printed: usize,
 }
+
+/// How many rows are of a kind.
+#[derive(Debug, Serialize)]
+struct KindCount {
+    kind: &'static str,
+    /// What the reader sees behind the number.
+    label: &'static str,
+    rows: usize,
+}
+
+/// The kinds of rows by which a reader can filter, with their labels.
+const KINDS: [(&str, &str); 10] = [
+    ("look", "need a look"),
+    ("wrong", "fail now"),
+    ("changed", "changed after the run"),
+    ("failed", "failed"),
+    ("rejected", "rejected"),
+    ("unverified", "unverified"),
+    ("doubtful", "with doubtful words"),
+    ("ambiguous", "ambiguous"),
+    ("unwritten", "not written yet"),
+    ("passed", "passed"),
+];
 
 /// A row of the list: one text, or an item without one.
 #[derive(Debug, Serialize)]
 struct TextRow {
-    state: TextRowState,
+    /// The state of the text, or `failed` or `unwritten`.
+    state: &'static str,
+    /// All kinds that it belongs to.
+    kinds: Vec<&'static str>,
+    /// The higher, the more likely it is wrong.
+    score: u32,
     /// The link to the path; `None` if there is no path.
     href: Option<String>,
     id: String,
@@ -38,56 +75,45 @@ struct TextRow {
     /// The index of the scene among those that can be chosen, and that of the style; `None` if there is no choice.
     scene_at: Option<usize>,
     style_at: Option<usize>,
-    text: String,
-    /// Why it failed or was rejected.
-    reason: Option<String>,
-}
-
-/// The state of a text, the worst first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "snake_case")]
-enum TextRowState {
-    /// The item failed before it had a text.
-    Failed,
-    Rejected,
-    Unverified,
-    /// The item has no text yet.
-    Unwritten,
-    Passed,
-}
-
-impl From<TextState> for TextRowState {
-    fn from(state: TextState) -> Self {
-        match state {
-            TextState::Rejected => Self::Rejected,
-            TextState::Unverified => Self::Unverified,
-            TextState::Passed => Self::Passed,
-        }
-    }
+    /// The place of the item in the run.
+    place: usize,
+    /// Characters of the text.
+    length: usize,
+    unverified: usize,
+    /// US dollars for the text, or in runs of older versions for the item.
+    usd: Option<f64>,
+    /// The text, cut at the words that something speaks against.
+    said: Vec<(String, bool)>,
+    signs: Vec<SuspicionSign>,
+    /// The view at the end of the path.
+    picture: Option<PagePicture>,
 }
 
 impl TextList {
     /// The list of a run; `href` gives the link to the item at a place (from 0).
-    pub(super) fn from_records(records: &ReportRecords, href: impl Fn(usize) -> String) -> Self {
+    pub(super) fn from_records(
+        records: &ReportRecords<'_>,
+        href: impl Fn(usize) -> String,
+        pictures: &mut PagePictures<'_>,
+    ) -> Self {
         let mut rows: Vec<TextRow> = records.failed.iter().map(failed_row).collect();
         for (at, item) in records.items.iter().enumerate() {
-            rows.extend(rows_for_item(item, &href(at)));
+            rows.extend(rows_for_item(records, item, &href(at), pictures));
         }
-        rows.sort_by_key(|row| row.state);
+        rows.sort_by_key(|row| Reverse(row.score));
         let styles = choices_among(rows.iter().map(|row| row.style.as_str()));
         let scenes = choices_among(rows.iter().filter_map(|row| row.scene.as_deref()));
         for row in &mut rows {
             row.style_at = styles.binary_search(&row.style).ok();
             row.scene_at = row.scene.as_ref().and_then(|scene| scenes.binary_search(scene).ok());
         }
-        let mut states: Vec<(TextRowState, usize)> = Vec::new();
-        for row in &rows {
-            match states.last_mut() {
-                Some((state, number)) if *state == row.state => *number += 1,
-                _ => states.push((row.state, 1)),
-            }
-        }
-        Self { rows, states, styles, scenes, printed: MAX_PRINTED_ROWS }
+        let count = |(kind, label)| {
+            let rows = rows.iter().filter(|row| row.kinds.contains(&kind)).count();
+            KindCount { kind, label, rows }
+        };
+        let kinds = KINDS.into_iter().map(count).filter(|count| count.rows > 0).collect();
+        let has_costs = rows.iter().any(|row| row.usd.is_some());
+        Self { rows, kinds, styles, scenes, has_costs, printed: MAX_PRINTED_ROWS }
     }
 }
 
@@ -102,49 +128,130 @@ fn choices_among<'n>(names: impl Iterator<Item = &'n str>) -> Vec<String> {
 }
 
 fn failed_row(failed: &FailedItem) -> TextRow {
+    let words = cut_text(&format!("{}: {}", failed.failure.name(), failed.reason), MAX_SIGN_CHARS);
     TextRow {
-        state: TextRowState::Failed,
+        state: "failed",
+        kinds: vec!["failed", "look"],
+        score: failed_score(failed.failure),
         href: None,
         id: failed.item.clone(),
         scene: None,
         style: String::new(),
         scene_at: None,
         style_at: None,
-        text: String::new(),
-        reason: Some(cut_text(&format!("{}: {}", failed.failure.name(), failed.reason))),
+        place: usize::MAX,
+        length: 0,
+        unverified: 0,
+        usd: None,
+        said: Vec::new(),
+        signs: vec![SuspicionSign { class: "bad", words, span: None }],
+        picture: None,
     }
 }
 
 /// The rows of an item: one for each of its texts, or a single one if it has none.
-fn rows_for_item(item: &ItemRecord, href: &str) -> Vec<TextRow> {
-    let row = |state, style: &str, text: &str, reason: Option<&str>| TextRow {
-        state,
-        href: Some(href.to_owned()),
-        id: item.walk.path.id.clone(),
-        scene: Some(item.walk.path.scene.to_string()),
-        style: style.to_owned(),
-        scene_at: None,
-        style_at: None,
-        text: cut_text(text),
-        reason: reason.map(cut_text),
+fn rows_for_item(
+    records: &ReportRecords<'_>,
+    item: &ItemRecord,
+    href: &str,
+    pictures: &mut PagePictures<'_>,
+) -> Vec<TextRow> {
+    let path = &item.walk.path;
+    let picture = item.walk.has_pictures.then(|| pictures.take_small(&path.id, path.frames.len().saturating_sub(1)));
+    let picture = picture.flatten();
+    let row = |style: &str, text: &str, suspicion: Option<TextSuspicion>, usd: Option<f64>| {
+        let (state, kinds) = kinds_of(suspicion.as_ref());
+        let signs = suspicion.as_ref().map(|suspicion| suspicion.signs.clone()).unwrap_or_default();
+        TextRow {
+            state,
+            kinds,
+            score: suspicion.as_ref().map_or_else(unwritten_score, |suspicion| suspicion.score),
+            href: Some(href.to_owned()),
+            id: path.id.clone(),
+            scene: Some(path.scene.to_string()),
+            style: style.to_owned(),
+            scene_at: None,
+            style_at: None,
+            place: item.place,
+            length: text.chars().count(),
+            unverified: suspicion.map_or(0, |suspicion| suspicion.unverified),
+            usd: usd.or(item.walk.used.map(|used| used.usd)).filter(|usd| *usd > 0.0),
+            said: marked_words(text, &signs),
+            signs: signs.into_iter().filter(|sign| !sign.words.is_empty()).map(cut_sign).collect(),
+            picture: picture.clone(),
+        }
     };
-    let accepted = item.accepted.iter().map(|instruction| {
-        row(state_from_verdict(instruction.verdict).into(), &instruction.style, &instruction.text, None)
+    let accepted = item.accepted.iter().map(|text| {
+        let stored = &text.instruction;
+        let judged = (stored.text.as_str(), stored.verdict, &stored.findings[..]);
+        let second = records.again.of_line(text.line);
+        let suspicion = TextSuspicion::of_accepted(judged, stored.ambiguity.as_ref(), second);
+        row(&stored.style, &stored.text, Some(suspicion), text.cost.and_then(|cost| cost.cost_usd))
     });
     let rejected = item.rejected.iter().map(|rejected| {
         let text = rejected.last.as_ref().map_or("", |last| last.text.as_str());
-        row(TextRowState::Rejected, &rejected.style, text, Some(&rejected.reason))
+        row(
+            &rejected.style,
+            text,
+            Some(TextSuspicion::of_rejected(rejected)),
+            rejected.cost.and_then(|cost| cost.cost_usd),
+        )
     });
     let mut rows: Vec<TextRow> = accepted.chain(rejected).collect();
     if rows.is_empty() {
-        rows.push(row(TextRowState::Unwritten, "", "", None));
+        rows.push(row("", "", None, None));
     }
     rows.sort_by(|a, b| a.style.cmp(&b.style));
     rows
 }
 
-fn cut_text(text: &str) -> String {
-    match text.char_indices().nth(MAX_ROW_CHARS) {
+/// The state of a text, and all kinds that it belongs to; `None` for an item without a text.
+fn kinds_of(suspicion: Option<&TextSuspicion>) -> (&'static str, Vec<&'static str>) {
+    let Some(suspicion) = suspicion else { return ("unwritten", vec!["unwritten"]) };
+    let state = match suspicion.state {
+        TextState::Wrong => "wrong",
+        TextState::Rejected => "rejected",
+        TextState::Unverified => "unverified",
+        TextState::Passed => "passed",
+    };
+    let others = [
+        (suspicion.needs_look(), "look"),
+        (suspicion.is_changed, "changed"),
+        (suspicion.is_doubtful, "doubtful"),
+        (suspicion.is_ambiguous, "ambiguous"),
+        (suspicion.unverified > 0 && state != "unverified", "unverified"),
+    ];
+    let others = others.into_iter().filter_map(|(is_so, kind)| is_so.then_some(kind));
+    (state, std::iter::once(state).chain(others).collect())
+}
+
+/// A text, cut at the words that something speaks against.
+fn marked_words(text: &str, signs: &[SuspicionSign]) -> Vec<(String, bool)> {
+    let finding = |sign: &SuspicionSign| CheckFinding {
+        check: CheckKind::Form,
+        verdict: Verdict::Fail,
+        reason: String::new(),
+        span: sign.span,
+    };
+    let findings: Vec<CheckFinding> = signs.iter().map(finding).collect();
+    let text = cut_text(text, MAX_ROW_CHARS);
+    let marks = TextMarks { findings: &findings, ..TextMarks::default() };
+    let mut words: Vec<(String, bool)> = Vec::new();
+    for part in cut_segments(&text, marks, 0) {
+        match words.last_mut() {
+            Some((last, is_flawed)) if *is_flawed == part.is_flawed => last.push_str(part.text),
+            _ => words.push((part.text.to_owned(), part.is_flawed)),
+        }
+    }
+    words
+}
+
+fn cut_sign(sign: SuspicionSign) -> SuspicionSign {
+    SuspicionSign { words: cut_text(&sign.words, MAX_SIGN_CHARS), ..sign }
+}
+
+fn cut_text(text: &str, most_chars: usize) -> String {
+    match text.char_indices().nth(most_chars) {
         Some((end, _)) => format!("{} …", &text[..end]),
         None => text.to_owned(),
     }
@@ -161,5 +268,13 @@ mod tests {
             choices_among(names.iter().map(String::as_str)).len()
         };
         assert_eq!([1, 2, MAX_FILTER_CHOICES, MAX_FILTER_CHOICES + 1].map(choice), [0, 2, MAX_FILTER_CHOICES, 0]);
+    }
+
+    #[test]
+    fn the_words_that_something_speaks_against_are_marked() {
+        let sign = |span| SuspicionSign { class: "bad", words: "x".into(), span };
+        let signs = [sign(Some([5, 9])), sign(None), sign(Some([0, 9])), sign(Some([90, 99]))];
+        let marked = marked_words("Turn left now.", &signs);
+        assert_eq!(marked, [("Turn left".into(), true), (" now.".into(), false)]);
     }
 }

@@ -12,11 +12,12 @@ use wayword_core::{
 };
 use wayword_formats::jsonl::InstructionRecord;
 use wayword_run::{
+    check::CheckedText,
     run_folder::{PathMap, RejectedText, WalkRecord, file},
-    settings::AskedSettings,
+    settings::{AskedSettings, Walks},
 };
 
-const SCRIPT: &str = "<script>alert('x')</script>";
+const HOSTILE: &str = "<script>alert('x')</script>";
 
 fn path(id: &str) -> WalkPath {
     let stop = |x: f64, y: f64| PathStop { position: DVec3::new(x, y, 1.5), viewpoint: None, level: Some(1) };
@@ -170,7 +171,18 @@ fn line(value: &impl Serialize) -> String {
 fn page_of(run: &Path, most_items: usize) -> (String, WrittenReport) {
     let out = run.join(file::REPORT);
     let written = write_report(run, &out, most_items).unwrap();
-    (fs::read_to_string(out).unwrap(), written)
+    (without_script(&fs::read_to_string(out).unwrap()), written)
+}
+
+fn options(most_items: usize) -> ReportOptions {
+    ReportOptions { most_items, is_single_file: false, again: CheckedAgain::default() }
+}
+
+/// A page without its own script, of which it has to have exactly one.
+fn without_script(page: &str) -> String {
+    let own = format!("<script>{SCRIPT}</script>");
+    assert_eq!(page.matches(&own).count(), 1);
+    page.replace(&own, "")
 }
 
 fn add_picture(run: &Path) {
@@ -210,27 +222,27 @@ fn a_walk_without_poses_shows_no_map_no_length_and_no_moves() {
 
 #[test]
 fn page_escapes_texts_from_files_and_models() {
-    let mut walk = walk(&format!("a{SCRIPT}"));
-    walk.originals = vec![SCRIPT.into()];
-    walk.observations[0].summary = SCRIPT.into();
+    let mut walk = walk(&format!("a{HOSTILE}"));
+    walk.originals = vec![HOSTILE.into()];
+    walk.observations[0].summary = HOSTILE.into();
     walk.observations[0].looks[0].caption = Caption {
-        text: SCRIPT.into(),
-        room: Some(SCRIPT.into()),
+        text: HOSTILE.into(),
+        room: Some(HOSTILE.into()),
         sightings: vec![ObjectSighting {
-            name: SCRIPT.into(),
+            name: HOSTILE.into(),
             ..walk.observations[0].looks[0].caption.sightings[0].clone()
         }],
-        transcript: vec![DialogueExchange::new(SCRIPT, "\" onload=\"alert(1)")],
+        transcript: vec![DialogueExchange::new(HOSTILE, "\" onload=\"alert(1)")],
         ..Caption::default()
     };
-    walk.path.target.as_mut().unwrap().name = SCRIPT.into();
+    walk.path.target.as_mut().unwrap().name = HOSTILE.into();
     let mut hostile = instruction(
-        SCRIPT,
+        HOSTILE,
         &[("alert", MentionKind::Room, 1)],
-        vec![finding(CheckKind::Form, Verdict::Unverified, SCRIPT)],
+        vec![finding(CheckKind::Form, Verdict::Unverified, HOSTILE)],
     );
-    hostile.style = SCRIPT.into();
-    hostile.provenance.writer = SCRIPT.into();
+    hostile.style = HOSTILE.into();
+    hostile.provenance.writer = HOSTILE.into();
     let run = run_of(&walk, &hostile);
     let (page, _) = page_of(run.path(), 100);
     assert!(!page.contains("<script") && !page.contains("\" onload"));
@@ -239,7 +251,20 @@ fn page_escapes_texts_from_files_and_models() {
 }
 
 #[test]
-fn page_has_a_target_for_every_link_and_loads_no_files() {
+fn the_policy_allows_the_own_script_and_no_other() {
+    let run = run_of(&walk("a"), &good());
+    let (page, _) = page_of(run.path(), 100);
+    let policy = values(&page, "content")[0];
+    let hash = data_uri::encode_base64(&Sha256::digest(SCRIPT));
+    assert!(policy.contains(&format!("script-src 'sha256-{hash}';")), "{policy}");
+    assert!(policy.starts_with("default-src 'none'; img-src 'self' file:;"), "{policy}");
+    for forbidden in ["innerHTML", "eval(", "fetch(", "http", "</script"] {
+        assert!(!SCRIPT.contains(forbidden), "{forbidden}");
+    }
+}
+
+#[test]
+fn page_has_a_target_for_every_link_and_loads_nothing_foreign() {
     let run = run_of(&WalkRecord { has_pictures: true, ..walk("a") }, &good());
     add_picture(run.path());
     let (page, _) = page_of(run.path(), 100);
@@ -254,7 +279,7 @@ fn page_has_a_target_for_every_link_and_loads_no_files() {
     }
     assert!(!page.contains("http:") && !page.contains("https:") && !page.contains("url(") && !page.contains("@import"));
     let sources = values(&page, "src");
-    assert!(sources.len() == 1 && sources.iter().all(|source| source.starts_with("data:image/jpeg;base64,")));
+    assert!(!sources.is_empty() && sources.iter().all(|source| run.path().join(source).is_file()), "{sources:?}");
 }
 
 #[test]
@@ -278,26 +303,54 @@ fn parts_name_their_frames_and_light_them_up() {
     let (page, _) = page_of(run.path(), 100);
     let (_, page) = page.split_once("<article id=\"w2\"").unwrap();
     assert!(page.contains("<bdi>Pass the mirror and turn right.</bdi> <a href=\"#w2-f0\">frames 0 to 1</a>"), "{page}");
-    assert!(page.contains("75 %") && page.contains("<span class=\"part-1\">"), "{page}");
-    for frame in ["frame lit-0\" id=\"w2-f0", "frame lit-0 lit-1\" id=\"w2-f1", "frame lit-1\" id=\"w2-f2"] {
-        assert!(page.contains(frame), "{frame}: {page}");
+    // The script lights up what has these numbers.
+    for told in [
+        "75 %",
+        "<span class=\"part\" data-part=\"1\" data-from=\"1\" data-to=\"2\">",
+        "<li class=\"part\" data-part=\"0\" data-from=\"0\" data-to=\"1\">",
+        "id=\"w2-f1\" data-frame=\"1\"",
+        "href=\"#w2-f2\" data-frame=\"2\"",
+        "data-hop=\"1\"",
+    ] {
+        assert!(page.contains(told), "{told}: {page}");
     }
     // A part with a frame that the path does not have could come from a damaged file: then no part is shown.
     let wrong = vec![parts[0].clone(), part([32, 49], [1, 7], None)];
     let run = run_of(&walk("a"), &Instruction { parts: wrong, ..good() });
     let (page, _) = page_of(run.path(), 100);
     let (_, page) = page.split_once("<article id=\"w2\"").unwrap();
-    assert!(!page.contains("part-") && !page.contains("lit-"), "{page}");
+    assert!(!page.contains("data-part"), "{page}");
 }
 
 #[test]
-fn pictures_are_within_the_page() {
+fn pictures_lie_beside_the_page_and_move_with_it() {
     let record = WalkRecord { has_pictures: true, ..walk("a") };
     let run = run_of(&record, &good());
     add_picture(run.path());
     let (page, written) = page_of(run.path(), 100);
     assert_eq!((written.pictures, written.pictures_left_out), (1, 2));
-    assert_eq!(values(&page, "src").len(), 1);
+    let sources = values(&page, "src");
+    assert!(sources.len() == 1 && sources[0].starts_with("report-files/"), "{sources:?}");
+    assert_eq!(fs::read(run.path().join(sources[0])).unwrap(), fs::read(run.path().join("frames/a_1.jpg")).unwrap());
+    for told in ["width=\"8\"", "height=\"6\"", "loading=\"lazy\""] {
+        assert!(page.contains(told), "{told}");
+    }
+    // Without pictures the folder goes.
+    fs::remove_dir_all(run.path().join(file::FRAMES)).unwrap();
+    page_of(run.path(), 100);
+    assert!(!run.path().join("report-files").exists());
+}
+
+#[test]
+fn a_single_file_contains_its_pictures() {
+    let run = run_of(&WalkRecord { has_pictures: true, ..walk("a") }, &good());
+    add_picture(run.path());
+    let out = run.path().join("one.html");
+    write_report_as(run.path(), &out, &ReportOptions { is_single_file: true, ..options(100) }).unwrap();
+    let page = fs::read_to_string(out).unwrap();
+    let sources = values(&page, "src");
+    assert!(sources.len() == 1 && sources[0].starts_with("data:image/jpeg;base64,"), "{sources:?}");
+    assert!(!run.path().join("one-files").exists() && page.contains("img-src data:;"));
 }
 
 #[test]
@@ -327,13 +380,69 @@ fn hostile_frames_and_spans_do_no_harm() {
     let (page, _) = page_of(run.path(), 100);
     assert!(page.contains("The positions of this path cannot be drawn as a map."));
     assert!(page.contains("Pass the mirror and turn right. Stop at the lamp."));
-    for (span, frame) in [([usize::MAX, 0], 0), ([0, 4], usize::MAX)] {
+    // As after somebody changed the text by hand.
+    for (span, frame) in [([usize::MAX, 0], 0), ([0, 4], usize::MAX), ([0, 999], 0)] {
         let mut bad = good();
         bad.mentions = vec![TextMention { span, kind: MentionKind::Room, frame }];
+        bad.findings = vec![CheckFinding { span: Some(span), ..finding(CheckKind::Turns, Verdict::Fail, "wrong") }];
         let run = run_of(&wild, &bad);
-        let refused = write_report(run.path(), &run.path().join(file::REPORT), 100).unwrap_err().to_string();
-        assert!(refused.contains("line 1: mentions[0] points outside"), "{refused}");
+        assert!(page_of(run.path(), 100).0.contains("Pass the mirror and turn right. Stop at the lamp."));
     }
+}
+
+#[test]
+fn a_text_that_fails_when_it_is_checked_again_comes_first_with_the_reason() {
+    let run = long_run(4, &[3], &[]);
+    let checked = CheckedText {
+        path: "item-2".into(),
+        text: String::new(),
+        verdict: Verdict::Fail,
+        world: "closed",
+        findings: vec![CheckFinding {
+            span: Some([9, 15]),
+            ..finding(CheckKind::Landmarks, Verdict::Fail, "no frame of the path shows \"mirror\"")
+        }],
+        route: None,
+        turn_gain: None,
+        ambiguity: None,
+        parts: Vec::new(),
+        coverage_of_walk: Vec::new(),
+        doubted: None,
+        style: None,
+    };
+    let again = CheckedAgain {
+        texts: BTreeMap::from([(3, checked)]),
+        checked_against: vec!["labels".into()],
+        changed: BTreeSet::new(),
+    };
+    let out = run.path().join(file::REPORT);
+    let written = write_report_as(run.path(), &out, &ReportOptions { again, ..options(100) }).unwrap();
+    assert_eq!(written.wrong, 1);
+    assert!(written.to_string().ends_with("; 1 text of the dataset fails a check"), "{written}");
+    let page = fs::read_to_string(out).unwrap();
+    let row = page.split("<li class=\"row ").nth(1).unwrap();
+    for told in
+        ["wrong\" data-kinds=\"wrong look\"", "✗ fails now", "item-2", "no frame of the path shows &quot;mirror&quot;"]
+    {
+        assert!(row.contains(told), "{told}: {row}");
+    }
+    assert!(row.contains("<span class=\"flaw\">mirror</span>"), "{row}");
+    assert!(page.contains("texts checked again against labels") && page.contains("It passed when it was written"));
+}
+
+#[test]
+fn a_run_that_is_not_finished_says_so() {
+    let run = long_run(4, &[], &[]);
+    let asked = AskedSettings { walks: Walks { paths: Some(9), ..Walks::default() }, ..AskedSettings::default() };
+    let config = |asked: AskedSettings| toml::to_string(&asked.resolve().unwrap()).unwrap();
+    fs::write(run.path().join(file::CONFIG), config(asked)).unwrap();
+    let (page, _) = page_of(run.path(), 100);
+    assert!(page.contains("<title>Wayword: 4 of 9 paths so far, house</title>"), "{page}");
+    assert!(page.contains("<h1>Wayword report: 4 of 9 paths so far") && page.contains("The run is not finished."));
+    let asked = AskedSettings { walks: Walks { paths: Some(4), ..Walks::default() }, ..AskedSettings::default() };
+    fs::write(run.path().join(file::CONFIG), config(asked)).unwrap();
+    let (page, _) = page_of(run.path(), 100);
+    assert!(page.contains("<title>Wayword: 4 paths, house</title>") && !page.contains("so far"));
 }
 
 #[test]
@@ -384,10 +493,10 @@ fn long_run(items: usize, rejected: &[usize], unverified: &[usize]) -> tempfile:
 
 /// The pages of a report by their names, and the overview's name.
 fn pages_of(run: &Path, most_items: usize, per_page: usize) -> (BTreeMap<String, String>, WrittenReport) {
-    let written = write_paged(run, &run.join(file::REPORT), most_items, per_page).unwrap();
+    let written = write_paged(run, &run.join(file::REPORT), &options(most_items), per_page).unwrap();
     let name = |page: &String| Path::new(page).file_name().unwrap().to_str().unwrap().to_owned();
     let all = std::iter::once(&written.page).chain(&written.pages);
-    (all.map(|page| (name(page), fs::read_to_string(page).unwrap())).collect(), written)
+    (all.map(|page| (name(page), without_script(&fs::read_to_string(page).unwrap()))).collect(), written)
 }
 
 /// The text after each opening, up to the end of the line.
@@ -419,11 +528,16 @@ fn the_list_shows_text_scene_and_verdict_of_every_item_and_can_be_filtered() {
     ]) {
         assert!(told.iter().all(|told| row.contains(told)), "{row}");
     }
-    // Without a script: the choice hides the rows of another kind.
-    for filter in ["id=\"state-rejected\"", "id=\"scene-2\"", ":root:has(#scene-2:checked) .row:not(.scene-2)"] {
-        assert!(page.contains(filter), "{filter}");
+    // The script hides the rows that have not what the reader asks for.
+    for told in [
+        "data-show=\"rejected\" class=\"rejected\"><b>1</b> rejected",
+        "data-show=\"look\" class=\"look\"><b>2</b> need a look",
+        "<option value=\"2\">scene-2</option>",
+        "data-kinds=\"rejected look\" data-scene=\"1\" data-place=\"4\"",
+    ] {
+        assert!(page.contains(told), "{told}");
     }
-    assert!(!page.contains("<script") && !page.contains("id=\"style-0\""), "one style is no choice");
+    assert!(!page.contains("by-style"), "one style is no choice");
 }
 
 #[test]
@@ -439,7 +553,7 @@ fn list_shows_failed_items_with_their_reasons() {
     assert_eq!(rows.len(), 4);
     assert!(rows[0].starts_with("failed") && rows[0].contains("the model gave nothing"), "{}", rows[0]);
     assert!(rows[1].contains("new") && rows[1].contains("lost: the simulator died"), "{}", rows[1]);
-    assert!(page.contains("2 items failed"));
+    assert!(page.contains("<b>2</b> failed"));
 }
 
 #[test]
@@ -474,16 +588,16 @@ fn pages_of_another_run_are_neither_replaced_nor_removed() {
     let (one, other) = (long_run(7, &[], &[]), long_run(7, &[], &[]));
     let out = one.path().join("page.html");
     let first = one.path().join("page-1.html");
-    write_paged(one.path(), &out, 100, 3).unwrap();
+    write_paged(one.path(), &out, &options(100), 3).unwrap();
     let before = [&out, &first].map(|file| fs::read(file).unwrap());
-    let refused = write_paged(other.path(), &out, 100, 3).unwrap_err().to_string();
+    let refused = write_paged(other.path(), &out, &options(100), 3).unwrap_err().to_string();
     assert!(refused.contains("page-1.html") && refused.contains("--out"), "{refused}");
     assert_eq!([&out, &first].map(|file| fs::read(file).unwrap()), before);
     // A report of one page needs no numbered pages, and removes none.
-    write_paged(other.path(), &out, 2, 3).unwrap();
+    write_paged(other.path(), &out, &options(2), 3).unwrap();
     assert_eq!(fs::read(&first).unwrap(), before[1]);
     // Pages of the same run are replaced.
-    write_paged(one.path(), &out, 100, 3).unwrap();
+    write_paged(one.path(), &out, &options(100), 3).unwrap();
 }
 
 #[test]
@@ -492,7 +606,7 @@ fn frames_are_counted_from_0_as_on_the_terminal() {
     let (page, _) = page_of(run.path(), 100);
     let (_, page) = page.split_once("<article id=\"w2\"").unwrap();
     assert_eq!(after(page, "<li class=\"frame\" id=\"").len(), 3);
-    for told in ["id=\"w2-f0\"", "<span class=\"badge\">0</span>", "aria-label=\"Frame 0\"", "from frame 0 to frame 2"]
+    for told in ["id=\"w2-f0\"", "class=\"badge\" href=\"#w2-f0\"", "aria-label=\"Frame 0\"", "from frame 0 to frame 2"]
     {
         assert!(page.contains(told), "{told}");
     }
@@ -504,7 +618,7 @@ fn print_is_bounded() {
     let run = long_run(120, &[], &[]);
     let (pages, _) = pages_of(run.path(), 1000, 50);
     let overview = &pages["report.html"];
-    assert!(overview.contains(".row:nth-child(n + 101) { display: none; }"));
+    assert!(overview.contains(".row:nth-child(n + 101) { display: none; }"), "the sheet has the number");
     assert!(overview.contains("The first 100 of 120 texts are printed."));
     assert!(pages.iter().all(|(_, page)| page.matches("<article ").count() <= 50));
 }

@@ -1,16 +1,18 @@
 //! The instructions of an item as the page shows them: text with its mentions, verdict, checks and provenance.
 
 use super::{
-    item_record::{ItemRecord, TextState, state_from_verdict},
+    item_record::{AcceptedText, ItemRecord, TextState},
     link_targets::{LinkTargets, frame_anchor},
     palette::{FrameColour, frame_colour},
+    provenance_words::{cost_words, describe_ambiguity, describe_provenance, describe_round},
     spans::{TextMarks, TextSegment, cut_segments},
+    suspicion::{TextSuspicion, current_findings, describe_doubt, fails_now},
 };
 use serde::Serialize;
 use wayword_core::{
-    CheckFinding, ChosenBy, Instruction, InstructionPart, MentionKind, RefinedRound, TextMention, TextProvenance,
-    TextSelection, Verdict, WrittenDraft,
+    CheckFinding, Instruction, InstructionPart, MentionKind, TextDoubt, TextMention, Verdict, WrittenDraft,
 };
+use wayword_run::check::{CheckedAgain, SecondCheck};
 
 /// Most findings of an instruction that are shown.
 const MAX_SHOWN_FINDINGS: usize = 100;
@@ -21,9 +23,6 @@ const MAX_SHOWN_DRAFTS: usize = 32;
 /// Most parts of an instruction that are shown.
 const MAX_SHOWN_PARTS: usize = 100;
 
-/// How many parts of an item light up with their frames. The style sheet has rules for so many.
-pub(super) const MAX_LIT_PARTS: usize = 64;
-
 /// An instruction.
 #[derive(Debug, Serialize)]
 pub(super) struct TextView {
@@ -33,13 +32,22 @@ pub(super) struct TextView {
     reason: Option<String>,
     /// Empty if no text could be written.
     segments: Vec<SegmentView>,
-    pub(super) parts: Vec<PartView>,
+    parts: Vec<PartView>,
     findings: Vec<FindingView>,
+    /// Whether the findings are those of a second check, in which the text fails.
+    fails_now: bool,
+    /// Whether somebody changed it after the run, and whether it was checked again.
+    is_changed: bool,
+    is_checked: bool,
+    /// The words that the follower doubts.
+    doubts: Vec<DoubtView>,
     /// How many of its claims could not be decided.
     unverified: usize,
     /// The possible meanings of the text, if there are several.
     ambiguity: Option<String>,
     provenance: Option<String>,
+    /// What it cost.
+    cost: Option<String>,
     /// The texts of a model that were not kept.
     drafts: Vec<DraftView>,
     /// What writing again after a follower's walk gained.
@@ -49,18 +57,26 @@ pub(super) struct TextView {
 /// A text that was not kept.
 #[derive(Debug, Serialize)]
 struct DraftView {
-    text: String,
+    /// The text, cut at the words that a check found wrong.
+    said: Vec<(String, bool)>,
     reasons: Vec<String>,
+}
+
+/// Words that the follower doubts.
+#[derive(Debug, Serialize)]
+struct DoubtView {
+    grade: &'static str,
+    words: String,
+    reason: String,
 }
 
 /// A part of an instruction with its frames.
 #[derive(Debug, Serialize)]
-pub(super) struct PartView {
-    /// Its number among the parts of all texts of the item, by which a style sheet finds its frames; `None` beyond
-    /// [`MAX_LIT_PARTS`].
-    pub(super) key: Option<usize>,
+struct PartView {
+    /// Its number among the parts of all texts of the item, by which the script finds its words.
+    key: usize,
     words: String,
-    pub(super) frames: [usize; 2],
+    frames: [usize; 2],
     /// The anchor of its first frame; `None` if the page does not show it.
     anchor: Option<String>,
     percent: Option<u8>,
@@ -72,6 +88,8 @@ struct SegmentView {
     text: String,
     /// The key of its part.
     part: Option<usize>,
+    /// The frames of its part.
+    frames: Option<[usize; 2]>,
     is_flawed: bool,
     link: Option<LinkView>,
     /// Whether the mention of `link` ends here.
@@ -104,20 +122,8 @@ struct FindingView {
 }
 
 /// An item's instructions, accepted and rejected.
-pub(super) fn text_views(record: &ItemRecord, places: LinkTargets<'_>) -> Vec<TextView> {
-    let accepted = record.accepted.iter().map(|instruction| TextView {
-        style: instruction.style.clone(),
-        state: state_from_verdict(instruction.verdict),
-        reason: None,
-        segments: segment_views(instruction, places),
-        parts: part_views(instruction, places),
-        findings: finding_views(instruction),
-        unverified: count_unverified(instruction),
-        ambiguity: describe_ambiguity(instruction),
-        provenance: Some(describe_provenance(&instruction.provenance)),
-        drafts: draft_views(&instruction.provenance.drafts),
-        refined: instruction.provenance.refined.iter().map(describe_round).collect(),
-    });
+pub(super) fn text_views(record: &ItemRecord, again: &CheckedAgain, places: LinkTargets<'_>) -> Vec<TextView> {
+    let accepted = record.accepted.iter().map(|text| accepted_view(text, again.of_line(text.line), places));
     let rejected = record.rejected.iter().map(|rejected| TextView {
         style: rejected.style.clone(),
         state: TextState::Rejected,
@@ -125,8 +131,13 @@ pub(super) fn text_views(record: &ItemRecord, places: LinkTargets<'_>) -> Vec<Te
         segments: rejected.last.as_ref().map(|last| segment_views(last, places)).unwrap_or_default(),
         parts: rejected.last.as_ref().map(|last| part_views(last, places)).unwrap_or_default(),
         findings: rejected.last.as_ref().map(finding_views).unwrap_or_default(),
-        unverified: rejected.last.as_ref().map_or(0, count_unverified),
+        fails_now: false,
+        is_changed: false,
+        is_checked: false,
+        doubts: Vec::new(),
+        unverified: 0,
         ambiguity: rejected.last.as_ref().and_then(describe_ambiguity),
+        cost: rejected.cost.as_ref().map(cost_words),
         provenance: rejected.last.as_ref().map(|last| describe_provenance(&last.provenance)),
         drafts: draft_views(&rejected.drafts),
         refined: Vec::new(),
@@ -137,20 +148,60 @@ pub(super) fn text_views(record: &ItemRecord, places: LinkTargets<'_>) -> Vec<Te
     texts
 }
 
+fn accepted_view(text: &AcceptedText, second: SecondCheck<'_>, places: LinkTargets<'_>) -> TextView {
+    let stored = &text.instruction;
+    let judged = (stored.text.as_str(), stored.verdict, &stored.findings[..]);
+    let suspicion = TextSuspicion::of_accepted(judged, stored.ambiguity.as_ref(), second);
+    let fails_now = fails_now(stored.verdict, second);
+    let mut shown = stored.clone();
+    if fails_now || second.is_changed {
+        // What the run kept about the text may be about other words.
+        shown.findings = current_findings(stored.verdict, &stored.findings, second).to_vec();
+        shown.parts = second.text.map(|again| again.parts.clone()).unwrap_or_default();
+        shown.ambiguity = second.text.and_then(|again| again.ambiguity.clone());
+    }
+    if second.is_changed {
+        shown.mentions.clear();
+    }
+    let doubts = second.text.and_then(|again| again.doubted.as_ref()).map_or(&[][..], |doubted| &doubted.doubts);
+    let doubt_view = |doubt: &TextDoubt| DoubtView {
+        grade: doubt.grade.name(),
+        words: describe_doubt(&shown.text, doubt),
+        reason: doubt.reason.clone(),
+    };
+    TextView {
+        style: shown.style.clone(),
+        state: suspicion.state,
+        reason: None,
+        segments: segment_views(&shown, places),
+        parts: part_views(&shown, places),
+        findings: finding_views(&shown),
+        fails_now,
+        is_changed: second.is_changed,
+        is_checked: second.text.is_some(),
+        doubts: doubts.iter().map(doubt_view).collect(),
+        unverified: suspicion.unverified,
+        ambiguity: describe_ambiguity(&shown),
+        cost: text.cost.as_ref().map(cost_words),
+        provenance: Some(describe_provenance(&shown.provenance)),
+        drafts: draft_views(&shown.provenance.drafts),
+        refined: shown.provenance.refined.iter().map(describe_round).collect(),
+    }
+}
+
 /// Gives the parts of all texts of an item their keys.
 fn number_parts(texts: &mut [TextView]) {
     let mut first = 0;
     for text in texts {
-        let key = |number: usize| Some(first + number).filter(|key| *key < MAX_LIT_PARTS);
-        text.parts.iter_mut().enumerate().for_each(|(number, part)| part.key = key(number));
-        text.segments.iter_mut().for_each(|segment| segment.part = segment.part.and_then(key));
+        text.parts.iter_mut().enumerate().for_each(|(number, part)| part.key = first + number);
+        text.segments.iter_mut().for_each(|segment| segment.part = segment.part.map(|number| first + number));
         first += text.parts.len();
     }
 }
 
 fn part_views(instruction: &Instruction, places: LinkTargets<'_>) -> Vec<PartView> {
     let view = |part: &InstructionPart| PartView {
-        key: None,
+        key: 0,
         words: instruction.text.get(part.span[0]..part.span[1]).unwrap_or_default().to_owned(),
         frames: part.frames,
         anchor: (part.frames[0] < places.shown).then(|| frame_anchor(places.item, part.frames[0])),
@@ -166,10 +217,6 @@ fn shown_parts<'a>(instruction: &'a Instruction, places: LinkTargets<'_>) -> &'a
     if parts.iter().all(fits) { parts } else { &[] }
 }
 
-fn count_unverified(instruction: &Instruction) -> usize {
-    instruction.findings.iter().filter(|finding| finding.verdict == Verdict::Unverified).count()
-}
-
 fn segment_views(instruction: &Instruction, places: LinkTargets<'_>) -> Vec<SegmentView> {
     let Instruction { text, mentions, findings, .. } = instruction;
     let parts = shown_parts(instruction, places);
@@ -177,6 +224,7 @@ fn segment_views(instruction: &Instruction, places: LinkTargets<'_>) -> Vec<Segm
     let segment_view = |segment: TextSegment<'_>| SegmentView {
         text: segment.text.to_owned(),
         part: segment.part,
+        frames: segment.part.and_then(|number| parts.get(number)).map(|part| part.frames),
         is_flawed: segment.is_flawed,
         link: segment.mention.map(view),
         is_last: segment.mention.is_some_and(|mention| segment.ends.contains(&mention)),
@@ -236,58 +284,13 @@ fn finding_views(instruction: &Instruction) -> Vec<FindingView> {
     instruction.findings.iter().take(MAX_SHOWN_FINDINGS).map(view).collect()
 }
 
-/// The possible meanings of an instruction, if there are several, and the thing by which its own end differs from the others.
-fn describe_ambiguity(instruction: &Instruction) -> Option<String> {
-    let ambiguity = instruction.ambiguity.as_ref()?;
-    let meanings = ambiguity.to_sentence()?;
-    Some(match &ambiguity.told_apart_by {
-        Some(by) => format!("{meanings}; only at its own end there is: {by}"),
-        None => meanings,
-    })
-}
-
 /// The drafts that the page shows.
 fn draft_views(drafts: &[WrittenDraft]) -> Vec<DraftView> {
-    let view = |draft: &WrittenDraft| DraftView { text: draft.text.clone(), reasons: draft.reasons.clone() };
+    let said = |draft: &WrittenDraft| {
+        let marks = TextMarks { findings: &draft.findings, ..TextMarks::default() };
+        let cut = cut_segments(&draft.text, marks, 0).into_iter();
+        cut.map(|part| (part.text.to_owned(), part.is_flawed)).collect()
+    };
+    let view = |draft: &WrittenDraft| DraftView { said: said(draft), reasons: draft.reasons.clone() };
     drafts.iter().take(MAX_SHOWN_DRAFTS).map(view).collect()
-}
-
-/// What a round of writing again gained.
-fn describe_round(round: &RefinedRound) -> String {
-    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
-    let before = percent(round.before);
-    match (round.after, round.kept) {
-        (Some(after), true) => {
-            format!("a follower arrived with {before}, by the text written again with {}", percent(after))
-        }
-        (Some(after), false) => {
-            format!("a follower arrives with {before}; the text written again had {} and was not kept", percent(after))
-        }
-        (None, _) => format!("a follower arrives with {before}; the text written again failed its checks"),
-    }
-}
-
-fn describe_provenance(provenance: &TextProvenance) -> String {
-    let TextProvenance { wayword, asker, answerer, summariser, writer, checked_against, seed, style_hash, .. } =
-        provenance;
-    let repairs = match provenance.repairs {
-        0 => "at the first attempt".to_owned(),
-        1 => "after 1 repair".to_owned(),
-        more => format!("after {more} repairs"),
-    };
-    let after = provenance.finished_for.as_ref().map_or_else(String::new, |first| format!(" after {first} had failed"));
-    let chosen = provenance.chosen.as_ref().map_or_else(String::new, describe_choice);
-    let prompts = provenance.prompts_hash.as_ref().map_or_else(String::new, |hash| format!(", prompts {hash}"));
-    format!(
-        "Wayword {wayword}: {asker} asked, {answerer} answered, {summariser} summarised, {writer} wrote{after}, {repairs}{chosen}; \
-         checked against {checked_against}; seed {seed}, style {style_hash}{prompts}"
-    )
-}
-
-fn describe_choice(chosen: &TextSelection) -> String {
-    let by = match chosen.by {
-        ChosenBy::Follower => "by the follower",
-        ChosenBy::Checks => "by the checks alone",
-    };
-    format!(", chosen among {} texts ({} passed) {by}", chosen.among, chosen.passed)
 }

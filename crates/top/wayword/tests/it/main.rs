@@ -38,6 +38,7 @@ mod outputs;
 mod platforms;
 mod real_data;
 mod recording;
+mod report_again;
 mod resume;
 mod robustness;
 mod robustness_elsewhere;

@@ -64,7 +64,7 @@ fn a_walk_with_poses_becomes_instructions_with_turns_that_hold() {
     let page = stage.building.wayword(&["report", "--run", "run"]);
     assert_eq!(page.code, Some(0), "{page:?}");
     let page = fs::read_to_string(stage.building.path("run/report.html")).unwrap();
-    assert!(page.contains("8.0 m") && page.contains("data:image/jpeg"));
+    assert!(page.contains("8.0 m") && page.contains("src=\"report-files/"));
 }
 
 #[test]

@@ -34,7 +34,9 @@ fn a_study_is_translated_planned_and_preregistered() {
     assert_eq!(made.code, Some(0), "{made:?}");
     assert!(std::fs::read_to_string(folder.join("study/texts.toml")).unwrap().contains("Weiter"));
 
-    for (flag, value) in [("--effect", "0"), ("--effect", "100"), ("--base", "100"), ("--person-sd", "-1"), ("--routes", "0")] {
+    for (flag, value) in
+        [("--effect", "0"), ("--effect", "100"), ("--base", "100"), ("--person-sd", "-1"), ("--routes", "0")]
+    {
         let flags = format!("{flag}={value}");
         let refused = wayword(folder, &["study", "plan", "study", &flags]);
         assert!(refused.refused().contains(flag), "{refused:?}");
@@ -42,7 +44,11 @@ fn a_study_is_translated_planned_and_preregistered() {
     let sheet = ["study", "plan", "study", "--effect", "30", "--out", "sheet.md"];
     let planned = wayword(folder, &sheet);
     assert!(planned.out.contains("find 30 points"), "{planned:?}");
-    assert!(std::fs::read_to_string(folder.join("sheet.md")).unwrap().contains("Smallest difference of interest: 30 points"));
+    assert!(
+        std::fs::read_to_string(folder.join("sheet.md"))
+            .unwrap()
+            .contains("Smallest difference of interest: 30 points")
+    );
     let again = wayword(folder, &sheet);
     assert!(again.code == Some(1) && again.err.contains("sheet.md"), "{again:?}");
 }
