@@ -282,6 +282,8 @@ fn load_templates() -> Result<Environment<'static>, minijinja::Error> {
     templates.add_template("foot.html", include_str!("foot.html"))?;
     templates.add_template("doubts.css", include_str!("doubts/style.css"))?;
     templates.add_template("doubts.html", include_str!("doubts/page.html"))?;
+    templates.add_template("doubts_leaf.html", include_str!("doubts/leaf.html"))?;
+    templates.add_template("doubted_text.html", include_str!("doubts/text.html"))?;
     templates.add_template("replay.html", include_str!("replay/replay.html"))?;
     Ok(templates)
 }

@@ -3,10 +3,13 @@
 #[cfg(test)]
 mod tests;
 
-use super::{load_templates, replace_page, template_error};
+use super::{link_targets::item_anchor, load_templates, replace_page, report_files::ReportFiles, template_error};
 use minijinja::{Value, context};
 use serde::Serialize;
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
 use wayword_core::{
     DoubtCause, DoubtGrade, TextDoubt,
     doubt::{spans_overlap, split_at_doubts},
@@ -19,8 +22,8 @@ use wayword_run::{
 
 /// The version of the format of the JSON file.
 const FORMAT_VERSION: u32 = 1;
-/// Most texts that the page shows. The JSON file has all.
-const MAX_SHOWN_TEXTS: usize = 1000;
+/// Texts on a page. With more of them, the page is a list, and the details are on numbered pages beside it.
+const TEXTS_PER_PAGE: usize = 500;
 
 /// Texts with their doubts, as the file has them.
 #[derive(Debug, Serialize)]
@@ -131,40 +134,124 @@ pub fn write_json(out: &Path, highlights: &DoubtHighlights) -> Result<(), Comman
     })
 }
 
-/// Writes the page.
+/// Writes the page, with numbered pages beside it where there are many texts; the most doubtful texts come first.
 ///
 /// # Errors
-/// When it cannot be written.
+/// When a page cannot be written, or another report's file is where a numbered page belongs.
 pub fn write_page(out: &Path, highlights: &DoubtHighlights) -> Result<(), CommandError> {
-    let page = highlights_html(highlights)?;
-    replace_page(out, |take| take(&page))
+    write_paged(out, highlights, TEXTS_PER_PAGE)
 }
 
-/// The page as HTML.
-///
-/// # Errors
-/// When it cannot be drawn, which is a bug.
-fn highlights_html(highlights: &DoubtHighlights) -> Result<String, CommandError> {
-    let DoubtHighlights { checked_against, summary, texts, .. } = highlights;
-    let grade_label = |grade: DoubtGrade| (grade.name(), grade.reader_label());
-    let tallies = |names: &[(&str, &str)], by_name: &BTreeMap<&str, DoubtTally>| -> Vec<Value> {
-        let row = |(name, told): &(&str, &str)| {
-            let tally = by_name.get(name).copied().unwrap_or_default();
-            context! { name, told, share => share_text(tally.words, summary.words), ..Value::from_serialize(tally) }
+fn write_paged(out: &Path, highlights: &DoubtHighlights, per_page: usize) -> Result<(), CommandError> {
+    // They are pages of their own report, so its file stands for the run.
+    let files = ReportFiles::new(out, out, highlights.texts.len(), per_page);
+    files.refuse_to_replace_others()?;
+    let list = DoubtList::from_highlights(highlights, &files);
+    for page in 1..=files.page_count() {
+        let drawn = list.draw_leaf(page, &files)?;
+        replace_page(&files.page_file(page), |take| take(&drawn))?;
+    }
+    let drawn = list.draw_first(highlights, &files)?;
+    replace_page(out, |take| take(&drawn))?;
+    files.remove_older_pages()
+}
+
+/// The texts, the most doubtful first, as the templates show them.
+struct DoubtList {
+    texts: Vec<Value>,
+    styles: Vec<String>,
+}
+
+impl DoubtList {
+    fn from_highlights(highlights: &DoubtHighlights, files: &ReportFiles<'_>) -> Self {
+        let mut order: Vec<(usize, &DoubtedText)> = highlights.texts.iter().enumerate().collect();
+        order.sort_by(|(_, a), (_, b)| doubtfulness(b).total_cmp(&doubtfulness(a)));
+        let styles: BTreeSet<&str> = highlights.texts.iter().filter_map(|text| text.style.as_deref()).collect();
+        let styles: Vec<String> = styles.into_iter().map(str::to_owned).collect();
+        let view = |(at, (place, text)): (usize, (usize, &DoubtedText))| {
+            let style_at = text.style.as_ref().and_then(|style| styles.binary_search(style).ok());
+            let href = files.walk_address(at, &item_anchor(at + 1));
+            context! { number => at + 1, place, style_at, href, ..text_view(text) }
         };
-        names.iter().map(row).collect()
-    };
-    let causes = DoubtCause::ALL.map(|cause| (cause.name(), describe_cause(cause)));
-    let view = context! {
-        checked_against,
-        summary => Value::from_serialize(summary),
-        grades => tallies(&DoubtGrade::ALL.map(grade_label), &summary.grades),
-        causes => tallies(&causes, &summary.causes),
-        texts => texts.iter().take(MAX_SHOWN_TEXTS).map(text_view).collect::<Vec<_>>(),
-        left_out => texts.len().saturating_sub(MAX_SHOWN_TEXTS),
-    };
+        let texts = order.into_iter().enumerate().map(view).collect();
+        // One style is no choice.
+        Self { texts, styles: if styles.len() > 1 { styles } else { Vec::new() } }
+    }
+
+    fn draw_first(&self, highlights: &DoubtHighlights, files: &ReportFiles<'_>) -> Result<String, CommandError> {
+        let DoubtHighlights { checked_against, summary, texts, .. } = highlights;
+        let grade_label = |grade: DoubtGrade| (grade.name(), grade.reader_label());
+        let tallies = |names: &[(&str, &str)], by_name: &BTreeMap<&str, DoubtTally>| -> Vec<Value> {
+            let row = |(name, told): &(&str, &str)| {
+                let tally = by_name.get(name).copied().unwrap_or_default();
+                context! { name, told, share => share_text(tally.words, summary.words), ..Value::from_serialize(tally) }
+            };
+            names.iter().map(row).collect()
+        };
+        let causes = DoubtCause::ALL.map(|cause| (cause.name(), describe_cause(cause)));
+        let kinds = [("likely", "likely wrong"), ("uncertain", "uncertain"), ("clean", "without a doubt")];
+        let of_kind = |(kind, label)| (kind, label, texts.iter().filter(|text| text_kind(text) == kind).count());
+        let unfollowed = ("unfollowed", "not followed", summary.unfollowed);
+        let kinds: Vec<Value> = kinds
+            .map(of_kind)
+            .into_iter()
+            .chain([unfollowed])
+            .filter(|(_, _, texts)| *texts > 0)
+            .map(|(kind, label, texts)| context! { kind, label, texts })
+            .collect();
+        let view = context! {
+            checked_against,
+            kinds,
+            summary => Value::from_serialize(summary),
+            grades => tallies(&DoubtGrade::ALL.map(grade_label), &summary.grades),
+            causes => tallies(&causes, &summary.causes),
+            texts => self.texts,
+            styles => self.styles,
+            first => 1,
+            last => 0,
+            pager => files.pager_for_page(None),
+            pager_name => "Pages",
+        };
+        draw("doubts.html", view)
+    }
+
+    /// Draws a numbered page (from 1).
+    fn draw_leaf(&self, page: usize, files: &ReportFiles<'_>) -> Result<String, CommandError> {
+        let shown = files.walks_on_page(page);
+        let view = context! {
+            page_of => files.page_of(),
+            first => shown.start + 1,
+            last => shown.end,
+            all => self.texts.len(),
+            texts => self.texts[shown].to_vec(),
+            pager => files.pager_for_page(Some(page)),
+            pager_name => "Pages",
+        };
+        draw("doubts_leaf.html", view)
+    }
+}
+
+fn draw(template: &str, view: Value) -> Result<String, CommandError> {
     let templates = load_templates().map_err(template_error)?;
-    templates.get_template("doubts.html").and_then(|page| page.render(view)).map_err(template_error)
+    templates.get_template(template).and_then(|page| page.render(view)).map_err(template_error)
+}
+
+/// How doubtful a text is: the higher, the earlier it comes.
+fn doubtfulness(text: &DoubtedText) -> f64 {
+    let worth = |doubt: &TextDoubt| match doubt.grade {
+        DoubtGrade::Likely => 1000.0 + 10.0 * doubt.best_gain(),
+        DoubtGrade::Uncertain => 1.0 + doubt.best_gain(),
+    };
+    text.doubts.iter().map(worth).sum()
+}
+
+/// The kind of a text, by which a reader can filter.
+fn text_kind(text: &DoubtedText) -> &'static str {
+    match text.doubts.is_empty() {
+        true => "clean",
+        false if text.has_grade(DoubtGrade::Likely) => "likely",
+        false => "uncertain",
+    }
 }
 
 /// A cause of doubts, explained to readers.
@@ -198,5 +285,6 @@ fn text_view(text: &DoubtedText) -> Value {
         })
         .collect();
     let DoubtedText { path, style, world, unfollowed, .. } = text;
-    context! { path, style, world, unfollowed, parts, doubts => number }
+    let length = text.text.chars().count();
+    context! { path, style, world, unfollowed, parts, length, kind => text_kind(text), doubts => number }
 }

@@ -28,6 +28,49 @@ fn highlights(text: &str, doubts: Vec<TextDoubt>) -> DoubtHighlights {
     DoubtHighlights::from_report(CheckReport { doubted: vec![text], ..CheckReport::default() }, None)
 }
 
+/// The page of a few texts.
+fn highlights_html(highlights: &DoubtHighlights) -> Result<String, CommandError> {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("doubts.html");
+    write_page(&out, highlights)?;
+    Ok(std::fs::read_to_string(out).unwrap().replace(&format!("<script>{}</script>", super::super::SCRIPT), ""))
+}
+
+#[test]
+fn the_most_doubtful_texts_come_first_and_all_are_on_pages() {
+    let text = |path: &str, doubts: Vec<TextDoubt>| {
+        let mut texts = highlights(TEXT, doubts).texts;
+        texts[0].path = path.into();
+        texts.remove(0)
+    };
+    let doubted = vec![
+        text("clean", Vec::new()),
+        text("unsure", vec![doubt([12, 16], DoubtGrade::Uncertain, &[])]),
+        text("wrong", vec![doubt([0, 9], DoubtGrade::Likely, &[Some("Turn right")])]),
+    ];
+    let all = DoubtHighlights::from_report(CheckReport { doubted, ..CheckReport::default() }, None);
+    let order = |page: &str| {
+        let mut places: Vec<(usize, &str)> = ["clean", "unsure", "wrong"]
+            .into_iter()
+            .filter_map(|id| Some((page.find(&format!("<bdi>{id}</bdi>"))?, id)))
+            .collect();
+        places.sort_unstable();
+        places.into_iter().map(|(_, id)| id).collect::<Vec<_>>()
+    };
+    assert_eq!(order(&highlights_html(&all).unwrap()), ["wrong", "unsure", "clean"]);
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("doubts.html");
+    write_paged(&out, &all, 2).unwrap();
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    let (list, first, second) = (read("doubts.html"), read("doubts-1.html"), read("doubts-2.html"));
+    assert_eq!(order(&list), ["wrong", "unsure", "clean"]);
+    assert_eq!((order(&first), order(&second)), (vec!["wrong", "unsure"], vec!["clean"]));
+    assert!(list.contains("href=\"doubts-2.html#w3\"") && second.contains("<article id=\"w3\""));
+    // With fewer texts the numbered pages go.
+    write_paged(&out, &all, 500).unwrap();
+    assert!(!folder.path().join("doubts-1.html").exists() && !folder.path().join("doubts-2.html").exists());
+}
+
 const TEXT: &str = "Turn left & walk past the \u{201c}Türe\u{201d}.";
 
 #[test]
