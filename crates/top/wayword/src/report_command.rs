@@ -7,6 +7,7 @@ use std::{
 };
 #[cfg(feature = "experiments")]
 use wayword_experiments::compare;
+use wayword_formats::OutputPlace;
 use wayword_report::pages::{self, ReportOptions};
 use wayword_run::{
     check::{CheckedAgain, check_run_again, find_changed_texts},
@@ -54,7 +55,8 @@ const MAX_NAMED_ITEMS: usize = 3;
 pub(crate) fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     expect_run(&args.run)?;
     let out = args.out.clone().unwrap_or_else(|| args.run.join(file::REPORT));
-    let output = &output.beside_data(&find_output_place(&out)?);
+    let place = find_output_place(&out)?;
+    let output = &output.beside_data(&place);
     if is_comparison(&args.run) {
         #[cfg(not(feature = "experiments"))]
         return Err(CommandError::not_built("the folder holds a comparison, which this build cannot show"));
@@ -72,7 +74,9 @@ pub(crate) fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Ex
         Err(error) => (CheckedAgain::default(), Some(error)),
     };
     let most_items = args.items.unwrap_or(MAX_REPORT_ITEMS);
-    let options = ReportOptions { most_items, is_single_file: args.single_file, again };
+    // A pipe or a device has no folder beside it for pictures.
+    let is_single_file = args.single_file || !matches!(place, OutputPlace::File(_));
+    let options = ReportOptions { most_items, is_single_file, again };
     let written = pages::write_report_as(&args.run, &out, &options)?;
     // Where the run itself is broken, the report has failed with the same error by now.
     if let Some(error) = trouble {

@@ -42,13 +42,7 @@ use report_files::{ReportFiles, WALKS_PER_PAGE};
 use rows::TextList;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
-use std::{
-    borrow::Cow,
-    fmt, fs,
-    io::Write,
-    ops::Range,
-    path::{Path, PathBuf},
-};
+use std::{borrow::Cow, fmt, io::Write, ops::Range, path::Path};
 use wayword_formats::OutputFile;
 use wayword_run::{check::CheckedAgain, count::count_phrase, error::CommandError, output::show_unseen};
 
