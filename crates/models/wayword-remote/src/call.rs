@@ -9,10 +9,12 @@ use crate::{
     dialect::{DialectReply, ReplyEnd, WireRequest},
     endpoint::{ClosedEndpoint, ProviderEndpoint},
     faults::{self, RemoteFault, RetryFault, ServiceLoad},
+    first_calls::{CallKind, FirstCallTurn},
     limiter::{AdvertisedLimits, RequestOutcome},
     stream,
     transport::HttpResponse,
 };
+use serde_json::Value;
 use std::{
     thread,
     time::{Duration, Instant, SystemTime},
@@ -22,8 +24,11 @@ use wayword_ledger::{CallAnswer, CallAttempts, LedgerError, LedgerRun, RequestRe
 /// How often a thread that waits for its next attempt checks whether the run was stopped.
 const STOP_CHECK_INTERVAL: Duration = Duration::from_millis(100);
 
-/// How many times the program asks again after an empty answer.
-const MAX_EMPTY_ANSWER_RETRIES: u32 = 1;
+/// How many times the program asks again after a complete answer that is of no use, because it may have been paid for.
+const MAX_UNREADABLE_ANSWER_RETRIES: u32 = 1;
+
+/// How much a page of HTML in place of an answer counts among the faults before any answer. No model writes one.
+const PAGE_WEIGHT: u32 = 2;
 
 /// More tokens than any model takes or gives at once. A service that reports more is wrong, and the program estimates
 /// the tokens instead. If it believed the service, all money would count as spent, and the limit on tokens would delay
@@ -36,6 +41,8 @@ pub(crate) struct PreparedCall<'a> {
     pub(crate) run: &'a LedgerRun,
     /// The ledger's key of the call. The waits between attempts are drawn from it too.
     pub(crate) key: &'a str,
+    /// What it has in common with other calls.
+    pub(crate) kind: &'a CallKind,
     /// The request as it is sent.
     pub(crate) wire: &'a WireRequest,
     pub(crate) price: Option<&'a ModelPrice>,
@@ -137,7 +144,11 @@ impl PreparedCall<'_> {
         let most_usd = self
             .price
             .map(|price| price.cost_usd(self.size.max_tokens_in(price.tokens_per_picture), self.size.max_tokens));
-        let mut empty_answers = 0;
+        let Some(turn) = self.endpoint.first_calls.wait_for_turn(self.kind, || self.is_ended()) else {
+            self.check_open()?;
+            return Err(CallError::Refused(RequestRefusedError::Stopped));
+        };
+        let mut unreadable_answers = 0;
         let mut attempt = 0;
         loop {
             attempt += 1;
@@ -147,16 +158,13 @@ impl PreparedCall<'_> {
                 AttemptOutcome::Heard(reply, latency) => match check_reply(&reply, self.endpoint) {
                     Ok(()) => {
                         self.endpoint.note_answer();
+                        turn.note_answer();
                         self.note_cut_prompt(&reply);
                         let text = reply.answer();
                         let text = secret.map_or(text.clone(), |secret| secret.scrub_key(text.clone()));
                         return Ok(self.ledger_answer(&reply, text, latency, attempt));
                     }
-                    Err(fault) => {
-                        // Of the faults of a reply, only an empty answer is worth another try.
-                        empty_answers += u32::from(matches!(fault, RemoteFault::Retry(_)));
-                        fault
-                    }
+                    Err(fault) => fault,
                 },
                 AttemptOutcome::Fault(fault) => fault,
                 AttemptOutcome::NotSent => {
@@ -169,41 +177,70 @@ impl PreparedCall<'_> {
                     return Err(CallError::Refused(error.into()));
                 }
             };
-            let retry = self.record_fault(fault, attempts)?;
-            if attempt >= self.attempts || empty_answers > MAX_EMPTY_ANSWER_RETRIES {
-                let times = if attempt == 1 { "1 attempt".to_owned() } else { format!("{attempt} attempts") };
-                let reason = format!("{} ({times})", retry.reason);
-                // A service that gives empty answers is there, so the call is not lost.
-                return Err(if empty_answers > MAX_EMPTY_ANSWER_RETRIES {
-                    CallError::Failed(reason)
-                } else {
-                    CallError::Lost(reason)
-                });
+            let next = self.record_fault(fault, &turn, attempts)?;
+            unreadable_answers += u32::from(matches!(next, NextAttempt::OnceMore { .. }));
+            if attempt >= self.attempts || unreadable_answers > MAX_UNREADABLE_ANSWER_RETRIES {
+                return Err(give_up(next, attempt, &turn));
             }
-            // Even if the service asks for short waits, the waits become longer and longer.
-            let requested = retry.after.map_or(Duration::ZERO, |requested| wait_after(requested, self.key, attempt));
-            self.wait_between_attempts(requested.max(backoff_wait(self.key, attempt, retry.load)));
+            self.wait_between_attempts(self.wait_before(&next, attempt));
         }
     }
 
-    /// Records a fault in the ledger. Returns it if another attempt makes sense.
-    fn record_fault(&self, fault: RemoteFault, attempts: &mut CallAttempts<'_>) -> Result<RetryFault, CallError> {
+    /// How long to wait before the next attempt. Even if the service asks for short waits, the waits become longer and longer.
+    fn wait_before(&self, next: &NextAttempt, attempt: u32) -> Duration {
+        let (requested, load) = match next {
+            NextAttempt::Again(retry) => (retry.after, retry.load),
+            NextAttempt::OnceMore { .. } => (None, ServiceLoad::Unknown),
+        };
+        let requested = requested.map_or(Duration::ZERO, |requested| wait_after(requested, self.key, attempt));
+        requested.max(backoff_wait(self.key, attempt, load))
+    }
+
+    /// Records a fault in the ledger. Returns the next attempt, if one makes sense. Stops the run where every call would fail alike.
+    fn record_fault(
+        &self,
+        fault: RemoteFault,
+        turn: &FirstCallTurn<'_>,
+        attempts: &mut CallAttempts<'_>,
+    ) -> Result<NextAttempt, CallError> {
+        let provider = &self.endpoint.provider.name;
+        let maybe_paid = match &fault {
+            RemoteFault::Retry(RetryFault { maybe_paid, .. }) | RemoteFault::Final { maybe_paid, .. } => *maybe_paid,
+            RemoteFault::Unreadable { .. } => true,
+            RemoteFault::Stop { .. } => false,
+        };
+        attempts.mark_failed(fault.reason(), maybe_paid);
         match fault {
-            RemoteFault::Retry(retry) => {
-                attempts.mark_failed(&retry.reason, retry.maybe_paid);
-                Ok(retry)
+            RemoteFault::Retry(retry) => Ok(NextAttempt::Again(retry)),
+            RemoteFault::Unreadable { reason, hint, is_page } => {
+                if turn.note_fault(if is_page { PAGE_WEIGHT } else { 1 }) {
+                    return Err(
+                        self.close_endpoint(format!("{provider} gave no answer that can be read: {reason}"), hint)
+                    );
+                }
+                Ok(NextAttempt::OnceMore { reason, hint })
             }
-            RemoteFault::Final { reason, maybe_paid } => {
-                attempts.mark_failed(&reason, maybe_paid);
-                Err(CallError::Failed(reason))
+            RemoteFault::Final { reason, hint, is_refusal, .. } => {
+                if is_refusal && turn.note_fault(1) {
+                    return Err(self.close_endpoint(format!("{provider} refused every call so far: {reason}"), hint));
+                }
+                Err(CallError::Failed(with_hint(&reason, hint.as_deref())))
             }
-            RemoteFault::Stop { reason, hint } => {
-                attempts.mark_failed(&reason, false);
-                let closed = ClosedEndpoint { reason, hint };
-                self.endpoint.close_with(closed.clone());
-                Err(CallError::Closed(closed))
-            }
+            RemoteFault::Stop { reason, hint } => Err(self.close_endpoint(reason, Some(hint))),
         }
+    }
+
+    /// Stops all further requests to the service.
+    fn close_endpoint(&self, reason: String, hint: Option<String>) -> CallError {
+        let hint = hint.unwrap_or_else(|| "read what the service says, and try it with `wayword doctor`".to_owned());
+        let closed = ClosedEndpoint { reason, hint };
+        self.endpoint.close_with(closed.clone());
+        CallError::Closed(closed)
+    }
+
+    /// Whether nothing is sent any more.
+    fn is_ended(&self) -> bool {
+        self.run.is_stopped() || self.endpoint.closed_reason().is_some()
     }
 
     /// Fails if the service answers no calls any more.
@@ -214,7 +251,7 @@ impl PreparedCall<'_> {
     /// Waits, unless the run is stopped meanwhile.
     fn wait_between_attempts(&self, wait: Duration) {
         let until = Instant::now() + wait;
-        while !self.run.is_stopped() && self.endpoint.closed_reason().is_none() {
+        while !self.is_ended() {
             match until.saturating_duration_since(Instant::now()) {
                 Duration::ZERO => return,
                 remaining => thread::sleep(remaining.min(STOP_CHECK_INTERVAL)),
@@ -225,7 +262,7 @@ impl PreparedCall<'_> {
     /// One attempt: waits for the limiter, sends the request, and reads the response.
     fn send_once(&self, body: &[u8]) -> AttemptOutcome {
         let endpoint = self.endpoint;
-        let stopped = || self.run.is_stopped() || endpoint.closed_reason().is_some();
+        let stopped = || self.is_ended();
         let tokens = self.size.tokens_in() + self.size.max_tokens;
         let Some(mut permit) = endpoint.limiter.wait_for_permit(tokens, stopped) else {
             return AttemptOutcome::NotSent;
@@ -288,19 +325,19 @@ impl PreparedCall<'_> {
         if !(200..300).contains(&status) {
             return Err(fault(body));
         }
-        let value: serde_json::Value = match serde_json::from_slice(body) {
-            Ok(value) => value,
-            Err(_) => stream::joined_stream(body).ok_or_else(|| {
-                let is_wrong_address = faults::is_html(body) && endpoint.note_page();
-                faults::fault_of_odd_body(body, is_wrong_address, endpoint.fault_context())
-            })?,
+        let context = endpoint.fault_context();
+        let text = faults::body_text(&received.headers, body);
+        let value = text.and_then(|text| serde_json::from_str(&text).ok().or_else(|| stream::joined_stream(&text)));
+        let Some(value) = value.filter(|value: &Value| !value.is_null()) else {
+            return Err(faults::fault_of_unreadable_body(&received.headers, body, context));
         };
         if value.get("error").is_some_and(|error| !error.is_null()) {
-            return Err(fault(body));
+            // A stream may report an error among its events.
+            return Err(fault(value.to_string().as_bytes()));
         }
         endpoint.provider.dialect.read_reply(&value).map_err(|missing| match faults::reports_error(&value) {
             true => fault(body),
-            false => RemoteFault::retry_without_wait(format!("the answer has no {}", missing.0), true),
+            false => faults::fault_of_other_json(missing.0, body, context),
         })
     }
 
@@ -342,9 +379,39 @@ impl PreparedCall<'_> {
     }
 }
 
+/// The attempt that follows a fault.
+enum NextAttempt {
+    /// As often as the settings allow.
+    Again(RetryFault),
+    /// Once more at most, because a complete answer may have been paid for.
+    OnceMore { reason: String, hint: Option<String> },
+}
+
+/// The error of a call after its last attempt.
+fn give_up(next: NextAttempt, attempt: u32, turn: &FirstCallTurn<'_>) -> CallError {
+    let times = if attempt == 1 { "1 attempt".to_owned() } else { format!("{attempt} attempts") };
+    match next {
+        NextAttempt::Again(retry) => {
+            turn.note_loss();
+            CallError::Lost(format!("{} ({times})", retry.reason))
+        }
+        // A service that answers is there, so the call is not lost.
+        NextAttempt::OnceMore { reason, hint } => {
+            CallError::Failed(with_hint(&format!("{reason} ({times})"), hint.as_deref()))
+        }
+    }
+}
+
+/// A reason with what to do about it, on one line.
+fn with_hint(reason: &str, hint: Option<&str>) -> String {
+    hint.map_or_else(|| reason.to_owned(), |hint| format!("{reason}; {hint}"))
+}
+
 /// Checks that a reply is an answer: not empty, not refused, not blocked.
 fn check_reply(reply: &DialectReply, endpoint: &ProviderEndpoint) -> Result<(), RemoteFault> {
-    let final_fault = |reason: String| RemoteFault::Final { reason, maybe_paid: true };
+    let provider = &endpoint.provider;
+    let final_fault = |reason: String| RemoteFault::Final { reason, hint: None, is_refusal: false, maybe_paid: true };
+    let once_more = |reason: String| RemoteFault::Unreadable { reason, hint: None, is_page: false };
     match &reply.end {
         ReplyEnd::Filtered(why) => Err(final_fault(format!(
             "the service's filter blocked the answer ({})",
@@ -353,19 +420,16 @@ fn check_reply(reply: &DialectReply, endpoint: &ProviderEndpoint) -> Result<(), 
         // A refusal is an answer: the one who asked asks again in other words, or does without.
         ReplyEnd::Refused(_) => Ok(()),
         ReplyEnd::Stop | ReplyEnd::Length | ReplyEnd::Thought if !reply.text.is_empty() => Ok(()),
-        ReplyEnd::Thought => Err(RemoteFault::retry_without_wait(
-            format!(
-                "the answer is empty, and all text stands in the field for thoughts: set {} under [providers.{}], or start the server without its reasoning parser",
-                endpoint.provider.dialect.without_thinking(),
-                endpoint.provider.name
-            ),
-            true,
-        )),
-        ReplyEnd::Stop => Err(RemoteFault::retry_without_wait("empty answer", true)),
+        ReplyEnd::Thought => Err(once_more(format!(
+            "the answer is empty, and all text stands in the field for thoughts: set {} under [providers.{}], or start the server without its reasoning parser",
+            provider.dialect.without_thinking(),
+            provider.name
+        ))),
+        ReplyEnd::Stop => Err(once_more("empty answer".to_owned())),
         ReplyEnd::Length => Err(final_fault(format!(
             "the model spent all its tokens on thinking and gave no answer: set {} under [providers.{}]",
-            endpoint.provider.dialect.without_thinking(),
-            endpoint.provider.name
+            provider.dialect.without_thinking(),
+            provider.name
         ))),
     }
 }

@@ -4,7 +4,7 @@
 use crate::{
     ModelServices, RemoteModel, ServiceDialect,
     endpoint::ProviderEndpoint,
-    faults::{self, FaultContext},
+    faults::{self, FaultContext, RemoteFault},
 };
 use std::{
     sync::Arc,
@@ -116,12 +116,13 @@ fn check_service(model: &RemoteModel, findings: &mut Vec<ServiceFinding>) -> boo
         Ok(received) => received,
         Err(error) => {
             let fault = faults::fault_from_transport(&error, None, url, endpoint.fault_context());
-            let to_do = if provider.local {
-                format!("start {} or give --base-url", provider.name)
-            } else {
-                "check the network and the base URL".to_owned()
+            let reason = fault.reason().to_owned();
+            let to_do = match fault {
+                RemoteFault::Stop { hint, .. } => hint,
+                _ if provider.local => format!("start {} or give --base-url", provider.name),
+                _ => "check the network and the base URL".to_owned(),
             };
-            findings.push(ServiceFinding::problem(fault.reason(), to_do));
+            findings.push(ServiceFinding::problem(reason, to_do));
             return false;
         }
     };
@@ -135,14 +136,14 @@ fn check_service(model: &RemoteModel, findings: &mut Vec<ServiceFinding>) -> boo
             endpoint.fault_context(),
         );
         return match fault {
-            faults::RemoteFault::Stop { reason, hint } => {
+            // Not every server can list its models.
+            RemoteFault::Stop { reason, hint } if !matches!(received.status, 404 | 405 | 410 | 501) => {
                 findings.push(ServiceFinding::problem(reason, hint));
                 false
             }
-            // Not every server can list its models.
             fault => {
-                let to_do = "check that the base URL ends in the version, like /v1";
-                findings.push(ServiceFinding::warning(format!("{url} lists no models: {}", fault.reason()), to_do));
+                let what = format!("{url} lists no models: {}", fault.reason());
+                findings.push(ServiceFinding::warning(what, endpoint.fault_context().address_hint()));
                 true
             }
         };
@@ -164,8 +165,11 @@ fn check_service(model: &RemoteModel, findings: &mut Vec<ServiceFinding>) -> boo
             ));
         }
         None => {
-            findings
-                .push(ServiceFinding::warning(format!("{url} lists no models"), "check that this is the right server"));
+            let what = match faults::is_html(&body) {
+                true => format!("{url} lists no models: it answers with a page of HTML"),
+                false => format!("{url} lists no models"),
+            };
+            findings.push(ServiceFinding::warning(what, endpoint.fault_context().address_hint()));
         }
     }
     true

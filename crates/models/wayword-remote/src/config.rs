@@ -134,6 +134,14 @@ impl ServiceDialect {
         }
     }
 
+    /// What base URLs of this dialect mostly end in; empty where they have no path.
+    pub(crate) fn usual_version_path(self) -> &'static str {
+        match self {
+            Self::OpenAi | Self::Completions => "/v1",
+            other => other.default_version_path(),
+        }
+    }
+
     /// Whether a message of this dialect can hold pictures.
     pub(crate) fn takes_pictures(self) -> bool {
         self != Self::Completions

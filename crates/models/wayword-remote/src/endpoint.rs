@@ -4,6 +4,7 @@ use crate::{
     RemoteConfig, ServiceSecret,
     dialect::WireRequest,
     faults::FaultContext,
+    first_calls::FirstCalls,
     limiter::{EndpointLimiter, LimiterRules},
     provider::RemoteProvider,
     transport::{HttpResponse, HttpTransport},
@@ -11,16 +12,12 @@ use crate::{
 use std::{
     sync::{
         OnceLock,
-        atomic::{AtomicU32, Ordering},
+        atomic::{AtomicBool, Ordering},
     },
     time::Duration,
 };
+use ureq::tls::RootCerts;
 use wayword_ledger::ProviderRates;
-
-/// After so many pages of HTML without any answer the address is taken to be wrong.
-const MAX_PAGES: u32 = 2;
-/// The count of pages once an answer came.
-const ANSWERED: u32 = u32::MAX;
 
 /// Why no more requests are sent, and how the user can change this.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -40,14 +37,16 @@ pub(crate) struct ProviderEndpoint {
     closed: OnceLock<ClosedEndpoint>,
     /// What the user should know of the service, once.
     note: OnceLock<String>,
-    /// How many pages of HTML came in place of answers; none is counted after an answer.
-    pages: AtomicU32,
+    /// Which calls go ahead alone, because none of their kind was answered yet.
+    pub(crate) first_calls: FirstCalls,
+    /// Whether a call was answered.
+    has_answered: AtomicBool,
 }
 
 impl ProviderEndpoint {
-    /// Opens a provider. Sends nothing. With `shares_rates` the ledger enforces the user's rates for all workers
+    /// Opens a provider. Sends nothing, and trusts the certificates of `roots`. With `shares_rates` the ledger enforces the user's rates for all workers
     /// together. Rates that the service advertises are enforced here in both cases.
-    pub(crate) fn new(provider: RemoteProvider, config: &RemoteConfig, shares_rates: bool) -> Self {
+    pub(crate) fn new(provider: RemoteProvider, config: &RemoteConfig, roots: RootCerts, shares_rates: bool) -> Self {
         let local_rate = |rate: Option<f64>| rate.filter(|_| !shares_rates);
         let rules = LimiterRules {
             concurrency: config.concurrency,
@@ -56,12 +55,13 @@ impl ProviderEndpoint {
         };
         let timeout = Duration::from_secs_f64(config.timeout_s);
         Self {
-            transport: HttpTransport::new(&provider.base_url, config.concurrency.max_in_flight(), timeout),
+            transport: HttpTransport::new(&provider.base_url, config.concurrency.max_in_flight(), timeout, roots),
             limiter: EndpointLimiter::new(rules),
             secret: OnceLock::new(),
             closed: OnceLock::new(),
             note: OnceLock::new(),
-            pages: AtomicU32::new(0),
+            first_calls: FirstCalls::default(),
+            has_answered: AtomicBool::new(false),
             provider,
         }
     }
@@ -97,6 +97,8 @@ impl ProviderEndpoint {
             provider: &self.provider.name,
             key_env: self.provider.key_env.as_deref(),
             secret: self.find_secret().ok().flatten(),
+            version_path: self.provider.dialect.usual_version_path(),
+            has_answered: self.has_answered.load(Ordering::Relaxed),
         }
     }
 
@@ -113,15 +115,7 @@ impl ProviderEndpoint {
 
     /// Notes that the service answered as it should.
     pub(crate) fn note_answer(&self) {
-        self.pages.store(ANSWERED, Ordering::Relaxed);
-    }
-
-    /// Notes a page of HTML in place of an answer. Whether so many came before any answer that the address is wrong, and no passing
-    /// trouble of a proxy.
-    pub(crate) fn note_page(&self) -> bool {
-        let next = |pages: u32| (pages != ANSWERED).then(|| pages + 1);
-        let before = self.pages.fetch_update(Ordering::Relaxed, Ordering::Relaxed, next);
-        before.is_ok_and(|pages| pages + 1 >= MAX_PAGES)
+        self.has_answered.store(true, Ordering::Relaxed);
     }
 
     /// Keeps what the user should know of the service; only the first of several.
@@ -149,6 +143,14 @@ impl ProviderEndpoint {
     pub(crate) fn request_models(&self) -> Result<HttpResponse, ureq::Error> {
         self.transport
             .get(&self.provider.base_url.with_path(self.provider.dialect.models_path()), &self.request_headers())
+    }
+
+    /// Makes a secure connection and asks for a page, without the key.
+    ///
+    /// # Errors
+    /// When there is no connection, or it breaks.
+    pub(crate) fn try_secure_connection(&self) -> Result<HttpResponse, ureq::Error> {
+        self.transport.try_page(self.provider.base_url.as_str())
     }
 
     /// The headers of every request, with the key.

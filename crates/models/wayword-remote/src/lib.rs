@@ -15,7 +15,9 @@
 //! # Where things are
 //! - `provider.toml`, `prices.toml`: all providers, and all prices.
 //! - `dialect/`: one file for each API, with its tools and structured answers.
-//! - `faults/`: what a fault means (`mod.rs`, `error_body.rs`), and how long the service asks to wait (`delay.rs`, `times.rs`).
+//! - `faults/`: what a fault means (`mod.rs`, `error_body.rs`, `connection.rs`), what came in place of an answer (`unreadable.rs`), what to
+//!   do about it (`hints.rs`), and how long the service asks to wait (`delay.rs`, `times.rs`).
+//! - `first_calls`: the first call of a kind goes ahead alone.
 //! - `limiter/`: how fast requests are sent.
 //! - `check`, `ready`: what `doctor` and a run find out before the first call.
 //! - `secret`: where a key comes from, and how it is removed from texts.
@@ -29,6 +31,7 @@ mod dialect;
 mod endpoint;
 mod error;
 mod faults;
+mod first_calls;
 mod limiter;
 mod model;
 mod picture;

@@ -6,6 +6,7 @@ use crate::{
     call::{CallError, PreparedCall, RequestSize},
     dialect::{DialectRequest, RemoteMessage},
     endpoint::{ClosedEndpoint, ProviderEndpoint},
+    first_calls::CallKind,
     picture::PictureEncoder,
 };
 use serde_json::{Map, Value, json};
@@ -61,10 +62,13 @@ impl RemoteModel {
             };
             let wire = self.endpoint.provider.dialect.to_wire(dialect_request);
             let wire = wire.map_err(|reason| CallError::Failed(reason.to_owned()))?;
+            let kind =
+                CallKind { model: self.name.clone(), has_pictures: lines.iter().any(|line| !line.pictures.is_empty()) };
             let prepared = PreparedCall {
                 endpoint: &self.endpoint,
                 run: &self.run,
                 key: key.as_str(),
+                kind: &kind,
                 wire: &wire,
                 price: self.price.as_ref(),
                 size: request_size(request),

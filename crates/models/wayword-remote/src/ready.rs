@@ -1,7 +1,12 @@
 //! Checks, before a run begins, whether a model can be used: its key, its address, and whether it takes pictures. Sends
 //! no question to the model.
 
-use crate::{ConfigError, ModelServices, RemoteModel, base_url::BaseUrl, endpoint::ProviderEndpoint};
+use crate::{
+    ConfigError, ModelServices, RemoteModel,
+    base_url::BaseUrl,
+    endpoint::ProviderEndpoint,
+    faults::{self, RemoteFault},
+};
 use std::{
     io,
     net::{SocketAddr, TcpStream, ToSocketAddrs},
@@ -9,12 +14,15 @@ use std::{
 };
 use ureq::{Proxy, http::Uri};
 
+/// How often a secure connection is tried before a service is refused.
+const MAX_SECURE_ATTEMPTS: usize = 2;
+
 /// Longest wait for a connection. A service that takes longer is not refused.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(2);
 
 impl ModelServices {
-    /// Refuses a model if its key is missing, no service listens at its address, or the host is not found.
-    /// Connects only to services on this machine, and to addresses that the user gave.
+    /// Refuses a model if its key is missing, no service listens at its address, the host is not found, or the certificate of an HTTPS
+    /// service is not valid. Makes one connection, and sends no key.
     ///
     /// # Errors
     /// When the model cannot be used, or the provider does not exist.
@@ -24,7 +32,15 @@ impl ModelServices {
         if let Err(closed) = endpoint.find_secret() {
             return Err(ConfigError::NotReady { problem: closed.reason, hint: closed.hint });
         }
-        if self.is_reached_directly(endpoint) { check_connection(endpoint) } else { Ok(()) }
+        let base_url = &endpoint.provider.base_url;
+        let is_tried = match base_url.plain {
+            true => self.is_reached_directly(endpoint),
+            false => base_url.loopback || Proxy::try_from_env().is_none(),
+        };
+        if is_tried {
+            check_connection(endpoint)?;
+        }
+        if base_url.plain { Ok(()) } else { check_secure_connection(endpoint) }
     }
 
     /// Refuses a model that is to be shown pictures, if its provider takes none. Makes no connection.
@@ -70,7 +86,7 @@ impl ModelServices {
         Ok(self.model(name)?.endpoint.provider.base_url.as_str().to_owned())
     }
 
-    /// Whether a test connection shows something. It shows nothing through a proxy, and remote services are not tested.
+    /// Whether a bare connection shows something. It shows nothing through a proxy.
     fn is_reached_directly(&self, endpoint: &ProviderEndpoint) -> bool {
         let provider = &endpoint.provider;
         let is_near = provider.local || self.has_own_address(&provider.name);
@@ -89,23 +105,54 @@ fn describes_sight(model: &RemoteModel) -> Option<bool> {
 
 /// Refuses a provider if no server accepts a connection at its address.
 fn check_connection(endpoint: &ProviderEndpoint) -> Result<(), ConfigError> {
-    let provider = &endpoint.provider;
-    let (name, url) = (&provider.name, provider.base_url.as_str());
-    let not_ready = |problem: String, hint: String| Err(ConfigError::NotReady { problem, hint });
-    match try_connect(&provider.base_url) {
-        Err(ConnectProblem::Port) => not_ready(
-            format!("nothing listens at {url}, so {name} cannot be used"),
-            format!(
-                "start {name}, or give its address: --base-url URL, or base_url under [providers.{name}] in the --config file"
-            ),
-        ),
-        Err(ConnectProblem::Host(host)) => not_ready(
-            format!("the host {host} is not found, so {name} cannot be used at {url}"),
-            format!(
-                "check the name and the network, or give --base-url URL, or base_url under [providers.{name}] in the --config file"
-            ),
-        ),
+    match try_connect(&endpoint.provider.base_url) {
+        Err(ConnectProblem::Port) => Err(nothing_listens(endpoint)),
+        Err(ConnectProblem::Host(host)) => Err(host_not_found(endpoint, &host)),
         Ok(()) => Ok(()),
+    }
+}
+
+/// Refuses a provider if no secure connection to it is possible. What may pass, such as a slow network, is no reason.
+fn check_secure_connection(endpoint: &ProviderEndpoint) -> Result<(), ConfigError> {
+    let (name, url) = (&endpoint.provider.name, endpoint.provider.base_url.as_str());
+    let attempts = (0..MAX_SECURE_ATTEMPTS).map(|_| endpoint.try_secure_connection().err());
+    // Only what every attempt meets is a reason.
+    let Some(error) = attempts.take_while(Option::is_some).flatten().nth(MAX_SECURE_ATTEMPTS - 1) else {
+        return Ok(());
+    };
+    if faults::ends_in_handshake(&error) {
+        return Err(ConfigError::NotReady {
+            problem: format!("the server at {url} ends each connection before it is secure, so {name} cannot be used"),
+            hint: format!(
+                "if it speaks no HTTPS, let --base-url, or base_url under [providers.{name}], begin with http://"
+            ),
+        });
+    }
+    match faults::fault_from_transport(&error, None, url, endpoint.fault_context()) {
+        RemoteFault::Stop { reason, hint } => Err(ConfigError::NotReady { problem: reason, hint }),
+        _ => Ok(()),
+    }
+}
+
+/// The error for a port at which no server listens.
+fn nothing_listens(endpoint: &ProviderEndpoint) -> ConfigError {
+    let (name, url) = (&endpoint.provider.name, endpoint.provider.base_url.as_str());
+    ConfigError::NotReady {
+        problem: format!("nothing listens at {url}, so {name} cannot be used"),
+        hint: format!(
+            "start {name}, or give its address: --base-url URL, or base_url under [providers.{name}] in the --config file"
+        ),
+    }
+}
+
+/// The error for a host of which the network knows nothing.
+fn host_not_found(endpoint: &ProviderEndpoint, host: &str) -> ConfigError {
+    let (name, url) = (&endpoint.provider.name, endpoint.provider.base_url.as_str());
+    ConfigError::NotReady {
+        problem: format!("the host {host} is not found, so {name} cannot be used at {url}"),
+        hint: format!(
+            "check the name and the network, or give --base-url URL, or base_url under [providers.{name}] in the --config file"
+        ),
     }
 }
 
@@ -164,6 +211,30 @@ mod tests {
             problem.contains(&url) && problem.contains("start server") && problem.contains("--base-url"),
             "{problem}"
         );
+    }
+
+    #[test]
+    fn ready_names_a_server_without_https() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let url = format!("https://{}/v1", listener.local_addr().unwrap());
+        std::thread::spawn(move || {
+            for mut stream in listener.incoming().map_while(Result::ok) {
+                let _ = std::io::Read::read(&mut stream, &mut [0; 4096]);
+            }
+        });
+        let problem = told(&url, None).unwrap();
+        assert!(problem.contains("before it is secure") && problem.contains("begin with http://"), "{problem}");
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let url = format!("https://{}/v1", listener.local_addr().unwrap());
+        std::thread::spawn(move || {
+            for mut stream in listener.incoming().map_while(Result::ok) {
+                let _ =
+                    std::io::Write::write_all(&mut stream, b"HTTP/1.1 400 Bad Request\r\ncontent-length: 0\r\n\r\n");
+                let _ = std::io::Read::read(&mut stream, &mut [0; 4096]);
+            }
+        });
+        let problem = told(&url, None).unwrap();
+        assert!(problem.contains("does not speak HTTPS") && problem.contains("http://"), "{problem}");
     }
 
     #[test]

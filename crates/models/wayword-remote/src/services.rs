@@ -6,12 +6,14 @@ use crate::{
     endpoint::ProviderEndpoint,
     picture::PictureEncoder,
     provider::{self, ProviderTable, RemoteProvider},
+    transport,
 };
 use std::{
     collections::BTreeMap,
     fmt,
     sync::{Arc, Mutex, PoisonError},
 };
+use ureq::tls::RootCerts;
 use wayword_ledger::LedgerRun;
 
 /// Longest timeout of an attempt that a user may set, seconds.
@@ -127,7 +129,14 @@ impl ModelServices {
         if let (true, Some(first)) = (is_for_one_provider, endpoints.keys().next()) {
             return Err(ConfigError::Several { first: first.clone(), second: provider.to_owned() });
         }
-        let endpoint = Arc::new(ProviderEndpoint::new(resolved, &self.config, self.run.shares_rates()));
+        let roots = match resolved.base_url.plain {
+            true => RootCerts::WebPki,
+            false => transport::trusted_roots().map_err(|problem| ConfigError::Setting {
+                setting: format!("the variable {}", transport::CERTIFICATES_VARIABLE),
+                problem,
+            })?,
+        };
+        let endpoint = Arc::new(ProviderEndpoint::new(resolved, &self.config, roots, self.run.shares_rates()));
         endpoints.insert(provider.to_owned(), Arc::clone(&endpoint));
         Ok(endpoint)
     }

@@ -1,11 +1,12 @@
 //! Sends HTTP requests. The size of responses and the time for them are limited, and redirects are not followed.
 
 use crate::base_url::BaseUrl;
-use std::time::Duration;
+use std::{fs, time::Duration};
 use ureq::{
     Agent, Proxy,
     config::Config,
     http::{HeaderMap, Response},
+    tls::{PemItem, RootCerts, TlsConfig, parse_pem},
 };
 
 /// Largest body that is read, bytes; a larger one is an error. A reply of text has about a thousandth of this.
@@ -13,6 +14,46 @@ pub(crate) const MAX_BODY_BYTES: u64 = 8 << 20;
 
 /// Longest wait for a connection, after which the request fails.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
+
+/// Longest time for a secure connection that is only tried out.
+const TRIAL_TIMEOUT: Duration = Duration::from_secs(5);
+
+/// The environment variable with the file of certificates to trust in place of the public ones.
+pub(crate) const CERTIFICATES_VARIABLE: &str = "SSL_CERT_FILE";
+
+/// Largest file of certificates that is read, bytes. The public ones take 0.3 MB.
+const MAX_CERTIFICATE_BYTES: u64 = 16 << 20;
+
+/// The authorities whose certificates are trusted: those of the file in `SSL_CERT_FILE`, or else the public ones.
+///
+/// # Errors
+/// When the file cannot be read, or has no certificate.
+pub(crate) fn trusted_roots() -> Result<RootCerts, &'static str> {
+    let Some(file) = std::env::var_os(CERTIFICATES_VARIABLE).filter(|file| !file.is_empty()) else {
+        return Ok(RootCerts::WebPki);
+    };
+    let size = fs::metadata(&file).map_err(|_| "names a file that is not there")?.len();
+    if size > MAX_CERTIFICATE_BYTES {
+        return Err("names a file that is too long for one of certificates");
+    }
+    let pem = fs::read(&file).map_err(|_| "names a file that cannot be read")?;
+    roots_from_pem(&pem)
+}
+
+/// The certificates of a PEM file.
+fn roots_from_pem(pem: &[u8]) -> Result<RootCerts, &'static str> {
+    let roots: Vec<_> = parse_pem(pem)
+        .filter_map(|item| match item {
+            Ok(PemItem::Certificate(certificate)) => Some(certificate),
+            _ => None,
+        })
+        .collect();
+    if roots.is_empty() {
+        Err("names a file without a certificate in PEM form")
+    } else {
+        Ok(RootCerts::new_with_certs(&roots))
+    }
+}
 
 /// One provider's connections.
 #[derive(Debug)]
@@ -29,7 +70,7 @@ pub(crate) struct HttpResponse {
 impl HttpTransport {
     /// Keeps up to `connections` connections open. `timeout` is for each request, from looking up the host to the last
     /// byte.
-    pub(crate) fn new(base_url: &BaseUrl, connections: usize, timeout: Duration) -> Self {
+    pub(crate) fn new(base_url: &BaseUrl, connections: usize, timeout: Duration, roots: RootCerts) -> Self {
         let config = Config::builder()
             .http_status_as_error(false)
             // A redirect would send the key to another server.
@@ -39,6 +80,9 @@ impl HttpTransport {
             .max_idle_connections(connections)
             .max_idle_connections_per_host(connections)
             .user_agent(concat!("wayword/", env!("CARGO_PKG_VERSION")))
+            // Compressed answers are not read.
+            .accept_encoding("identity")
+            .tls_config(TlsConfig::builder().root_certs(roots).build())
             // A proxy cannot reach this machine's own servers.
             .proxy(if base_url.loopback { None } else { Proxy::try_from_env() })
             .build();
@@ -56,6 +100,15 @@ impl HttpTransport {
             .fold(request, |request, (name, value)| request.header(*name, value))
             .send(body)
             .map(read_response)
+    }
+
+    /// Asks for a page, to see whether there is a connection.
+    ///
+    /// # Errors
+    /// When no status came back in a short time.
+    pub(crate) fn try_page(&self, url: &str) -> Result<HttpResponse, ureq::Error> {
+        let request = self.0.get(url).config().timeout_global(Some(TRIAL_TIMEOUT)).build();
+        request.call().map(read_response)
     }
 
     /// Asks for JSON.

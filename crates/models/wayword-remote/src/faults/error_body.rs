@@ -9,6 +9,9 @@ use std::time::Duration;
 /// Most characters of a service's message that an error of this program repeats. The rest is cut off.
 const MAX_MESSAGE_CHARS: usize = 300;
 
+/// Most characters of a message in which phrases are searched for.
+const MAX_SEARCHED_CHARS: usize = 4000;
+
 /// The content of an error's body.
 #[derive(Debug, Default)]
 pub(super) struct ServiceErrorBody {
@@ -87,6 +90,13 @@ impl ServiceErrorBody {
             || self.mentions_any(&["api key not valid", "api key expired"])
     }
 
+    /// Whether the request is longer than what the model reads at once.
+    pub(super) fn is_too_long(&self) -> bool {
+        self.has_mark(&["context_length_exceeded", "exceed_context_size_error"])
+            || self.mentions_any(&["context length", "context size", "context window", "context the overflows"])
+            || self.mentions_any(&["prompt is too long", "too many tokens", "exceeds the maximum number of tokens"])
+    }
+
     /// Whether moderation refused this one request.
     pub(super) fn is_moderated(&self) -> bool {
         self.mentions_any(&["moderation", "flagged"])
@@ -109,8 +119,8 @@ impl ServiceErrorBody {
     }
 
     /// Whether the message contains one of these phrases, in any case.
-    fn mentions_any(&self, phrases: &[&str]) -> bool {
-        let message = self.message.to_ascii_lowercase();
+    pub(super) fn mentions_any(&self, phrases: &[&str]) -> bool {
+        let message: String = self.message.chars().take(MAX_SEARCHED_CHARS).collect::<String>().to_ascii_lowercase();
         phrases.iter().any(|phrase| message.contains(phrase))
     }
 }

@@ -224,13 +224,16 @@ fn a_stream_that_nobody_asked_for_is_joined_and_a_page_of_html_stops() {
     let told = asked(&model(&page, "", &run()), "Well?").unwrap_err();
     assert!(matches!(&told, ModelError::Stopped { hint, .. } if hint.contains("base_url")), "{told:?}");
     assert_eq!((server.requests().len(), page.requests().len()), (1, 2));
-    // In mid-run a page is a passing trouble of a proxy.
+    // In mid-run a page is a passing trouble of a proxy: it is asked for again, once.
     let trouble = Server::start(|count, _, stream| match count {
-        1 | 2 => reply(stream, 200, "", "<html>502</html>"),
+        1 | 3 | 4 => reply(stream, 200, "", "<html>502</html>"),
         _ => reply(stream, 200, "", &answer("fine")),
     });
     let model = model(&trouble, "", &run());
     assert_eq!(["Well?", "And now?"].map(|text| asked(&model, text).unwrap().text), ["fine", "fine"]);
+    let told = asked(&model, "And then?").unwrap_err();
+    assert!(!told.ends_run() && told.to_string().contains("a page of HTML (2 attempts)"), "{told}");
+    assert_eq!(trouble.requests().len(), 5);
 }
 
 /// A service that counts far fewer tokens than were sent cuts the prompt.

@@ -116,10 +116,11 @@ fn says_the_key_back(dialect: &str, header: &str, folder: &Path) {
     );
     let services = ModelServices::new(toml::from_str::<RemoteConfig>(&settings).unwrap(), run).unwrap();
     let model = services.model("mine/m").unwrap();
-    let (failed, stopped) = (asked(&model, "One?").unwrap_err(), asked(&model, "Two?").unwrap_err());
-    assert!(!failed.ends_run() && stopped.ends_run(), "{dialect}: {failed:?} {stopped:?}");
+    let ask = |text: &str| asked(&model, text).unwrap_err();
+    let (unread, refused, stopped) = (ask("One?"), ask("Two?"), ask("Three?"));
+    assert!(!unread.ends_run() && !refused.ends_run() && stopped.ends_run(), "{dialect}: {unread:?} {stopped:?}");
     let shown = format!(
-        "{failed} {failed:?} {stopped} {stopped:?} {services:?} {model:?} {:?}",
+        "{unread} {unread:?} {refused} {refused:?} {stopped} {stopped:?} {services:?} {model:?} {:?}",
         services.check_model("mine/m", true)
     );
     assert!(shown.contains("***") && !shown.contains(KEY), "{shown}");

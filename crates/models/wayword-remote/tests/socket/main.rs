@@ -5,6 +5,7 @@
 mod faults;
 mod keys;
 mod server;
+mod unreadable;
 mod use_;
 
 use server::Server;

@@ -36,6 +36,7 @@ mod models;
 mod models_in_process;
 mod outputs;
 mod platforms;
+mod provider_faults;
 mod real_data;
 mod recording;
 mod report_again;
