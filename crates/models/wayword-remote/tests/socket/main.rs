@@ -5,6 +5,7 @@
 mod faults;
 mod keys;
 mod server;
+mod strays;
 mod unreadable;
 mod use_;
 
