@@ -12,7 +12,20 @@ use std::{
 };
 
 /// Endings of files that may hold poses.
-const POSE_ENDINGS: [&str; 7] = ["tum", "txt", "csv", "tsv", "json", "traj", "log"];
+const POSE_ENDINGS: [&str; 8] = ["tum", "txt", "csv", "tsv", "json", "jsonl", "traj", "log"];
+/// Words in JSON about poses, as several programs write them.
+const POSE_WORDS: [&str; 10] = [
+    "transform_matrix",
+    "\"position\"",
+    "camera_to_world",
+    "camtoworld",
+    "cameraPoseARFrame",
+    "\"translation\"",
+    "\"xyz\"",
+    "\"pose\"",
+    "\"quaternion\"",
+    "\"extrinsics\"",
+];
 /// Places of COLMAP's models.
 const COLMAP_FOLDERS: [&str; 5] = ["sparse/0", "colmap/sparse/0", "sparse", "colmap", "dslr_calibration_undistorted"];
 /// Bytes that are read from the beginning of a file.
@@ -98,9 +111,7 @@ fn looks_like_poses(file: &Path) -> bool {
     }
     let text = String::from_utf8_lossy(&head);
     if text.trim_start().starts_with(['{', '[']) {
-        return ["transform_matrix", "\"position\"", "camera_to_world", "camtoworld", "cameraPoseARFrame"]
-            .iter()
-            .any(|key| text.contains(key));
+        return POSE_WORDS.iter().any(|word| text.contains(word));
     }
     let mut lines = text.lines().filter(|line| !line.trim().is_empty());
     let is_header = |line: &&str| PoseColumns::from_names(&header_names(line)).is_some();
@@ -169,6 +180,8 @@ mod tests {
         write("walk.tum", "1 0 0 1.5 0 0 0 1\n");
         write("named.log", "# timestamp x y z qw qx qy qz\n1 0 0 1.5 1 0 0 0\n");
         write("matrices.txt", "1 0 0 2 0 1 0 3 0 0 1 4\n");
+        write("slam.json", "{\"poses\": [{\"t\": 1, \"xyz\": [0, 0, 1.5]}]}");
+        write("slam.jsonl", "{\"time_s\": 1, \"position\": [0, 0, 1.5]}\n");
         // Neither of these is a pose.
         write("camera_matrix.csv", "300.0, 0.0, 160.0\n0.0, 300.0, 120.0\n0.0, 0.0, 1.0\n");
         write("imu.csv", "timestamp, a_x, a_y, a_z, alpha_x, alpha_y, alpha_z\n1,2,3,4,5,6,7\n");
@@ -180,7 +193,13 @@ mod tests {
             .iter()
             .map(|line| line.split(' ').next().unwrap().to_owned())
             .collect();
-        assert_eq!(named, ["matrices.txt", "named.log", "walk.tum"]);
+        assert_eq!(named, ["matrices.txt", "named.log", "slam.json"]);
+        for read in ["matrices.txt", "named.log"] {
+            std::fs::remove_file(folder.path().join(read)).unwrap();
+        }
+        let named = describe_unread(folder.path(), &files).join(" ");
+        assert!(["slam.json ", "slam.jsonl ", "walk.tum "].iter().all(|name| named.contains(name)), "{named}");
+        write("matrices.txt", "1 0 0 2 0 1 0 3 0 0 1 4\n");
         let inside = [folder.path().join("rgb/1.png")];
         let told = describe_unread(&folder.path().join("rgb"), &inside);
         assert!(told[0].contains("give the folder above as --data"), "{told:?}");
