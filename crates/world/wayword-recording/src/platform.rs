@@ -14,7 +14,7 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     ops::RangeInclusive,
     path::{Path as FilePath, PathBuf},
-    sync::Arc,
+    sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
     DVec3, Frame, Heading, Image, ObjectId, Path, PathMotion, PathRequest, Platform, PlatformError, Pose, RecentCache,
@@ -48,6 +48,8 @@ pub struct RecordingPlatform {
     path: PathBuf,
     source: Box<dyn RecordingSource>,
     hear: OutputListener,
+    /// The remarks that the user has heard.
+    heard: Mutex<BTreeSet<String>>,
     /// Opened one at a time, because opening looks at many pictures of a recording.
     opened: RecentCache<SceneId, OpenedRecording>,
     pictures: RecentCache<(SceneId, usize), Image>,
@@ -77,6 +79,7 @@ impl RecordingPlatform {
             path: path.to_owned(),
             source,
             hear,
+            heard: Mutex::default(),
             opened: RecentCache::one_at_a_time(MAX_OPEN_RECORDINGS),
             pictures: RecentCache::new(MAX_CACHED_PICTURES),
         })
@@ -92,7 +95,10 @@ impl RecordingPlatform {
                 }
             })?;
             (self.hear)(&describe_choice(scene, &recording, &choice));
-            recording.reel.remarks().iter().for_each(|remark| (self.hear)(remark));
+            recording.reel.remarks().iter().for_each(|remark| self.hear_once(remark));
+            if let Some(unread) = recording.track.as_ref().and_then(CameraTrack::unread) {
+                self.hear_once(unread);
+            }
             if recording.track.is_none() && recording.described.poses.is_none() {
                 for line in poses::describe_unread(&self.path, &self.source.files(scene)?) {
                     (self.hear)(&line);
@@ -108,6 +114,14 @@ impl RecordingPlatform {
             }
             OpenedRecording::new(scene, recording, choice)
         })
+    }
+
+    /// Tells the user something that may hold for several recordings.
+    fn hear_once(&self, remark: &str) {
+        let mut heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);
+        if heard.insert(remark.to_owned()) {
+            (self.hear)(remark);
+        }
     }
 
     /// The picture of a frame. The pictures of the next frames are read with it, and stay in memory.

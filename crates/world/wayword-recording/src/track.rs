@@ -28,6 +28,8 @@ pub(crate) struct CameraTrack {
     tally: PoseTally,
     /// A warning about the fixes for the user, if there is one.
     doubt: Option<String>,
+    /// What of the poses is not read, for the user, if there is something.
+    unread: Option<String>,
 }
 
 /// Poses of a recording that do not count as they stand in it.
@@ -55,7 +57,7 @@ impl CameraTrack {
             tally.repeated += usize::from(is_repeated && later != first);
             is_repeated
         });
-        (!fixes.is_empty()).then_some(Self { fixes, tally, doubt: None })
+        (!fixes.is_empty()).then_some(Self { fixes, tally, doubt: None, unread: None })
     }
 
     /// The same track with more poses that do not count.
@@ -74,6 +76,16 @@ impl CameraTrack {
     /// The same track with a warning.
     pub(crate) fn in_doubt(self, doubt: String) -> Self {
         Self { doubt: Some(doubt), ..self }
+    }
+
+    /// The same track with what of its poses is not read.
+    pub(crate) fn with_unread(self, unread: Option<String>) -> Self {
+        Self { unread, ..self }
+    }
+
+    /// What of the poses is not read, for the user, if there is something.
+    pub(crate) fn unread(&self) -> Option<&str> {
+        self.unread.as_deref()
     }
 
     /// The warning about the track for the user, if there is one.

@@ -39,6 +39,11 @@ pub(super) struct DatasetInfo {
     #[serde(default)]
     pub(super) video_path: Option<String>,
     pub(super) features: BTreeMap<String, DatasetFeature>,
+    /// How many episodes and rows it says that there are.
+    #[serde(default)]
+    total_episodes: Option<u64>,
+    #[serde(default)]
+    total_frames: Option<u64>,
 }
 
 /// A feature, as LeRobot calls a column of the rows or a camera.
@@ -97,6 +102,22 @@ impl DatasetInfo {
         }
     }
 
+    /// How what `info.json` says differs from the list of episodes, for the user; `None` where it does not.
+    pub(super) fn describe_other_totals(&self, episodes: u64, rows: u64) -> Option<String> {
+        let differs = |said: Option<u64>, found: u64| said.filter(|said| *said != found);
+        let parts = [
+            differs(self.total_episodes, episodes).map(|said| format!("{said} episodes, but {episodes} are listed")),
+            differs(self.total_frames, rows).map(|said| format!("{said} rows, but the listed episodes have {rows}")),
+        ];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        (!parts.is_empty()).then(|| {
+            format!(
+                "meta/info.json says {}; a part of the dataset may be missing, so download it again",
+                parts.join(", and ")
+            )
+        })
+    }
+
     /// Time from one picture to the next, seconds.
     pub(super) fn step_s(&self) -> f64 {
         1.0 / self.fps
@@ -109,6 +130,29 @@ impl DatasetFeature {
         let depths =
             ["video.is_depth_map", "is_depth_map"].iter().any(|key| self.info.get(key) == Some(&Value::Bool(true)));
         matches!(self.dtype.as_str(), "video" | "image") && !depths
+    }
+
+    /// The width and height of a camera's pictures by `shape`, pixels; `None` if it does not have three numbers with names.
+    fn picture_size(&self) -> Option<(u64, u64)> {
+        let mut names = Vec::new();
+        collect_texts(&self.names, &mut names);
+        let side = |name: &str| {
+            let at = names.iter().position(|other| *other == name)?;
+            self.shape.get(at).copied()
+        };
+        if self.shape.len() == 3 { side("width").zip(side("height")) } else { None }
+    }
+
+    /// How the size of a camera's pictures by `shape` differs from that of its video, for the user; `None` where it does not.
+    pub(super) fn describe_other_size(&self, key: &str, (width_px, height_px): (u32, u32)) -> Option<String> {
+        let (width, height) = self.picture_size()?;
+        let is_same = [(width, height), (height, width)].contains(&(width_px.into(), height_px.into()));
+        (!is_same).then(|| {
+            format!(
+                "meta/info.json says that the pictures of {key} are {width} x {height}, but those of the video are {width_px} x {height_px}; \
+                 the video's count"
+            )
+        })
     }
 
     /// The number of elements in a row; `None` if it is not a list of floating-point numbers.

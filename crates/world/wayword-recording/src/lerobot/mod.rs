@@ -47,7 +47,7 @@ pub(crate) struct LeRobotDataset {
     camera: DatasetCamera,
     pose_feature: Option<PoseFeature>,
     /// What the user has to be told about the dataset.
-    remark: Option<String>,
+    remarks: Vec<String>,
     /// Sorted by name, which is also the order of their numbers.
     episodes: Vec<(SceneId, DatasetEpisode)>,
 }
@@ -65,7 +65,6 @@ impl LeRobotDataset {
         let remark = PoseFeature::describe_candidates(&info)
             .or_else(|| PoseFeature::describe_unclear(&info))
             .filter(|_| is_unclear);
-        let remark = remark.map(|remark| format!("{}: {remark}", root.display()));
         let name = scene_id_for_path(root)?;
         let named = |episode: DatasetEpisode| {
             let scene = SceneId::new(format!("{name}_{:06}", episode.number));
@@ -80,7 +79,10 @@ impl LeRobotDataset {
         if episodes.is_empty() {
             return Err(files::file_error(&root.join("meta"), "lists no episodes", DATASET_HINT));
         }
-        Ok(Self { root: root.to_owned(), described, info, camera, pose_feature, remark, episodes })
+        let rows = episodes.iter().map(|(_, episode)| episode.length).fold(0, u64::saturating_add);
+        let totals = info.describe_other_totals(episodes.len() as u64, rows);
+        let remarks = remark.into_iter().chain(totals).map(|remark| format!("{}: {remark}", root.display())).collect();
+        Ok(Self { root: root.to_owned(), described, info, camera, pose_feature, remarks, episodes })
     }
 
     fn find_episode(&self, scene: &SceneId) -> Result<&DatasetEpisode, PlatformError> {
@@ -137,7 +139,7 @@ impl RecordingSource for LeRobotDataset {
         let table = ParquetTable::open(&episode.data)?;
         let rows = find_episode_rows(&table, episode, self.info.layout())?;
         let mut times_s = read_times_s(&table, rows.clone())?;
-        let mut remarks: Vec<String> = self.remark.iter().cloned().collect();
+        let mut remarks = self.remarks.clone();
         let mut video = None;
         if let Some(clip) = &episode.clip {
             let step_s = self.info.step_s();
@@ -159,6 +161,11 @@ impl RecordingSource for LeRobotDataset {
         let track = self.read_track(&table, rows.clone(), &times_s, &mut remarks)?;
         let reel: Box<dyn PictureReel> = match video {
             Some(mut video) => {
+                let key = &self.camera.key;
+                let other_size =
+                    self.info.features.get(key).and_then(|feature| feature.describe_other_size(key, video.size_px()));
+                remarks.extend(other_size.map(|remark| format!("{}: {remark}", self.root.display())));
+                remarks.append(&mut video.remarks);
                 video.remarks = remarks;
                 Box::new(video)
             }

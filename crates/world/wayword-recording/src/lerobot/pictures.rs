@@ -86,7 +86,8 @@ impl VideoStretch {
     /// When the video cannot be read, or has no picture for one of them.
     pub(super) fn open(clip: &VideoClip, times_s: &[f64], step_s: f64) -> Result<Self, PlatformError> {
         let film = Mp4Film::open(&clip.file, None).map_err(advise_in_place)?;
-        let mut stretch = Self { film, numbers: Vec::new(), times_s: Vec::new(), remarks: Vec::new() };
+        let remarks = film.remarks().to_vec();
+        let mut stretch = Self { film, numbers: Vec::new(), times_s: Vec::new(), remarks };
         for (row, time_s) in times_s.iter().copied().enumerate() {
             let wanted_s = clip.from_s + time_s;
             let number = nearest_time(stretch.film.times_s(), wanted_s, step_s / 2.0);
@@ -102,6 +103,11 @@ impl VideoStretch {
             }
         }
         Ok(stretch)
+    }
+
+    /// Width and height of the video's pictures, pixels, as the file says.
+    pub(super) fn size_px(&self) -> (u32, u32) {
+        self.film.size_px()
     }
 }
 

@@ -256,6 +256,21 @@ fn files_below(folder: &Path, into: &mut Vec<PathBuf>) {
 }
 
 #[test]
+fn what_info_json_says_otherwise_is_told() {
+    for name in DATASETS {
+        let (_folder, root) = dataset(name);
+        assert!(recording(&root, 0).unwrap().reel.remarks().is_empty(), "{name}");
+        edit(&root, "\"total_episodes\": 2", "\"total_episodes\": 50");
+        edit(&root, "\"total_frames\": 13", "\"total_frames\": 700");
+        let told = recording(&root, 0).unwrap().reel.remarks().join("\n");
+        assert!(
+            told.contains("says 50 episodes, but 2 are listed, and 700 rows, but the listed episodes have 13"),
+            "{name}: {told}"
+        );
+    }
+}
+
+#[test]
 fn a_video_in_another_codec_is_written_again_in_its_place() {
     let (_folder, root) = dataset("v21_videos");
     let video = root.join("videos/chunk-000").join(CAMERA).join("episode_000000.mp4");

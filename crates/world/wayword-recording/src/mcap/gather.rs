@@ -50,6 +50,13 @@ impl McapPart {
         Ok(Self { path: path.to_owned(), file, contents })
     }
 
+    /// Where this file breaks off, for the user; `None` if it is whole.
+    pub(super) fn describe_break(&self) -> Option<String> {
+        let end = self.contents.broken.as_ref()?;
+        let name = self.path.file_name().unwrap_or_default().display();
+        Some(format!("{name} is cut off or damaged ({end})"))
+    }
+
     /// The error for a recording that breaks off in this file, of which a reason is known; `None` if the file is whole.
     pub(super) fn broken_error(&self, why: &str) -> Option<PlatformError> {
         let end = self.contents.broken.as_ref()?;

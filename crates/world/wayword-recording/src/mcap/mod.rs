@@ -102,7 +102,15 @@ impl McapFile {
         let shots = timed_shots(shots, &camera_timing);
         let first_ns = shots.first().map_or(0, |(time_ns, _)| *time_ns);
         let horizontal_fov_rad = topics::find_lens(&lenses, camera, frame).and_then(|lens| lens.horizontal_fov_rad);
-        let remarks = plan.remarks.into_iter().chain(poses.describe_unturned(chain.as_ref()));
+        let broken: Vec<String> = parts.iter().filter_map(McapPart::describe_break).collect();
+        let last_s = shots.last().map_or(0.0, |(time_ns, _)| seconds_since(*time_ns, first_ns));
+        let lost = (!broken.is_empty()).then(|| {
+            format!(
+                "{}, so the pictures end after {last_s:.1} s, and what was recorded later is missing; `mcap recover` may save more",
+                broken.join(", and ")
+            )
+        });
+        let remarks = lost.into_iter().chain(plan.remarks).chain(poses.describe_unturned(chain.as_ref()));
         let pictures = TopicReel {
             files: self.files.clone(),
             topic: camera.to_owned(),

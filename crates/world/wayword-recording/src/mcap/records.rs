@@ -1,10 +1,12 @@
 //! Reads those records of an MCAP file that concern messages, one after another, also in chunks (mcap.dev/spec).
 //!
 //! The crate `mcap` unpacks compressed chunks, a record at a time. Everything else is read here, because the crate
-//! reads every record whole, while only the first bytes of a picture are needed to find its time.
+//! reads every record whole, while only the first bytes of a picture are needed to find its time. It also reads chunks that are not
+//! compressed and have a checksum, up to a size.
 
 use super::record::{McapRecord, RecordPlace};
 use mcap::{
+    McapError,
     records::op,
     sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions},
 };
@@ -25,6 +27,8 @@ const MESSAGE_HEAD_BYTES: u64 = 22;
 const MAX_RECORD_BYTES: u64 = 64 << 20;
 /// Bytes that are read from the file at once: a picture's head is short, and the rest may be skipped.
 const BUFFER_BYTES: usize = 16 << 10;
+/// Largest chunk that is not compressed and whose checksum is compared, bytes. A larger one is only read where a message is needed.
+const MAX_CHECKED_BYTES: u64 = 16 << 20;
 /// A chunk may unpack to the first number of bytes plus the second number times its size in the file.
 const MAX_UNPACKED: (u64, u64) = (256 << 20, 1000);
 /// The limit for a record is the size of its unpacked chunk, but within these bounds, bytes. The crate makes room for a
@@ -140,11 +144,13 @@ impl<'a> RecordReader<'a> {
         // not compressed), and then the length of the records.
         self.read_exactly::<16>()?;
         let unpacked_bytes = u64::from_le_bytes(self.read_exactly()?);
-        self.read_exactly::<4>()?;
+        let has_checksum = self.read_exactly::<4>()? != [0; 4];
         let is_packed = self.read_exactly::<4>()? != [0; 4];
         let records_bytes = u64::from_le_bytes(self.read_exactly()?);
-        // The crate handles all unusual chunks.
-        if !is_packed && records_bytes.checked_add(CHUNK_HEAD_BYTES) == Some(length) {
+        let is_whole = from.saturating_add(HEAD_BYTES).saturating_add(length) <= self.end;
+        let is_checked = has_checksum && is_whole && length <= MAX_CHECKED_BYTES;
+        // The crate compares checksums, and handles all unusual chunks.
+        if !is_packed && !is_checked && records_bytes.checked_add(CHUNK_HEAD_BYTES) == Some(length) {
             (self.at, self.chunk_end) = (from + HEAD_BYTES + CHUNK_HEAD_BYTES, end);
             return Ok(());
         }
@@ -159,6 +165,7 @@ impl<'a> RecordReader<'a> {
         let record_bytes = unpacked_bytes.clamp(UNPACKED_RECORD.0, UNPACKED_RECORD.1);
         let record_bytes = usize::try_from(record_bytes).unwrap_or(usize::MAX);
         let options = LinearReaderOptions::default().with_skip_start_magic(true).with_skip_end_magic(true);
+        let options = options.with_validate_chunk_crcs(true);
         let reader = LinearReader::new_with_options(options.with_record_length_limit(record_bytes));
         self.packed = Some(PackedChunk { reader, from, end, left: packed_bytes, at: 0 });
         Ok(())
@@ -222,10 +229,11 @@ impl PackedChunk {
         hear: &mut HearRecord<'_>,
     ) -> Result<ControlFlow<()>, String> {
         loop {
-            let place = RecordPlace { file_at: self.from, within: Some(self.at) };
+            let from = self.from;
+            let place = RecordPlace { file_at: from, within: Some(self.at) };
             let event =
                 run_contained(|| self.reader.next_event()).ok_or_else(|| format!("{place}: cannot be unpacked"))?;
-            match event.transpose().map_err(|error| format!("{place}: {error}"))? {
+            match event.transpose().map_err(|error| chunk_fault(&error, from, place))? {
                 None => return Ok(ControlFlow::Continue(())),
                 Some(LinearReadEvent::ReadRequest(count)) => {
                     // If the chunk ends too early this is less, or 0; the reader reports that.
@@ -244,6 +252,16 @@ impl PackedChunk {
                 }
             }
         }
+    }
+}
+
+/// Why a chunk that begins at `from` cannot be read on.
+fn chunk_fault(error: &McapError, from: u64, place: RecordPlace) -> String {
+    match error {
+        McapError::BadChunkCrc { .. } => {
+            format!("the chunk at byte {from} is damaged: its checksum does not fit its contents")
+        }
+        error => format!("{place}: {error}"),
     }
 }
 

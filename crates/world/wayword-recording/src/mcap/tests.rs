@@ -384,6 +384,64 @@ fn a_damaged_chunk_in_a_file_with_a_summary_is_an_error_that_names_the_byte() {
     }
 }
 
+/// The offset of a file's first chunk.
+fn first_chunk(bytes: &[u8]) -> usize {
+    let mut at = MAGIC.len();
+    while bytes[at] != ::mcap::records::op::CHUNK {
+        at += 9 + u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize;
+    }
+    at
+}
+
+/// The checksum that MCAP has: CRC-32.
+fn crc_32(bytes: &[u8]) -> u32 {
+    let step = |crc: u32| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 };
+    let take = |crc: u32, byte: &u8| (0..8).fold(crc ^ u32::from(*byte), |crc, _| step(crc));
+    !bytes.iter().fold(!0, take)
+}
+
+/// A bit that changed in a picture leaves a chunk that can be read, and only its checksum shows it.
+#[test]
+fn a_chunk_with_a_wrong_checksum_is_an_error_that_names_the_byte() {
+    for (name, is_packed) in [("tree_chunks.mcap", false), ("odometry_lz4.mcap", true)] {
+        let mut bytes = std::fs::read(fixture(name)).unwrap();
+        let at = first_chunk(&bytes);
+        let checksum = at + 9 + 24..at + 9 + 28;
+        if !is_packed {
+            let length = u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize;
+            let right = crc_32(&bytes[at + 9 + 40..at + 9 + length]);
+            bytes[checksum.clone()].copy_from_slice(&right.to_le_bytes());
+        }
+        let (_folder, recording) = bytes_read(&bytes, RecordingDescription::default());
+        check_colours(&recording.unwrap(), &[0, 1, 4, 10]);
+        bytes[checksum.start] ^= 0x55;
+        let error = bytes_read(&bytes, RecordingDescription::default()).1.err().unwrap_or_default();
+        assert!(error.contains(&format!("chunk at byte {at} is damaged: its checksum")), "{name}: {error}");
+        assert!(error.contains("mcap recover"), "{error}");
+        // A recorder that writes none.
+        bytes[checksum].fill(0);
+        assert!(bytes_read(&bytes, RecordingDescription::default()).1.is_ok(), "{name}");
+    }
+}
+
+#[test]
+fn what_a_cut_file_lacks_is_said() {
+    for name in ["tree_chunks.mcap", "tree_bare.mcap", "odometry_lz4.mcap"] {
+        let whole = std::fs::read(fixture(name)).unwrap();
+        assert!(read(&fixture(name), RecordingDescription::default()).unwrap().reel.remarks().is_empty(), "{name}");
+        let cut = chunks(name).last().map_or(whole.len() * 7 / 10, |chunk| chunk + 60);
+        let (_folder, recording) = bytes_read(&whole[..cut], RecordingDescription::default());
+        let recording = recording.unwrap();
+        let last_s = recording.reel.times_s().last().copied().unwrap();
+        let told = recording.reel.remarks().join("\n");
+        assert!(
+            told.contains("made.mcap is cut off or damaged (byte")
+                && told.contains(&format!("end after {last_s:.1} s")),
+            "{name}: {told}"
+        );
+    }
+}
+
 /// Reads all of a file that may be broken.
 fn exhaust(bytes: &[u8]) {
     if let (_folder, Ok(recording)) = bytes_read(bytes, RecordingDescription::default()) {

@@ -240,6 +240,19 @@ fn a_doubt_about_poses_is_reported() {
 }
 
 #[test]
+fn columns_that_are_not_read_are_named_once() {
+    let folder = walk(true);
+    let csv = std::fs::read_to_string(folder.path().join("poses.csv")).unwrap();
+    let with_speed: String =
+        csv.lines().map(|line| format!("{line},{}\n", if line.starts_with("image") { "speed" } else { "1" })).collect();
+    std::fs::write(folder.path().join("poses.csv"), with_speed).unwrap();
+    let (platform, scene, heard) = open(&folder);
+    platform.graph_for_scene(&scene).unwrap();
+    let heard = heard.lock().unwrap();
+    assert!(heard.len() == 2 && heard[1].ends_with("poses.csv: the column speed is not read"), "{heard:?}");
+}
+
+#[test]
 fn a_short_recording_is_taken_whole_unless_another_length_is_asked_for() {
     // Four metres of the walk are less than the usual least length, and three pictures are fewer than the usual hops.
     for (poses, pictures) in [(true, 5), (true, 2), (false, 3)] {

@@ -40,6 +40,9 @@ enum FacingColumns {
 
 /// The beginning of the columns' names for positions in EuRoC (a dataset of flights).
 const EUROC_POSITION: &str = "p_rs_r_";
+/// Most columns that a message names, and most characters of a name.
+const MAX_NAMED_COLUMNS: usize = 6;
+const MAX_NAME_CHARS: usize = 30;
 /// Names of a column that counts pictures.
 const FRAME_NAMES: [&str; 3] = ["frame", "frame_number", "frame_index"];
 
@@ -83,6 +86,11 @@ pub(super) fn header_names(line: &str) -> Vec<String> {
     line.split(separator).map(|cell| normal_column_name(cell.trim().trim_matches('"'))).collect()
 }
 
+/// A name from a file, short and in a form that is safe to show.
+fn clip_name(name: &str) -> String {
+    name.chars().take(MAX_NAME_CHARS).collect::<String>().escape_debug().to_string()
+}
+
 /// Whether a header is EuRoC's. Its sensor has z ahead and x up (`T_BS` in its sensor.yaml).
 pub(super) fn is_euroc_header(header: &str) -> bool {
     header.to_ascii_lowercase().contains(EUROC_POSITION)
@@ -117,6 +125,38 @@ impl PoseColumns {
             frame,
             names_unit: metric("x").is_some(),
         })
+    }
+
+    /// The columns among these names that are not read, for the user; `None` if all are.
+    pub(super) fn describe_unread(&self, names: &[String]) -> Option<String> {
+        let key = match self.key {
+            KeyColumn::Time { column, .. } | KeyColumn::Picture(column) | KeyColumn::Frame(column) => column,
+        };
+        let facing = match self.facing {
+            FacingColumns::Nowhere => Vec::new(),
+            FacingColumns::Quaternion(columns) => columns.to_vec(),
+            FacingColumns::Yaw { column, .. } | FacingColumns::Heading { column, .. } => vec![column],
+        };
+        let read: Vec<usize> = [key].into_iter().chain(self.position).chain(facing).chain(self.frame).collect();
+        let unread = names.iter().enumerate().filter(|(at, name)| !read.contains(at) && !name.is_empty());
+        let unread: Vec<String> = unread.map(|(_, name)| clip_name(name)).collect();
+        let first = unread.get(..unread.len().min(MAX_NAMED_COLUMNS)).unwrap_or_default().join(", ");
+        let more = match unread.len().saturating_sub(MAX_NAMED_COLUMNS) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let are = match unread.len() {
+            0 => return None,
+            1 => format!("the column {first} is not read"),
+            _ => format!("the columns {first}{more} are not read"),
+        };
+        let without_facing = match self.facing {
+            FacingColumns::Nowhere => {
+                "; no column gives the direction of the camera, so it counts as looking along the path (qx, qy, qz, qw, yaw_rad or heading_deg would)"
+            }
+            _ => "",
+        };
+        Some(are + without_facing)
     }
 
     /// Whether its names give the order of a quaternion.

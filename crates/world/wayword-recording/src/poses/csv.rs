@@ -48,7 +48,9 @@ pub(super) fn read_csv(text: &str) -> Result<PoseRows, String> {
         unit: is_euroc || is_stray || columns.names_unit,
         angle_unit: columns.names_angle_unit(),
     };
-    Ok(PoseRows { frames, ..PoseRows::new(PoseAxes { world, ..PoseAxes::for_body(body) }, known, rows) })
+    // The further columns of these formats are known, and no poses.
+    let unread = columns.describe_unread(&names).filter(|_| !is_euroc && !is_stray);
+    Ok(PoseRows { frames, unread, ..PoseRows::new(PoseAxes { world, ..PoseAxes::for_body(body) }, known, rows) })
 }
 
 /// The cells of a line, up to a quoted cell that contains the separator: all cells after that one would be shifted.

@@ -39,7 +39,8 @@ pub(super) fn read_matrix(text: &str) -> Result<PoseRows, String> {
             unit: is_euroc || columns.names_unit,
             angle_unit: columns.names_angle_unit(),
         };
-        return Ok(PoseRows::new(usual, known, rows.collect::<Result<_, _>>()?));
+        let unread = columns.describe_unread(&header_names(header)).filter(|_| !is_euroc);
+        return Ok(PoseRows { unread, ..PoseRows::new(usual, known, rows.collect::<Result<_, _>>()?) });
     }
     let mut rows = Vec::with_capacity(lines.len());
     for line in &lines {
@@ -60,7 +61,9 @@ pub(super) fn read_matrix(text: &str) -> Result<PoseRows, String> {
     }
     let kitti = PoseAxes { world: WorldUpAxis::YDown, ..usual };
     let is_matrix = matches!(width, 12 | 13 | 16 | 17);
-    Ok(PoseRows::new(if is_matrix { kitti } else { usual }, KnownConventions::BODY_ONLY, rows))
+    let unread = (width == 9).then(|| "column 9 is not read: it numbers the poses".to_owned());
+    let rows = PoseRows::new(if is_matrix { kitti } else { usual }, KnownConventions::BODY_ONLY, rows);
+    Ok(PoseRows { unread, ..rows })
 }
 
 /// Reads ARKitScenes' trajectories: `time`, an axis of rotation whose length is the angle in radians, and a translation, from the

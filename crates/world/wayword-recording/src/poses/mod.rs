@@ -141,7 +141,8 @@ impl TrackMaker<'_> {
         if !axes.world.has_yaw() && self.rows.has_facing(|facing| matches!(facing, PoseFacing::Yaw(_))) {
             return Err(self.wrong("a yaw turns about z, so `world` must be z-up, unity, unreal or ned".into()));
         }
-        let track = self.place_in_time((numbers, axes, metres_per_unit))?;
+        let unread = self.rows.unread.take().map(|unread| format!("{}: {unread}", self.origin.display()));
+        let track = self.place_in_time((numbers, axes, metres_per_unit))?.with_unread(unread);
         if let Some(PoseDoubt::Misread(reason)) = doubt {
             return Err(self.question(reason));
         }

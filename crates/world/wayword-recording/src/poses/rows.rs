@@ -21,6 +21,8 @@ pub(super) struct PoseRows {
     pub(super) frames: Option<Vec<usize>>,
     /// Where the camera is on the body to which the poses belong, if that is known.
     pub(super) mounting: Option<CameraMounting>,
+    /// The columns that are not read, for the user, if there are any.
+    pub(super) unread: Option<String>,
 }
 
 /// What the rows of a file are, for messages that name one of them.
@@ -138,7 +140,7 @@ impl PoseRows {
     /// Rows of a format with usual axes and nothing else to say.
     pub(super) fn new(usual: PoseAxes, known: KnownConventions, rows: Vec<PoseRow>) -> Self {
         let (usual_numbers, kind) = (NumberReading::default(), RowKind::Line);
-        Self { usual, usual_numbers, known, kind, rows, frames: None, mounting: None }
+        Self { usual, usual_numbers, known, kind, rows, frames: None, mounting: None, unread: None }
     }
 
     /// A row in words: `line 5`.

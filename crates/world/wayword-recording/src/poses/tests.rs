@@ -230,6 +230,31 @@ fn a_column_that_counts_the_pictures_decides_if_it_does() {
     assert!(other.contains("subtract 52311.25 s"), "{other}");
 }
 
+#[test]
+fn columns_that_are_not_read_are_named() {
+    let unread = |name: &str, text: &str| {
+        let track = read(name, text, 0.0, &RecordingDescription::default()).unwrap();
+        track.unread().map(|told| told.split_once(": ").unwrap().1.to_owned())
+    };
+    let rows = |cells: &str| format!("0,0,0,0{cells}\n1,1,0,0{cells}\n2,2,0,0{cells}\n");
+    let csv = |names: &str, cells: &str| format!("time_s,x,y,z{names}\n{}", rows(cells));
+    assert_eq!(unread("a.csv", &csv(",heading_deg", ",90")), None);
+    assert_eq!(
+        unread("a.csv", &csv(",heading_deg,speed,gps", ",90,1,2")).unwrap(),
+        "the columns speed, gps are not read"
+    );
+    // A direction that is not read is worse.
+    let told = unread("a.csv", &csv(",roll,pitch,azimuth", ",0,0,90")).unwrap();
+    assert!(told.starts_with("the columns roll, pitch, azimuth are not read; no column gives the direction"), "{told}");
+    let many: String = (0..9).map(|at| format!(",c{at}")).collect();
+    assert!(unread("a.csv", &csv(&many, &",0".repeat(9))).unwrap().contains("c5 and 3 more are not read"));
+    let numbered = "0 0 0 0 0 0 0 1 1\n1 1 0 0 0 0 0 1 2\n2 2 0 0 0 0 0 1 3\n";
+    assert_eq!(unread("a.tum", numbered).unwrap(), "column 9 is not read: it numbers the poses");
+    assert_eq!(unread("a.tum", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n"), None);
+    let named = format!("# time x y z qx qy qz qw cov\n{}", numbered.replace(" 1 1\n", " 1 0.5\n"));
+    assert_eq!(unread("a.txt", &named).unwrap(), "the column cov is not read");
+}
+
 proptest! {
     #[test]
     fn no_file_makes_it_panic(text in "(time|x|y|z|qw|image|[0-9.,;# \\-\n\"\\[\\]{}:e]){0,60}", ending in "(csv|json|tum)") {

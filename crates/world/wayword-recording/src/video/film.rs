@@ -27,6 +27,8 @@ pub(crate) struct Mp4Film {
     file: PathBuf,
     movie: Mp4Movie,
     times_s: Vec<f64>,
+    /// What the user has to be told about the file.
+    remarks: Vec<String>,
 }
 
 impl Mp4Film {
@@ -40,8 +42,20 @@ impl Mp4Film {
         let movie = Mp4Movie::read(&mut opened, camera);
         let movie =
             movie.map_err(|refusal| file_kind::refuse_file(file, "an MP4 video", (refusal.reason, refusal.hint)))?;
-        let times_s = movie.shown.iter().map(|shown| shown.time_s).collect();
-        Ok(Self { file: file.to_owned(), movie, times_s })
+        let times_s: Vec<f64> = movie.shown.iter().map(|shown| shown.time_s).collect();
+        let remarks = describe_loss(&movie, &times_s).map(|loss| format!("{}: {loss}", file.display()));
+        Ok(Self { file: file.to_owned(), movie, times_s, remarks: remarks.into_iter().collect() })
+    }
+
+    /// What the user has to be told about the file, one line each.
+    pub(crate) fn remarks(&self) -> &[String] {
+        &self.remarks
+    }
+
+    /// Width and height of the coded pictures, pixels, as the file says.
+    #[cfg(feature = "lerobot")]
+    pub(crate) fn size_px(&self) -> (u32, u32) {
+        self.movie.size_px
     }
 
     /// The time at which each picture is shown, seconds from the start of the video, ascending (equal times may follow).
@@ -127,6 +141,19 @@ impl Mp4Film {
         }
         Ok(decoded_to)
     }
+}
+
+/// What a movie lacks that broke off, for the user; `None` if it is whole.
+fn describe_loss(movie: &Mp4Movie, times_s: &[f64]) -> Option<String> {
+    if !movie.breaks_off {
+        return None;
+    }
+    let last_s = times_s.last().copied().unwrap_or(0.0);
+    let of = movie.announced_s.map_or_else(String::new, |announced_s| format!(" of {announced_s:.1} s"));
+    Some(format!(
+        "the file breaks off: its {} pictures end after {last_s:.1} s{of}, and what was recorded later is missing",
+        times_s.len()
+    ))
 }
 
 /// Holds decoded pictures until it is their turn to be handed out.

@@ -80,6 +80,10 @@ impl PictureReel for Mp4Film {
         number.to_string()
     }
 
+    fn remarks(&self) -> &[String] {
+        self.remarks()
+    }
+
     fn hand_out_pictures(&self, wanted: &[usize], take: &mut TakePicture<'_>) -> Result<(), PlatformError> {
         self.decode_pictures(wanted, take)
     }

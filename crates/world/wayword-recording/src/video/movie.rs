@@ -24,6 +24,8 @@ const MAX_BOXES: u64 = 2 * tables::MAX_SAMPLES;
 /// The advice for a video that cannot be read.
 pub(super) const VIDEO_HINT: &str = crate::file_kind::ENCODE_HINT;
 const CAMERA_HINT: &str = "write `camera = \"NUMBER\"` into the .toml file beside it";
+const CUT_HINT: &str = "copy the file again from where it was recorded; or keep what is there: \
+                        ffmpeg -i IN -c:v libx264 -pix_fmt yuv420p -an OUT.mp4";
 const NO_VIDEO_HINT: &str = "give a file with a video; `ffprobe FILE` lists what a file holds";
 
 /// A video track.
@@ -35,6 +37,12 @@ pub(super) struct Mp4Movie {
     pub(super) samples: Vec<TrackSample>,
     /// In the order in which they are shown.
     pub(super) shown: Vec<ShownPicture>,
+    /// Whether a fragmented file breaks off, so that later pictures are missing.
+    pub(super) breaks_off: bool,
+    /// How long the file says that the movie is, seconds; `None` if a fragmented file does not say it.
+    pub(super) announced_s: Option<f64>,
+    /// Width and height of the coded pictures, pixels, as the file says.
+    pub(super) size_px: (u32, u32),
 }
 
 impl Mp4Movie {
@@ -48,7 +56,9 @@ impl Mp4Movie {
         }
         let hint = if tracks.is_empty() { NO_VIDEO_HINT } else { CAMERA_HINT };
         let track = choose_track(&tracks, camera).map_err(|reason| Mp4Error { reason, hint })?;
-        Ok(track.read_movie(&parts, file_bytes).map_err(|reason| format!("track {} {reason}", track.number))?)
+        track
+            .read_movie(&parts, file_bytes)
+            .map_err(|error| Mp4Error { reason: format!("track {} {}", track.number, error.reason), hint: error.hint })
     }
 }
 
@@ -71,16 +81,20 @@ struct MovieBoxes {
     moov: Vec<u8>,
     /// Each box `moof`, which describes a fragment, after its offset in the file.
     moofs: Vec<(u64, Vec<u8>)>,
+    /// Whether a box goes beyond the end of the file.
+    breaks_off: bool,
 }
 
 impl MovieBoxes {
     fn read(file: &mut File, file_bytes: u64) -> Result<Self, String> {
         let (mut moov, mut moofs) = (None, Vec::new());
         let (mut start, mut describing, mut count) = (0, 0, 0);
+        let mut breaks_off = false;
         while start < file_bytes && count < MAX_BOXES {
             count += 1;
             let Some(header) = header_at(file, start, file_bytes)? else { break };
             let end = start.saturating_add(header.bytes);
+            breaks_off |= end > file_bytes;
             if matches!(&header.kind, b"moov" | b"moof") {
                 // This is the last fragment of a recording that was cut off.
                 if end > file_bytes {
@@ -101,7 +115,7 @@ impl MovieBoxes {
         let moov = moov.ok_or_else(|| {
             "is not a complete MP4 file: it has no box `moov`, which recorders write when they stop".to_owned()
         })?;
-        Ok(Self { moov, moofs })
+        Ok(Self { moov, moofs, breaks_off })
     }
 }
 
@@ -159,14 +173,14 @@ impl<'a> VideoTrack<'a> {
     }
 
     /// Reads the samples of the track, and which of them are shown when.
-    fn read_movie(&self, parts: &MovieBoxes, file_bytes: u64) -> Result<Mp4Movie, String> {
+    fn read_movie(&self, parts: &MovieBoxes, file_bytes: u64) -> Result<Mp4Movie, Mp4Error> {
         let codec = match &self.entry.codec {
             sample_entry::NamedCodec::H264(record) => {
                 ReadableCodec::H264(h264::H264Setup::read(record, self.entry.colour)?)
             }
             sample_entry::NamedCodec::Av1 => ReadableCodec::Av1(self.entry.colour),
             sample_entry::NamedCodec::Other(name) => {
-                return Err(format!("is in {name}, but only H.264 and AV1 can be read"));
+                return Err(format!("is in {name}, but only H.264 and AV1 can be read").into());
             }
         };
         let mut samples = tables::read_samples(self.stbl, file_bytes)?;
@@ -176,15 +190,25 @@ impl<'a> VideoTrack<'a> {
                 .add_fragment(moof, *start, &mut samples)
                 .map_err(|reason| format!("byte {start}: box `moof` {reason}"))?;
         }
-        check_whole(&mut samples, file_bytes, !parts.moofs.is_empty())?;
+        let is_fragmented = !parts.moofs.is_empty();
+        let lacks_samples = check_whole(&mut samples, file_bytes, is_fragmented)?;
         let movie = find_box(&parts.moov, b"mvhd").map_or(Ok(self.ticks_per_s), ticks_per_s).map_err(in_box("mvhd"))?;
         let shown =
             edits::shown_pictures(&samples, edits::read_edit(self.trak)?, TickRates { movie, track: self.ticks_per_s });
         if shown.is_empty() {
-            return Err("holds no pictures".to_owned());
+            return Err("holds no pictures".to_owned().into());
         }
+        let announced_s = if is_fragmented { announced_s(&parts.moov, movie) } else { None };
         let turn = PictureTurn::read(need_box(self.trak, b"tkhd")?).map_err(in_box("tkhd"))?;
-        Ok(Mp4Movie { codec, turn, samples, shown })
+        Ok(Mp4Movie {
+            codec,
+            turn,
+            samples,
+            shown,
+            breaks_off: is_fragmented && (lacks_samples || parts.breaks_off),
+            announced_s,
+            size_px: (u32::from(self.entry.width_px), u32::from(self.entry.height_px)),
+        })
     }
 
     /// The track in words: its number, codec and size.
@@ -208,6 +232,13 @@ fn ticks_per_s(header: &[u8]) -> Result<u32, String> {
     }
 }
 
+/// How long a fragmented movie is by its box `mehd`, seconds; `None` if it has none.
+fn announced_s(moov: &[u8], ticks_per_s: u32) -> Option<f64> {
+    let (mut fields, version, _) = BoxFields::with_version(find_box(find_box(moov, b"mvex")?, b"mehd")?).ok()?;
+    let ticks = fields.read_versioned(version).ok().filter(|ticks| *ticks > 0)?;
+    Some(ticks as f64 / f64::from(ticks_per_s))
+}
+
 /// The track that the user named, else the only one.
 fn choose_track<'a, 'b>(tracks: &'b [VideoTrack<'a>], camera: Option<&str>) -> Result<&'b VideoTrack<'a>, String> {
     let names = || tracks.iter().map(VideoTrack::describe_track).collect::<Vec<_>>().join(", ");
@@ -225,17 +256,18 @@ fn choose_track<'a, 'b>(tracks: &'b [VideoTrack<'a>], camera: Option<&str>) -> R
     }
 }
 
-/// Checks that all samples lie in the file. A fragmented file that was cut off is read as far as it goes.
-fn check_whole(samples: &mut Vec<TrackSample>, file_bytes: u64, is_fragmented: bool) -> Result<(), String> {
+/// Checks that all samples lie in the file. A fragmented file that was cut off is read as far as it goes; returns whether it was.
+fn check_whole(samples: &mut Vec<TrackSample>, file_bytes: u64, is_fragmented: bool) -> Result<bool, Mp4Error> {
     let outside = |sample: &TrackSample| sample.offset.saturating_add(u64::from(sample.bytes)) > file_bytes;
     let first = samples.iter().position(outside).and_then(|at| Some((at, samples.get(at)?.offset)));
-    let Some((first, offset)) = first else { return Ok(()) };
+    let Some((first, offset)) = first else { return Ok(false) };
     if is_fragmented && first > 0 {
         samples.truncate(first);
-        return Ok(());
+        return Ok(true);
     }
-    Err(format!(
+    let reason = format!(
         "is cut off: picture {first} of {} should lie at byte {offset}, but the file has only {file_bytes} bytes",
         samples.len()
-    ))
+    );
+    Err(Mp4Error { reason, hint: CUT_HINT })
 }

@@ -199,6 +199,26 @@ fn a_recording_that_was_broken_off_is_read_as_far_as_it_goes() {
 }
 
 #[test]
+fn what_a_video_lacks_that_breaks_off_is_said() {
+    let whole = std::fs::read(fixture("fragmented.mp4")).unwrap();
+    assert!(film("fragmented.mp4").remarks().is_empty() && film("high.mp4").remarks().is_empty());
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("video.mp4");
+    for bytes in [whole.len() - 700, whole.len() * 6 / 10] {
+        std::fs::write(&file, &whole[..bytes]).unwrap();
+        let film = Mp4Film::open(&file, None).unwrap();
+        let last_s = film.times_s().last().unwrap();
+        let told = film.remarks().join("\n");
+        assert!(told.contains("breaks off") && told.contains(&format!("end after {last_s:.1} s")), "{told}");
+    }
+    // The index is at the beginning of this one.
+    let whole = std::fs::read(fixture("cut.mp4")).unwrap();
+    std::fs::write(&file, &whole[..whole.len() * 6 / 10]).unwrap();
+    let error = Mp4Film::open(&file, None).unwrap_err().to_string();
+    assert!(error.contains("moov") || error.contains("copy the file again"), "{error}");
+}
+
+#[test]
 fn a_table_that_claims_four_thousand_million_pictures_is_refused() {
     let mut bytes = std::fs::read(fixture("high.mp4")).unwrap();
     let stsz = bytes.windows(4).position(|kind| kind == b"stsz").unwrap();
