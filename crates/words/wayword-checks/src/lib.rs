@@ -39,6 +39,7 @@ mod one_place;
 pub mod open;
 mod order;
 mod sides;
+mod stop_marks;
 mod task;
 mod testimony;
 #[cfg(test)]
@@ -212,6 +213,7 @@ fn check_against(
     findings.extend(coverage::check_coverage(&reading, reading.language.or_tagged(subject.tag)));
     findings.push(leak::check_leak(text, whole.tokens(), subject));
     findings.sort_by_key(|finding| finding.check);
+    stop_marks::move_stop_marks(&reading, &places.shown, &mut frames);
     TextFindings { mentions: collect_mentions(&reading, &frames), findings, parts, world: subject.world }
 }
 
