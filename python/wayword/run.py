@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import pathlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -32,10 +33,11 @@ class Frame:
     """
 
     position: tuple[float, float, float]
-    """The eye: x, y, z in metres."""
+    """The eye: x, y, z in metres; NaN where the path has no poses."""
     heading_rad: float
+    """NaN where the path has no poses."""
     elevation_rad: float
-    """0 is level, up is positive."""
+    """0 is level, up is positive; NaN where the path has no poses."""
     viewpoint: str | None = None
     """The node of the viewpoint graph, if the frame is at one."""
     level: int | None = None
@@ -58,12 +60,12 @@ class Path:
 
     @property
     def positions(self) -> npt.NDArray[np.float64]:
-        """The eye at each frame: metres, shape (frames, 3)."""
+        """The eye at each frame: metres, shape (frames, 3); NaN without poses."""
         return np.array([frame.position for frame in self.frames], dtype=np.float64).reshape(-1, 3)
 
     @property
     def headings_rad(self) -> npt.NDArray[np.float64]:
-        """Which way the walker looks at each frame: radians, shape (frames,)."""
+        """Which way the walker looks at each frame: radians, shape (frames,); NaN without poses."""
         return np.array([frame.heading_rad for frame in self.frames], dtype=np.float64)
 
     @property
@@ -262,8 +264,8 @@ def _row(instruction: Instruction) -> dict[str, Any]:
         "verdict": instruction.verdict,
         "length_m": path.length_m,
         "viewpoints": path.viewpoints,
-        "positions": path.positions.tolist(),
-        "headings_rad": path.headings_rad.tolist(),
+        "positions": path.positions.tolist() if path.has_poses else None,
+        "headings_rad": path.headings_rad.tolist() if path.has_poses else None,
         "target": path.target,
         "target_object": path.target_object,
         "ends": (instruction.ambiguity or {}).get("ends"),
@@ -406,18 +408,21 @@ def _span(span: Sequence[int] | None) -> tuple[int, int] | None:
 
 def _path(value: Mapping[str, Any]) -> Path:
     target = value.get("target") or {}
+    has_poses = value.get("motion", "known") == "known"
     return Path(
         id=value["id"],
         scene=value["scene"],
-        frames=tuple(_frame(frame) for frame in value["frames"]),
+        frames=tuple(_frame(frame, has_poses) for frame in value["frames"]),
         target=target.get("name"),
         target_object=target.get("object"),
-        has_poses=value.get("motion", "known") == "known",
+        has_poses=has_poses,
     )
 
 
-def _frame(value: Mapping[str, Any]) -> Frame:
-    pose = value["pose"]
+def _frame(value: Mapping[str, Any], has_pose: bool) -> Frame:
+    # Older versions wrote zeros where there is no pose.
+    unknown = {"position": [math.nan] * 3, "heading": math.nan, "elevation_rad": math.nan}
+    pose = value["pose"] if has_pose else unknown
     x, y, z = pose["position"]
     return Frame(
         position=(x, y, z),

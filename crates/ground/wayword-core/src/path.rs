@@ -2,7 +2,7 @@
 
 use crate::{Heading, ObjectId, PathMotion, PathMove, Pose, SceneId, Side, ViewpointId};
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer, ser::SerializeStruct};
 
 /// A stop on a path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -17,8 +17,9 @@ pub struct Frame {
     pub level: Option<u32>,
 }
 
-/// A path: frames in order.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// A path: frames in order. Where its motion is unknown, its JSON has no poses.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(try_from = "ReadPath")]
 pub struct Path {
     /// Name of the path, unique within its dataset or run.
     pub id: String,
@@ -27,11 +28,83 @@ pub struct Path {
     /// At least one frame. The first looks along the episode's heading, every later one along the hop just made.
     pub frames: Vec<Frame>,
     /// Whether the frames' poses mean anything.
-    #[serde(default, skip_serializing_if = "PathMotion::is_known")]
     pub motion: PathMotion,
     /// The object that the task at the end is about, where there is one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub target: Option<PathTarget>,
+}
+
+/// A path as JSON has it.
+#[derive(Deserialize)]
+struct ReadPath {
+    id: String,
+    scene: SceneId,
+    frames: Vec<ReadFrame>,
+    #[serde(default)]
+    motion: PathMotion,
+    #[serde(default)]
+    target: Option<PathTarget>,
+}
+
+/// A frame as JSON has it: without a pose where the motion of its path is unknown.
+#[derive(Deserialize)]
+struct ReadFrame {
+    #[serde(default)]
+    pose: Option<Pose>,
+    #[serde(default)]
+    viewpoint: Option<ViewpointId>,
+    #[serde(default)]
+    level: Option<u32>,
+}
+
+impl TryFrom<ReadPath> for Path {
+    type Error = String;
+
+    fn try_from(read: ReadPath) -> Result<Self, String> {
+        let ReadPath { id, scene, frames, motion, target } = read;
+        let frame = |(at, ReadFrame { pose, viewpoint, level }): (usize, ReadFrame)| {
+            let unknown = (!motion.is_known()).then(|| Pose::looking_level(DVec3::ZERO, Heading::NORTH));
+            let pose = pose.or(unknown).ok_or_else(|| format!("frame {at} has no field `pose`"))?;
+            Ok(Frame { pose, viewpoint, level })
+        };
+        let frames = frames.into_iter().enumerate().map(frame).collect::<Result<_, String>>()?;
+        Ok(Self { id, scene, frames, motion, target })
+    }
+}
+
+/// A frame without its pose.
+#[derive(Serialize)]
+struct UnposedFrame<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    viewpoint: Option<&'a ViewpointId>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    level: Option<u32>,
+}
+
+impl<'a> From<&'a Frame> for UnposedFrame<'a> {
+    fn from(frame: &'a Frame) -> Self {
+        Self { viewpoint: frame.viewpoint.as_ref(), level: frame.level }
+    }
+}
+
+impl Serialize for Path {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let is_known = self.motion.is_known();
+        let fields = 3 + usize::from(!is_known) + usize::from(self.target.is_some());
+        let mut path = serializer.serialize_struct("Path", fields)?;
+        path.serialize_field("id", &self.id)?;
+        path.serialize_field("scene", &self.scene)?;
+        if is_known {
+            path.serialize_field("frames", &self.frames)?;
+        } else {
+            // Their poses are made up.
+            path.serialize_field("frames", &self.frames.iter().map(UnposedFrame::from).collect::<Vec<_>>())?;
+            path.serialize_field("motion", &self.motion)?;
+        }
+        if let Some(target) = &self.target {
+            path.serialize_field("target", target)?;
+        }
+        path.end()
+    }
 }
 
 /// The object that an instruction's task is about.
@@ -334,6 +407,30 @@ mod tests {
     }
 
     #[test]
+    fn json_has_poses_only_where_the_motion_is_known() {
+        let known = path(vec![stop(1.0, 0.0, 0.0), stop(1.0, 2.0, 0.0)], None);
+        let json = serde_json::to_value(&known).unwrap();
+        assert_eq!(json["frames"][1]["pose"]["position"], serde_json::json!([1.0, 2.0, 0.0]));
+        assert!(json.get("motion").is_none() && json.get("target").is_none());
+        assert_eq!(serde_json::from_value::<Path>(json.clone()).unwrap(), known);
+        let unknown = Path { motion: PathMotion::Unknown, ..known };
+        let bare = serde_json::to_value(&unknown).unwrap();
+        assert_eq!(bare["frames"], serde_json::json!([{}, {}]));
+        let read: Path = serde_json::from_value(bare.clone()).unwrap();
+        assert_eq!(
+            (read.frames.len(), read.frames[1].pose.position, read.motion),
+            (2, DVec3::ZERO, PathMotion::Unknown)
+        );
+        // As older versions wrote it.
+        let mut older = json;
+        older["motion"] = bare["motion"].clone();
+        assert_eq!(serde_json::from_value::<Path>(older.clone()).unwrap(), unknown);
+        older["motion"] = "known".into();
+        older["frames"][1]["pose"] = serde_json::Value::Null;
+        assert_eq!(serde_json::from_value::<Path>(older).unwrap_err().to_string(), "frame 1 has no field `pose`");
+    }
+
+    #[test]
     fn the_opening_turn_is_the_first_move() {
         let south = Heading::new(std::f64::consts::PI).unwrap();
         let path = path(vec![stop(0.0, 0.0, 0.0), stop(0.0, 2.0, 0.0), stop(2.0, 2.0, 0.0)], Some(south));
@@ -376,6 +473,7 @@ mod tests {
         assert!(!serde_json::to_string(&known).unwrap().contains("motion"));
         let text = serde_json::to_string(&unknown).unwrap();
         assert!(text.contains(r#""motion":"unknown""#), "{text}");
-        assert_eq!(serde_json::from_str::<Path>(&text).unwrap(), unknown);
+        let read = serde_json::from_str::<Path>(&text).unwrap();
+        assert_eq!((read.motion, serde_json::to_string(&read).unwrap()), (PathMotion::Unknown, text));
     }
 }
