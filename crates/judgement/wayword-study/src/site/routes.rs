@@ -34,6 +34,7 @@ use tokio::sync::Semaphore;
 const MAX_FORM_BYTES: usize = 16 * 1024;
 /// Longest body of a form with texts of the participant's own, bytes. It is far above what is stored, so that who writes too much gets the text
 /// back and can shorten it.
+// `LARGEST_FORM` in assets/script.js is a little less.
 const MAX_TEXT_FORM_BYTES: usize = 512 * 1024;
 /// The address to which an arrival is led. Its query tells whether the browser sends the cookie back that came with it.
 const ARRIVED_PAGE: HeaderValue = HeaderValue::from_static("/?arrived");

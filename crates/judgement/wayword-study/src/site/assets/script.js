@@ -31,7 +31,13 @@ const tab = stored('sessionStorage');
 let busy = false;
 const box = () => 'wayword-study ' + who() + ' ';
 
+// What the server takes of a form with texts, bytes, and what a browser sends of one that has to outlive its page.
+const LARGEST_FORM = 500000;
+const LARGEST_KEPT_ALIVE = 60000;
+
 async function send(answer, leftover) {
+  const body = new URLSearchParams(answer.body);
+  const keepalive = String(body).length < LARGEST_KEPT_ALIVE;
   for (let tries = 0; ; tries += 1) {
     const slow = setTimeout(() => net(T.sending), 800);
     let pause = Math.min(30000, 1000 * 2 ** tries) * (0.75 + Math.random() / 2);
@@ -39,7 +45,7 @@ async function send(answer, leftover) {
       const stop = new AbortController();
       const late = setTimeout(() => stop.abort(), 20000);
       const reply = await fetch(answer.url, {
-        method: 'POST', body: new URLSearchParams(answer.body), credentials: 'same-origin', keepalive: true, signal: stop.signal,
+        method: 'POST', body, credentials: 'same-origin', keepalive, signal: stop.signal,
       });
       const doc = new DOMParser().parseFromString(await reply.text(), 'text/html');
       clearTimeout(late);
@@ -65,6 +71,11 @@ addEventListener('submit', async (event) => {
   busy = true;
   const body = [...new FormData(form)];
   if (pressed && pressed.name) body.push([pressed.name, pressed.value]);
+  if (String(new URLSearchParams(body)).length > LARGEST_FORM) {  // the page stays with what was written
+    busy = false;
+    net(T.too_long);
+    return;
+  }
   const answer = { url: form.getAttribute('action'), body };
   // Leaving is not kept: who thinks better of it while the network is away must not be taken at the old word.
   if (who() && answer.url !== '/withdraw') {
@@ -72,12 +83,8 @@ addEventListener('submit', async (event) => {
     kept.set(answer.key, JSON.stringify(answer));
   }
   const { reply, doc } = await send(answer);
-  busy = false;
-  if (reply.status === 413) {  // the page stays with what was written
-    net(T.too_long);
-    return;
-  }
   if (reply.ok) tab.drop(draft());
+  busy = false;
   net('');
   show(doc, reply);
 });
