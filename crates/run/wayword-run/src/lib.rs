@@ -27,6 +27,7 @@ pub mod calls;
 pub mod check;
 #[cfg(feature = "local")]
 pub mod clip;
+mod command_progress;
 pub mod count;
 pub mod doubts;
 #[cfg(feature = "local")]

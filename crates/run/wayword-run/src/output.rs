@@ -2,6 +2,9 @@
 //! another program (the Python package) a listener gets them instead.
 
 use crate::error::CommandError;
+use crate::command_progress::{LastPrint, LinePace, LineWords};
+
+pub use crate::command_progress::{CommandProgress, SilenceWatch};
 pub use indicatif::ProgressBar;
 use indicatif::{HumanDuration, ProgressDrawTarget, ProgressState, ProgressStyle};
 use serde::Serialize;
@@ -28,6 +31,8 @@ pub struct CommandOutput {
     lost_result: Arc<OnceLock<io::Error>>,
     /// Gets everything in place of the terminal, if there is one.
     listener: Option<Arc<dyn CommandOutputListener>>,
+    /// When something was printed last.
+    last_print: LastPrint,
 }
 
 /// A program that this one runs in.
@@ -100,7 +105,14 @@ impl CommandOutput {
     /// `json`: results as JSON; `quiet`: no messages, no progress.
     #[must_use]
     pub fn new(json: bool, quiet: bool) -> Self {
-        Self { json, quiet, carries_data: false, lost_result: Arc::default(), listener: None }
+        Self {
+            json,
+            quiet,
+            carries_data: false,
+            lost_result: Arc::default(),
+            listener: None,
+            last_print: LastPrint::new(),
+        }
     }
 
     /// Results as JSON, messages and bars for a listener; the terminal stays empty.
@@ -157,6 +169,7 @@ impl CommandOutput {
 
     /// Prints a message.
     pub fn say(&self, text: impl Display) {
+        self.last_print.note_print();
         if let Some(listener) = &self.listener {
             listener.take_message(tame_text(&text.to_string()));
         } else if !self.quiet {
@@ -171,25 +184,48 @@ impl CommandOutput {
         print_to_stderr(&format!("{head}: {}", tame_error(&error.to_string())));
     }
 
-    /// A progress bar over `total` things, which `what` names, as in "items". Hidden if standard error is not a
-    /// terminal.
+    /// The progress over `total` things, which `what` names, as in "items": a bar, or lines if standard error is not a terminal.
+    /// Where nothing can be counted, `total` is 0 and `what` a phrase, as in "reading the scene".
     #[must_use]
-    pub fn progress_bar(&self, total: usize, what: &'static str) -> ProgressBar {
-        self.make_bar(total as u64, "{prefix} {bar:32} {pos}/{len}  {msg}{left}").with_prefix(what)
+    pub fn progress_bar(&self, total: usize, what: &'static str) -> CommandProgress {
+        let template = match total {
+            0 => "{prefix} {pos}  {msg}",
+            _ => "{prefix} {bar:32} {pos}/{len}  {msg}{left}",
+        };
+        let bar = self.make_bar(total as u64, template).with_prefix(what);
+        self.with_lines(bar, LineWords { what, message_has_time: false })
     }
 
-    /// A progress bar for items that are slow because of calls to models: the message counts the calls, the prefix counts the
-    /// finished texts.
+    /// The progress over items that are slow because of calls to models: the message counts the calls and says how long they
+    /// still take, the prefix counts the finished texts.
     #[must_use]
-    pub fn call_progress_bar(&self, total: usize) -> ProgressBar {
-        self.make_bar(total as u64, "items {bar:24} {pos}/{len}  {msg}  {prefix}")
+    pub fn call_progress_bar(&self, total: usize) -> CommandProgress {
+        let bar = self.make_bar(total as u64, "items {bar:24} {pos}/{len}  {msg}  {prefix}");
+        self.with_lines(bar, LineWords { what: "items", message_has_time: true })
     }
 
-    /// Prints a line about the progress, if there is no terminal to show a bar on.
-    pub fn print_progress_line(&self, text: impl Display) {
-        if self.listener.is_none() && !io::stderr().is_terminal() {
-            self.say(text);
+    /// Prints a line now and then while the command of this name prints nothing else, if standard error is not a terminal.
+    #[must_use]
+    pub fn watch_silence(&self, command: &'static str) -> SilenceWatch {
+        if !self.prints_lines() {
+            return SilenceWatch::none();
         }
+        let output = self.clone();
+        SilenceWatch::start(command, self.last_print.clone(), LinePace::SILENT, move |line| output.say(line))
+    }
+
+    /// Whether progress is printed as lines: nobody sees a bar, and messages are wanted.
+    fn prints_lines(&self) -> bool {
+        self.listener.is_none() && !self.quiet && !io::stderr().is_terminal()
+    }
+
+    /// Adds lines to a bar that nobody sees.
+    fn with_lines(&self, bar: ProgressBar, words: LineWords) -> CommandProgress {
+        if !self.prints_lines() {
+            return CommandProgress::without_lines(bar);
+        }
+        let output = self.clone();
+        CommandProgress::with_lines(bar, words, LinePace::COUNTED, move |line| output.say(line))
     }
 
     /// A progress bar for bytes; its length is set later. Hidden if standard error is not a terminal.

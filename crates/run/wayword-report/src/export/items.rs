@@ -41,9 +41,12 @@ pub fn episodes_from_records(
         // Scene by scene, because a scene takes long to read, and only a few are kept.
         let mut pairs: Vec<_> = records.iter().zip(&mut episodes).collect();
         pairs.sort_by(|(a, _), (b, _)| a.path.scene.cmp(&b.path.scene));
+        let bar = output.progress_bar(pairs.len(), "episodes");
         for (record, episode) in pairs {
             world.describe_scene(record, episode);
+            bar.inc(1);
         }
+        bar.finish_and_clear();
         if let Some(warning) = world.lack_warning() {
             output.say(warning);
         }

@@ -64,22 +64,20 @@ impl ItemWorkshop<'_> {
             output.say(format_args!("continuing: {done} of {all} done and kept, {left} to do"));
         }
         let mut progress = RunProgress::new(output, items.len(), unfinished.len(), self.calls, self.team.lookout());
-        self.make_items(run, data, &unfinished, &mut progress, items.len(), output)?;
+        self.make_items(run, data, &unfinished, &mut progress)?;
         run.arrange_lines(items.iter(), &names)?;
         run.sync()?;
         Ok(progress.into_stop())
     }
 
     /// Makes the unfinished items on several threads, and keeps each in the folder in the order of the items, until the
-    /// progress ends the run. `all` is the number of items with the finished ones, for messages.
+    /// progress ends the run.
     fn make_items(
         &self,
         run: &mut RunFolder,
         data: &WorldData,
         unfinished: &[&RunItem],
         progress: &mut RunProgress<'_>,
-        all: usize,
-        output: &CommandOutput,
     ) -> Result<(), CommandError> {
         let (calls, styles) = (self.calls, &self.plan.styles);
         let workers = calls.map_or_else(core_count, ModelCalls::worker_count);
@@ -106,10 +104,8 @@ impl ItemWorkshop<'_> {
         thread::scope(|scope| {
             if let Some(calls) = calls {
                 let (pace, bar) = (&pace, &bar);
-                let print_line =
-                    |text: &str| output.print_progress_line(format_args!("{}/{all} items, {text}", bar.position()));
                 scope.spawn(move || {
-                    pace.watch_calls(|| calls.spent_so_far(), |text| bar.set_message(text.to_owned()), print_line);
+                    pace.watch_calls(|| calls.spent_so_far(), |text| bar.set_message(text.to_owned()));
                 });
             }
             let kept = in_order(unfinished, workers, making, |item, (made, span)| {

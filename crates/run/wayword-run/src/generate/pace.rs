@@ -19,11 +19,6 @@ const PACE_WINDOW: Duration = Duration::from_secs(60);
 const HALF_TRUST_ITEMS: f64 = 3.0;
 /// Time between two looks at the calls.
 const LOOK_INTERVAL: Duration = Duration::from_secs(1);
-/// Without a terminal, lines are printed instead of a bar: the first after this time, the next ones at growing
-/// intervals.
-const FIRST_LINE: Duration = Duration::from_secs(3);
-/// Longest time between two such lines.
-const MAX_LINE_INTERVAL: Duration = Duration::from_secs(60);
 
 /// The progress of a run's calls.
 pub(super) struct CallPace {
@@ -60,21 +55,13 @@ impl CallPace {
         self.ends.notify_all();
     }
 
-    /// Looks at the calls until [`Self::end_watch`], and reports their progress: to `show` every second, for the bar,
-    /// and to `print_line` at growing intervals, for lines.
-    pub(super) fn watch_calls(&self, spent: impl Fn() -> CallSpending, show: impl Fn(&str), print_line: impl Fn(&str)) {
-        let (mut wait, mut line) = (FIRST_LINE, Instant::now() + FIRST_LINE);
+    /// Looks at the calls every second until [`Self::end_watch`], and reports their progress to `show`.
+    pub(super) fn watch_calls(&self, spent: impl Fn() -> CallSpending, show: impl Fn(&str)) {
         let mut ended = lock_mutex(&self.ended);
         while !*ended {
             ended = self.ends.wait_timeout(ended, LOOK_INTERVAL).unwrap_or_else(PoisonError::into_inner).0;
             let (now, spent) = (Instant::now(), spent());
-            let text = self.describe_progress(now, spent.answered + spent.from_ledger);
-            show(&text);
-            if now >= line && !*ended {
-                print_line(&text);
-                wait = (2 * wait).min(MAX_LINE_INTERVAL);
-                line = now + wait;
-            }
+            show(&self.describe_progress(now, spent.answered + spent.from_ledger));
         }
     }
 
@@ -146,7 +133,7 @@ mod tests {
     fn watch_calls_ends_when_the_run_ends() {
         let pace = CallPace::new(1, 1, 1.0);
         std::thread::scope(|scope| {
-            scope.spawn(|| pace.watch_calls(CallSpending::default, |_| {}, |_| {}));
+            scope.spawn(|| pace.watch_calls(CallSpending::default, |_| {}));
             pace.end_watch();
         });
     }

@@ -8,10 +8,9 @@ use crate::{
     interrupt,
     lookout::DetectorLookout,
     losses::{LossCounter, MAX_FAILURES_IN_A_ROW},
-    output::CommandOutput,
+    output::{CommandOutput, CommandProgress, ProgressBar},
     run_folder::RunFolder,
 };
-use indicatif::ProgressBar;
 use wayword_core::FailureKind;
 
 /// Items between two flushes to the disk: few, so that little is lost when the machine fails.
@@ -27,7 +26,7 @@ pub(super) struct RunStop {
 
 /// The progress of a run.
 pub(super) struct RunProgress<'a> {
-    bar: ProgressBar,
+    bar: CommandProgress,
     calls: Option<&'a ModelCalls>,
     /// Looks for things along the paths.
     lookout: Option<&'a DetectorLookout>,

@@ -5,10 +5,10 @@ use crate::models;
 use crate::{
     cli::WaywordCommand, completions, demo, doctor, house, launch, ledger, platform_list, report_command, runs,
 };
-#[cfg(feature = "study")]
-use wayword_experiments::study;
 #[cfg(feature = "experiments")]
 use wayword_experiments::{compare, evaluate, perceive, robustness, similarity};
+#[cfg(feature = "study")]
+use wayword_experiments::{study, study_args::StudyCommand};
 use wayword_report::{export, view};
 use wayword_run::{
     align, calibrate, check,
@@ -22,6 +22,7 @@ use wayword_run::{
 /// # Errors
 /// The error of the command. The caller prints it.
 pub fn run_command(command: WaywordCommand, output: &CommandOutput) -> Result<Exit, CommandError> {
+    let _watch = long_command_name(&command).map(|name| output.watch_silence(name));
     match command {
         WaywordCommand::Demo(args) => demo::run_demo(&args, output),
         WaywordCommand::Generate(args) => generate::run_generate(&args, output),
@@ -65,4 +66,37 @@ pub fn run_command(command: WaywordCommand, output: &CommandOutput) -> Result<Ex
         WaywordCommand::House(args) => house::run_house(&args, output),
         WaywordCommand::Completions { shell } => completions::print_completions(shell),
     }
+}
+
+/// The name of a command that may take long, for lines about its progress. Commands that are over at once, or that serve until they
+/// are ended, have none.
+fn long_command_name(command: &WaywordCommand) -> Option<&'static str> {
+    Some(match command {
+        WaywordCommand::Demo(_) => "demo",
+        WaywordCommand::Generate(_) => "generate",
+        WaywordCommand::Check(_) => "check",
+        WaywordCommand::Align(_) => "align",
+        WaywordCommand::Calibrate(_) => "calibrate",
+        WaywordCommand::Export(_) => "export",
+        WaywordCommand::Report(_) => "report",
+        #[cfg(feature = "experiments")]
+        WaywordCommand::Compare(_) => "compare",
+        #[cfg(feature = "experiments")]
+        WaywordCommand::Evaluate(_) => "evaluate",
+        #[cfg(feature = "experiments")]
+        WaywordCommand::Perceive(_) => "perceive",
+        #[cfg(feature = "experiments")]
+        WaywordCommand::Robustness(_) => "robustness",
+        #[cfg(feature = "experiments")]
+        WaywordCommand::Similarity(_) => "similarity",
+        #[cfg(feature = "study")]
+        WaywordCommand::Study(args) if !matches!(args.command, StudyCommand::Serve(_)) => "study",
+        WaywordCommand::Doctor(_) => "doctor",
+        WaywordCommand::Ledger(_) => "ledger",
+        WaywordCommand::Models(_) => "models",
+        WaywordCommand::View(_) => "view",
+        WaywordCommand::House(_) => "house",
+        WaywordCommand::Runs(args) if !runs::is_watching(args) => "runs",
+        _ => return None,
+    })
 }

@@ -13,6 +13,11 @@ use wayword_run::{
     output::CommandOutput,
 };
 
+/// Whether the command shows a run again and again until it is ended.
+pub(crate) fn is_watching(args: &RunsArgs) -> bool {
+    matches!(&args.command, RunsCommand::Status(status) if status.watch)
+}
+
 pub(crate) fn run_runs(args: &RunsArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     match &args.command {
         RunsCommand::Status(args) => status::run_status(args, |status| match args.prometheus {

@@ -246,7 +246,7 @@ fn run_without_a_terminal_prints_lines_about_its_calls() {
     // Where the machine is busy, there is a line before the first call.
     let told = |line: &&str| line.contains(" calls") && line.ends_with(" left");
     let line = ran.err.lines().find(told).unwrap_or_else(|| panic!("{ran:?}"));
-    assert!(line.starts_with("0/1 items, ") && line.contains(" of about ") && line.ends_with(" left"), "{line}");
+    assert!(line.starts_with("items: 0 of 1, ") && line.contains(" of about ") && line.ends_with(" left"), "{line}");
     // It is known from the start how many calls there will be.
     let numbers: Vec<u64> = line.split(|c: char| !c.is_ascii_digit()).filter_map(|word| word.parse().ok()).collect();
     let asked = stage.provider.request_count();
