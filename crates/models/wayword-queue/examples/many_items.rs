@@ -55,7 +55,7 @@ fn be_worker(folder: &Path, part: ShardPart) {
             );
         }
         Err(_) => {
-            let beat = WorkerHeartbeat { worker: worker.clone(), token: worker, part: part.to_string() };
+            let beat = WorkerHeartbeat::of_this_process(&worker, part.to_string());
             let heart =
                 HeartbeatThread::start(folder, &part.heartbeat_name(), beat, HEARTBEAT_LEASE, |_| false).unwrap();
             make_chunks(folder, &plan, &ShardBoard::new(folder, &plan, part, &heart));

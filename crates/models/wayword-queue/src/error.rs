@@ -35,7 +35,7 @@ pub enum QueueError {
         problem: &'static str,
     },
     /// Another worker has the shard, or another cut of the run is at work.
-    #[error("{}: {who} is at work, and gave a sign of life {seconds} seconds ago\nhint: wait for it; if it is gone, the same command works {fresh} seconds after its last sign", path.display())]
+    #[error("{}: {who} is at work, and gave a sign of life {seconds} seconds ago\nhint: wait for it; if it is gone, the same command works {fresh} seconds after its last sign, and on its own machine at once", path.display())]
     Busy {
         /// The heartbeat's file.
         path: PathBuf,

@@ -8,6 +8,7 @@ use crate::{
     QueueError,
     folder::remove_if_there,
     marks::{from_file, to_bytes},
+    process_identity::ProcessIdentity,
     put_new, put_whole,
 };
 use serde::{Deserialize, Serialize};
@@ -41,6 +42,28 @@ pub struct WorkerHeartbeat {
     pub token: String,
     /// Its part of the run, as in `shard 3 of 64`.
     pub part: String,
+    /// Its process; `None` in files of older versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub process: Option<ProcessIdentity>,
+}
+
+impl WorkerHeartbeat {
+    /// The heartbeat of this process.
+    #[must_use]
+    pub fn of_this_process(worker: &str, part: String) -> Self {
+        let process = Some(ProcessIdentity::this_process());
+        Self { worker: worker.to_owned(), token: worker.to_owned(), part, process }
+    }
+
+    /// The heartbeat of a file that cannot be read: some worker may have it.
+    fn unreadable() -> Self {
+        Self {
+            worker: "a worker whose file cannot be read".into(),
+            token: String::new(),
+            part: "?".into(),
+            process: None,
+        }
+    }
 }
 
 /// A heartbeat file of a run folder, with its age.
@@ -54,14 +77,33 @@ pub struct HeartbeatEntry {
     pub age: Duration,
 }
 
-/// A name for this worker that no other has: machine, process and time.
+impl HeartbeatEntry {
+    /// Whether its worker may be at work: it was written less than `fresh` ago, and its process is not known to have ended.
+    #[must_use]
+    pub fn may_live(&self, fresh: Duration) -> bool {
+        self.age < fresh && !self.beat.process.as_ref().is_some_and(ProcessIdentity::has_ended)
+    }
+}
+
+/// A name for this worker that no other has: machine, process, a word for the place in which its number counts, and time.
 #[must_use]
 pub fn worker_name() -> String {
     // If the machine has no name, process and time still distinguish workers.
     let host = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
     let host: String = host.trim().chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-').take(40).collect();
     let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_micros();
-    format!("{host}-{}-{since:x}", std::process::id())
+    format!("{host}-{}-{}-{since:x}", std::process::id(), ProcessIdentity::this_process().place_word())
+}
+
+/// Whether it is known that the process of a worker of this name has ended: it was one of this machine, and no process here has its
+/// number. Where another process took over the number, this is not known.
+#[cfg(any(feature = "postgres", test))]
+pub(crate) fn named_worker_has_ended(name: &str) -> bool {
+    let this = ProcessIdentity::this_process();
+    let mut parts = name.rsplit('-');
+    let (Some(_), Some(place), Some(pid)) = (parts.next(), parts.next(), parts.next()) else { return false };
+    let Ok(pid) = pid.parse() else { return false };
+    !this.place.is_empty() && place == this.place_word() && crate::process_identity::process_start(pid).is_none()
 }
 
 /// A thread that renews a worker's heartbeat file until it is dropped.
@@ -92,8 +134,10 @@ impl HeartbeatThread {
         let workers = folder.join(WORKERS_FOLDER);
         fs::create_dir_all(&workers).map_err(QueueError::for_file(&workers, "make the folder"))?;
         let path = workers.join(name);
-        for HeartbeatEntry { file, beat: other, age } in read_heartbeats(folder)? {
-            if age < fresh && other.token != beat.token && (file == name || excludes(&file)) {
+        for entry in read_heartbeats(folder)? {
+            let may_live = entry.may_live(fresh);
+            let HeartbeatEntry { file, beat: other, age } = entry;
+            if may_live && other.token != beat.token && (file == name || excludes(&file)) {
                 return Err(QueueError::Busy {
                     path: workers.join(file),
                     who: format!("{} ({})", other.worker, other.part),
@@ -182,9 +226,13 @@ pub fn read_heartbeats(folder: &Path) -> Result<Vec<HeartbeatEntry>, QueueError>
         if name.contains('.') {
             continue;
         }
-        let (Ok(Some(beat)), Ok(about)) = (from_file::<WorkerHeartbeat>(&entry.path()), entry.metadata()) else {
-            continue;
+        let beat = match from_file::<WorkerHeartbeat>(&entry.path()) {
+            Ok(Some(beat)) => beat,
+            // It was removed meanwhile.
+            Ok(None) => continue,
+            Err(_) => WorkerHeartbeat::unreadable(),
         };
+        let Ok(about) = entry.metadata() else { continue };
         let age = about.modified().ok().and_then(|at| now.duration_since(at).ok()).unwrap_or_default();
         beats.push(HeartbeatEntry { file: name, beat, age });
     }
@@ -207,7 +255,12 @@ mod tests {
     use super::*;
 
     fn beat(token: &str) -> WorkerHeartbeat {
-        WorkerHeartbeat { worker: format!("host {token}"), token: token.to_owned(), part: "shard 0 of 2".to_owned() }
+        WorkerHeartbeat {
+            worker: format!("host {token}"),
+            token: token.to_owned(),
+            part: "shard 0 of 2".to_owned(),
+            process: None,
+        }
     }
 
     #[test]
@@ -232,5 +285,51 @@ mod tests {
         assert!(matches!(first.check_heartbeat(), Err(QueueError::TakenOver(_))));
         drop(first);
         assert!(second.check_heartbeat().is_ok(), "the first does not remove the second's file");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_worker_of_this_machine_that_has_ended_frees_its_part_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let start = |beat| HeartbeatThread::start(folder.path(), "shard", beat, HEARTBEAT_LEASE, |_| false);
+        let workers = folder.path().join(WORKERS_FOLDER);
+        fs::create_dir_all(&workers).unwrap();
+        let this = ProcessIdentity::this_process();
+        let left_behind = |process: &ProcessIdentity| {
+            let beat = WorkerHeartbeat { process: Some(process.clone()), ..beat("old") };
+            fs::write(workers.join("shard"), to_bytes(Path::new(""), &beat).unwrap()).unwrap();
+        };
+        for lives in
+            [this.clone(), ProcessIdentity { place: "another machine".into(), began: "0".into(), ..this.clone() }]
+        {
+            left_behind(&lives);
+            assert!(matches!(start(beat("new")), Err(QueueError::Busy { .. })), "{lives:?}");
+        }
+        // This process has its number since another time.
+        left_behind(&ProcessIdentity { began: "0".into(), ..this });
+        assert!(!read_heartbeats(folder.path()).unwrap()[0].may_live(HEARTBEAT_LEASE));
+        assert!(start(beat("new")).is_ok());
+    }
+
+    #[test]
+    fn a_heartbeat_that_cannot_be_read_counts_as_some_worker() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir_all(folder.path().join(WORKERS_FOLDER)).unwrap();
+        fs::write(folder.path().join(WORKERS_FOLDER).join("shard"), "{\"worker\":").unwrap();
+        let refused =
+            HeartbeatThread::start(folder.path(), "shard", beat("a"), HEARTBEAT_LEASE, |_| false).unwrap_err();
+        assert!(refused.to_string().contains("cannot be read"), "{refused}");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn the_name_of_a_worker_tells_whether_it_has_ended() {
+        assert!(!named_worker_has_ended(&worker_name()));
+        let place = ProcessIdentity::this_process().place_word();
+        let beyond_every_number = u32::MAX;
+        assert!(named_worker_has_ended(&format!("my-host-{beyond_every_number}-{place}-1f")));
+        for unknown in ["w", "", "a-b-c-d", &format!("host-{beyond_every_number}-00000000-1f"), "host-12-1f"] {
+            assert!(!named_worker_has_ended(unknown), "{unknown}");
+        }
     }
 }

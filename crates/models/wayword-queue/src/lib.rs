@@ -10,12 +10,13 @@
 //! # Where things are
 //! - `plan`: what all workers have to agree on.
 //! - `protocol`: the rules by which chunks change hands. `queue` has the same rules in SQL.
-//! - `marks`, `folder`: the small files that record a finished chunk.
-//! - `heartbeat`: signs of life of workers that share a folder.
+//! - `marks`, `folder`: the small files that record a finished chunk. `chunk_files`: the hashes in them, and what differs from them.
+//! - `heartbeat`: signs of life of workers that share a folder. `process_identity`: whether a process of this machine still lives.
 //! - [`launch`]: scripts for Slurm and Kubernetes, in the templates `slurm.j2` and `kubernetes.j2`.
 //! - `cloud/`, with the feature `cloud`: object stores; `stored_run.rs` is a run that lies in one.
 
 mod board;
+mod chunk_files;
 #[cfg(feature = "cloud")]
 pub mod cloud;
 mod error;
@@ -24,6 +25,7 @@ mod heartbeat;
 pub mod launch;
 mod marks;
 mod plan;
+mod process_identity;
 mod protocol;
 #[cfg(feature = "postgres")]
 mod queue;
@@ -31,13 +33,16 @@ mod shard;
 mod worker_loop;
 
 pub use board::{ChunkBoard, ChunkClaim, RemainingChunks};
+pub use chunk_files::{CompareDepth, FileDifference, FileMark, FileMarks, compare_files, mark_files};
 pub use error::QueueError;
 pub use folder::{put_new, put_whole, sync_tree};
 pub use heartbeat::{HEARTBEAT_LEASE, HeartbeatEntry, HeartbeatThread, WorkerHeartbeat, read_heartbeats, worker_name};
 pub use marks::{
     ChunkRecord, chunk_folder, dead_path, done_path, failing_chunks, read_dead_mark, read_done_mark, reopen_chunks,
+    set_files_aside,
 };
 pub use plan::{ChunkPlan, PLAN_FILE as PLAN, WORKERS_FILE};
+pub use process_identity::ProcessIdentity;
 pub use protocol::{ChunkRow, ChunkState, MAX_CHUNK_TRIES};
 #[cfg(feature = "postgres")]
 pub use queue::{ChunkQueue, QUEUE_TABLES, QueueStatus, QueueWorker};

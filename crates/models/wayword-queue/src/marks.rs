@@ -1,6 +1,6 @@
 //! The marks of chunks in the run folder: `000012.done` records a finished chunk, `000012.dead` one that was given up.
 
-use crate::{ChunkPlan, QueueError, folder::remove_if_there, put_new};
+use crate::{ChunkPlan, FileMarks, QueueError, folder::remove_if_there, put_new};
 use serde::{Deserialize, Serialize};
 use std::{
     collections::BTreeMap,
@@ -40,6 +40,12 @@ pub struct ChunkRecord {
     pub worker: String,
     /// When it was finished, seconds since 1970.
     pub at_unix_s: u64,
+    /// The run's name, as its plan has it. Empty in marks of older versions.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub run: String,
+    /// Its files. Empty in marks of older versions, so that its files cannot be compared with it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub files: FileMarks,
 }
 
 /// The mark of a finished chunk.
@@ -138,6 +144,35 @@ pub fn failing_chunks(folder: &Path, plan: &ChunkPlan, reason: &str) -> Result<V
         }
     }
     Ok(failing)
+}
+
+/// Moves files of a chunk out of the way, into a folder of its own beside the chunk's, so that they are made again and the old ones
+/// are not lost. Files that are missing are passed over. Returns that folder.
+///
+/// # Errors
+/// When a file cannot be moved.
+pub fn set_files_aside(folder: &Path, chunk: usize, epoch: i64, names: &[&str]) -> Result<PathBuf, QueueError> {
+    let results = chunk_folder(folder, chunk, epoch);
+    let free = (1..).map(|number| folder.join(CHUNKS_FOLDER).join(format!("{chunk:06}.damaged-{number}")));
+    let mut aside = results.clone();
+    for path in free {
+        match fs::create_dir(&path) {
+            Ok(()) => {
+                aside = path;
+                break;
+            }
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            Err(source) => return Err(QueueError::Io { path, doing: "make the folder", source }),
+        }
+    }
+    for name in names {
+        let from = results.join(name);
+        match fs::rename(&from, aside.join(name)) {
+            Err(error) if error.kind() != ErrorKind::NotFound => return Err(QueueError::for_file(from, "move")(error)),
+            _ => {}
+        }
+    }
+    Ok(aside)
 }
 
 /// Makes chunks open again. Their results stay, and the next worker tries only the failed items.

@@ -5,7 +5,7 @@
 
 use crate::{
     ChunkBoard, ChunkClaim, ChunkPlan, ChunkRecord, MAX_CHUNK_TRIES, QueueError, RemainingChunks, failing_chunks,
-    reopen_chunks,
+    heartbeat::named_worker_has_ended, reopen_chunks,
 };
 use std::{
     path::{Path, PathBuf},
@@ -105,6 +105,9 @@ const BEAT_SQL: &str = "
 INSERT INTO wayword_queue.workers (run, worker) VALUES ($1, $2)
 ON CONFLICT (run, worker) DO UPDATE SET beat = now()";
 
+/// Removes the heartbeat of a worker, so that its chunk can be taken.
+const LEAVE_SQL: &str = "DELETE FROM wayword_queue.workers WHERE run = $1 AND worker = $2";
+
 /// A worker's view of a run's chunks.
 #[derive(Debug)]
 pub struct ChunkQueue {
@@ -184,6 +187,7 @@ impl ChunkQueue {
         self.worker = worker.to_owned();
         self.lease = lease;
         send_heartbeat(&self.pool, &self.run, worker)?;
+        self.free_ended_workers()?;
         let (end, ended) = mpsc::channel();
         let (pool, run, name) = (Arc::clone(&self.pool), self.run.clone(), worker.to_owned());
         let beats = move || {
@@ -196,6 +200,20 @@ impl ChunkQueue {
         let thread = thread.map_err(QueueError::for_file("heartbeat", "start the thread"))?;
         self.beating = Some((end, thread));
         Ok(self)
+    }
+
+    fn remove_worker(&self, worker: &str) -> Result<(), QueueError> {
+        self.pool.with_connection("leave", |connection| connection.query_rows(LEAVE_SQL, &[&self.run, &worker]))?;
+        Ok(())
+    }
+
+    /// Frees the chunks of workers whose processes ran on this machine and have ended.
+    fn free_ended_workers(&self) -> Result<(), QueueError> {
+        let sql = "SELECT worker FROM wayword_queue.workers WHERE run = $1";
+        let workers: Vec<String> = self.pool.with_connection("ask for the workers", |connection| {
+            connection.query_rows(sql, &[&self.run])?.iter().map(|row| row.try_get(0)).collect()
+        })?;
+        workers.iter().filter(|worker| named_worker_has_ended(worker)).try_for_each(|worker| self.remove_worker(worker))
     }
 
     /// Enters the run and its chunks, unless they are there.
@@ -407,11 +425,6 @@ impl Drop for ChunkQueue {
         let Some((end, thread)) = self.beating.take() else { return };
         drop(end);
         let _ = thread.join();
-        let _ = self.pool.with_connection("leave", |connection| {
-            connection.query_rows(
-                "DELETE FROM wayword_queue.workers WHERE run = $1 AND worker = $2",
-                &[&self.run, &self.worker],
-            )
-        });
+        let _ = self.remove_worker(&self.worker);
     }
 }

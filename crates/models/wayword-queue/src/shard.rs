@@ -188,7 +188,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let plan = ChunkPlan::new("r".into(), 1, String::new(), vec![String::new(); 2]);
         let part = ShardPart { k: 0, n: 1 };
-        let beat = WorkerHeartbeat { worker: "w".into(), token: "t".into(), part: String::new() };
+        let beat = WorkerHeartbeat::of_this_process("w", String::new());
         let heart =
             HeartbeatThread::start(folder.path(), &part.heartbeat_name(), beat, HEARTBEAT_LEASE, |_| false).unwrap();
         let shard = ShardBoard::new(folder.path(), &plan, part, &heart);

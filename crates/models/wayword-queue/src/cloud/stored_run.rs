@@ -286,7 +286,7 @@ mod tests {
     /// Makes the open chunks. Returns the number of each, and whether its results count.
     fn make_all(run: &CloudRun, text: &str) -> Vec<(usize, bool)> {
         let (plan, part) = (plan(), ShardPart { k: 0, n: 1 });
-        let beat = WorkerHeartbeat { worker: "w".into(), token: "t".into(), part: String::new() };
+        let beat = WorkerHeartbeat::of_this_process("w", String::new());
         let heart =
             HeartbeatThread::start(&run.folder, &part.heartbeat_name(), beat, HEARTBEAT_LEASE, |_| false).unwrap();
         let shard = ShardBoard::new(&run.folder, &plan, part, &heart);

@@ -33,7 +33,7 @@ use std::path::Path;
 use wayword_core::PathRequest;
 
 pub use summary::{DetectorSummary, RunSummary};
-pub use workers::ChunkHandout;
+pub use workers::{CHUNK_FILES, CheckedChunks, ChunkChecker, ChunkDamage, ChunkHandout, ChunkedItems};
 
 /// Runs `wayword generate`: makes a run or this worker's part of it, or estimates the cost with `--dry-run`.
 ///
@@ -44,7 +44,8 @@ pub fn run_generate(args: &GenerateArgs, output: &CommandOutput) -> Result<Exit,
     if args.dry_run {
         let prepared = PreparedRun::open(&job, None, ModelCheck::Rehearsal, output)?;
         let chunk = args.workers.is_asked().then(|| args.workers.chunk_items());
-        let estimate = prepared.plan_run(output)?.estimate_calls(chunk)?;
+        let plan = prepared.plan_run(output)?;
+        let estimate = plan.estimate_calls(chunk)?;
         output.print_result(&estimate, &estimate);
         return Ok(Exit::Done);
     }

@@ -8,12 +8,12 @@
 
 use super::file;
 use crate::{error::CommandError, interrupt};
-use serde::{Deserialize, Serialize};
 use std::{
     fs::{self, File, TryLockError},
     io::{ErrorKind, Write},
     path::{Path, PathBuf},
 };
+use wayword_queue::ProcessIdentity;
 
 /// A folder that no other process works in for as long as this lives.
 #[derive(Debug)]
@@ -27,19 +27,6 @@ pub struct FolderLock {
 /// The file that names the process at work in a folder on a network file system; removed on drop.
 #[derive(Debug)]
 struct OwnerMark(PathBuf);
-
-/// The process that works in a folder.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct FolderOwner {
-    /// The name of its machine, to be shown.
-    host: String,
-    /// Identifies the machine, its boot and its container, because process numbers are unique only within these.
-    place: String,
-    /// The number of the process.
-    pid: u32,
-    /// The start time of the process in its machine's units, to recognise another process with the same number.
-    began: String,
-}
 
 /// Locks a folder against other processes, until the returned value is dropped.
 ///
@@ -65,12 +52,12 @@ fn lock_on_file_system(folder: &Path, network: Option<&'static str>) -> Result<F
         Err(TryLockError::Error(_)) if network.is_some() => None,
         Err(TryLockError::Error(source)) => return Err(CommandError::Io { path, doing: "lock", source }),
     };
-    let mark = network.map(|kind| OwnerMark::new(folder, kind, &FolderOwner::this_process())).transpose()?;
+    let mark = network.map(|kind| OwnerMark::new(folder, kind, &ProcessIdentity::this_process())).transpose()?;
     Ok(FolderLock { _lock: lock, _mark: mark })
 }
 
 impl OwnerMark {
-    fn new(folder: &Path, kind: &'static str, owner: &FolderOwner) -> Result<Self, CommandError> {
+    fn new(folder: &Path, kind: &'static str, owner: &ProcessIdentity) -> Result<Self, CommandError> {
         let path = folder.join(file::OWNER);
         let text = serde_json::to_string(owner).map_err(|error| CommandError::Io {
             path: path.clone(),
@@ -98,16 +85,16 @@ fn clear_dead_owner(
     folder: &Path,
     path: &Path,
     kind: &'static str,
-    this_process: &FolderOwner,
+    this_process: &ProcessIdentity,
 ) -> Result<(), CommandError> {
     let text = crate::text_file::read_text_file(path, "read who works in the folder")?;
-    let by: Option<FolderOwner> = serde_json::from_str(&text).ok();
+    let by: Option<ProcessIdentity> = serde_json::from_str(&text).ok();
     match by {
-        Some(by) if by.place != this_process.place => {
+        Some(by) if !by.is_beside(this_process) => {
             let by = format!("process {} of {}", by.pid, by.host);
             Err(CommandError::BusyElsewhere { folder: folder.to_owned(), by, kind, mark: path.to_owned() })
         }
-        Some(by) if process_start(by.pid).as_ref() == Some(&by.began) => Err(CommandError::Busy(folder.to_owned())),
+        Some(by) if by.lives_here() => Err(CommandError::Busy(folder.to_owned())),
         Some(_) => fs::remove_file(path).map_err(CommandError::io(path, "remove")),
         // Killed before it was written, or still being written.
         None => {
@@ -124,35 +111,12 @@ impl Drop for OwnerMark {
     }
 }
 
-impl FolderOwner {
-    fn this_process() -> Self {
-        let read = |path: &str| fs::read_to_string(path).unwrap_or_default().trim().to_owned();
-        let pid_namespace = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
-        let pid = std::process::id();
-        Self {
-            host: read("/proc/sys/kernel/hostname"),
-            place: format!("{} {}", read("/proc/sys/kernel/random/boot_id"), pid_namespace.display()),
-            pid,
-            began: process_start(pid).unwrap_or_default(),
-        }
-    }
-}
-
-/// The start time of a process of this machine; `None` if there is no process of this number.
-fn process_start(pid: u32) -> Option<String> {
-    let stat = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
-    // The name of the program comes second, in brackets, and may hold anything.
-    let (_, fields) = stat.rsplit_once(')')?;
-    // The start time is field 22 of the file (man proc_pid_stat), and the first field after the bracket is number 3.
-    fields.split_whitespace().nth(19).map(str::to_owned)
-}
-
 #[cfg(test)]
 #[cfg(target_os = "linux")]
 mod tests {
     use super::*;
 
-    fn left_behind(folder: &Path, owner: &FolderOwner) -> std::io::Result<PathBuf> {
+    fn left_behind(folder: &Path, owner: &ProcessIdentity) -> std::io::Result<PathBuf> {
         let path = folder.join(file::OWNER);
         fs::write(&path, serde_json::to_string(owner)?)?;
         Ok(path)
@@ -173,7 +137,7 @@ mod tests {
     #[test]
     fn a_process_of_another_machine_is_never_taken_for_gone() {
         let folder = tempfile::tempdir().unwrap();
-        let far = FolderOwner { host: "node17".into(), place: "another".into(), ..FolderOwner::this_process() };
+        let far = ProcessIdentity { host: "node17".into(), place: "another".into(), ..ProcessIdentity::this_process() };
         let path = left_behind(folder.path(), &far).unwrap();
         let error = lock_on_file_system(folder.path(), Some("Lustre")).unwrap_err();
         let told = error.to_string();
@@ -186,11 +150,10 @@ mod tests {
     #[test]
     fn a_process_of_this_machine_that_is_gone_gives_way() {
         let folder = tempfile::tempdir().unwrap();
-        let gone = FolderOwner { began: "1".into(), ..FolderOwner::this_process() };
+        let gone = ProcessIdentity { began: "1".into(), ..ProcessIdentity::this_process() };
         left_behind(folder.path(), &gone).unwrap();
         assert!(lock_on_file_system(folder.path(), Some("NFS")).is_ok(), "its number is another process's now");
-        let (other, we) = (std::os::unix::process::parent_id(), FolderOwner::this_process());
-        left_behind(folder.path(), &FolderOwner { pid: other, began: process_start(other).unwrap(), ..we }).unwrap();
+        left_behind(folder.path(), &ProcessIdentity::beside_this(std::os::unix::process::parent_id())).unwrap();
         assert!(matches!(lock_on_file_system(folder.path(), Some("NFS")), Err(CommandError::Busy(_))));
     }
 

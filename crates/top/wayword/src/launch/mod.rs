@@ -1,7 +1,11 @@
 //! `wayword launch`: prints the script (Slurm) or manifest (Kubernetes) that starts many workers, or submits it.
 
 pub(crate) mod args;
-use crate::launch::args::{LaunchArgs, LaunchCommand, LaunchKubernetes, LaunchSlurm};
+use crate::{
+    cli::{WaywordCli, WaywordCommand},
+    launch::args::{LaunchArgs, LaunchCommand, LaunchKubernetes, LaunchSlurm},
+};
+use clap::Parser;
 use serde_json::json;
 use std::{
     borrow::Cow,
@@ -16,6 +20,7 @@ use wayword_queue::launch::{
 };
 use wayword_run::{
     error::{CommandError, Exit},
+    generate::ChunkedItems,
     output::{CommandOutput, mask_credentials},
 };
 
@@ -28,6 +33,7 @@ pub(crate) fn run_launch(args: &LaunchArgs, output: &CommandOutput) -> Result<Ex
 
 fn launch_slurm(args: &LaunchSlurm, output: &CommandOutput) -> Result<Exit, CommandError> {
     let worker = make_worker(&args.program, &args.arguments, args.workers)?;
+    warn_of_idle_workers(&args.arguments, args.workers, output)?;
     let text = write_script(&SlurmJob {
         name: args.name.clone(),
         gpus: args.gpus,
@@ -51,6 +57,7 @@ fn launch_slurm(args: &LaunchSlurm, output: &CommandOutput) -> Result<Exit, Comm
 }
 
 fn launch_kubernetes(args: &LaunchKubernetes, output: &CommandOutput) -> Result<Exit, CommandError> {
+    warn_of_idle_workers(&args.arguments, args.workers, output)?;
     let secret = |typed: &str, flag: &str| {
         let (secret, key) = typed.split_once('/').ok_or_else(|| {
             CommandError::usage(format!("{flag}: there is no slash between the secret and its key"), "write SECRET/KEY")
@@ -76,6 +83,19 @@ fn launch_kubernetes(args: &LaunchKubernetes, output: &CommandOutput) -> Result<
     })?;
     output.print_result(&json!({ "manifest": text }), &text);
     Ok(Exit::Done)
+}
+
+/// Warns if the run has fewer chunks than workers, as far as this machine can know.
+fn warn_of_idle_workers(arguments: &[String], workers: u32, output: &CommandOutput) -> Result<(), CommandError> {
+    let words = ["wayword"].into_iter().chain(arguments.iter().map(String::as_str));
+    // What is wrong with the command, the worker itself says.
+    let Ok(WaywordCli { command: WaywordCommand::Generate(args), .. }) = WaywordCli::try_parse_from(words) else {
+        return Ok(());
+    };
+    let items = ChunkedItems::of_command(&args)?;
+    let warning = items.and_then(|items| items.idle_warning(usize::try_from(workers).unwrap_or(usize::MAX)));
+    warning.iter().for_each(|warning| output.say(warning));
+    Ok(())
 }
 
 /// The command of each worker. Refuses anything but `generate` with a folder.

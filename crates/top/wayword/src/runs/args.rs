@@ -12,6 +12,7 @@ Examples:
   wayword runs merge runs/big
   wayword runs merge s3://bucket/big --to runs/big
   wayword runs retry runs/big --reason timeout
+  wayword runs retry runs/big --damaged
   wayword runs database wayword_db --sql --role workers | psql wayword_db")]
 pub struct RunsArgs {
     /// What to do.
@@ -26,7 +27,7 @@ pub enum RunsCommand {
     Status(RunsStatus),
     /// Put the chunks together, to the files that one machine would have made.
     Merge(RunsMerge),
-    /// Open chunks again that have failures, or were given up, for a reason.
+    /// Open chunks again that have failures or were given up for a reason, or whose files are damaged.
     Retry(RunsRetry),
     /// Make the tables of the queue and the ledger in a database, or print the statements that do so.
     Database(RunsDatabase),
@@ -78,8 +79,15 @@ pub struct RunsRetry {
     /// The run folder, or its address in an object store.
     pub run: PathBuf,
     /// Words of the reason, as `wayword runs status` shows it.
-    #[arg(long, value_name = "WORDS")]
-    pub reason: String,
+    #[arg(long, value_name = "WORDS", required_unless_present_any = ["damaged", "chunk"])]
+    pub reason: Option<String>,
+    /// Make the finished chunks anew whose files no longer fit their marks, as `wayword runs status` shows them. The old files stay
+    /// in a folder beside each chunk.
+    #[arg(long, conflicts_with_all = ["reason", "chunk"])]
+    pub damaged: bool,
+    /// Make these finished chunks anew, by their numbers. The old files stay in a folder beside each chunk.
+    #[arg(long, value_name = "N,...", value_delimiter = ',', conflicts_with = "reason")]
+    pub chunk: Vec<usize>,
     /// Its queue.
     #[command(flatten)]
     pub database: RunsQueue,

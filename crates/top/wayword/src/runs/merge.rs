@@ -1,5 +1,7 @@
-//! `wayword runs merge`: puts chunks together, to the files that one machine would have made.
+//! `wayword runs merge`: puts chunks together, to the files that one machine would have made. Chunks that do not fit their marks
+//! are named, and then nothing is put together.
 
+use super::damage::{DamagedRun, RetryPlace};
 use crate::runs::args::RunsMerge;
 use serde::Serialize;
 use std::{
@@ -10,10 +12,11 @@ use std::{
     path::{Path, PathBuf},
 };
 use wayword_formats::OutputFile;
-use wayword_queue::{ChunkPlan, ChunkRecord, chunk_folder, read_done_mark};
+use wayword_queue::{ChunkPlan, ChunkRecord, CompareDepth, chunk_folder};
 use wayword_run::{
     count::count_phrase,
     error::{CommandError, Exit},
+    generate::{CheckedChunks, ChunkChecker},
     output::CommandOutput,
     run_folder::{file, is_begun},
     stores::{self, RunPlace},
@@ -33,6 +36,14 @@ struct MergeSummary {
     written: usize,
     rejected: usize,
     failed: usize,
+    /// Chunks whose marks hold no hashes, because an older version finished them.
+    #[serde(skip_serializing_if = "is_zero")]
+    without_hashes: usize,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// Runs `wayword runs merge`. It only reads the chunks and replaces whole files, so it can be repeated when more chunks
@@ -48,10 +59,8 @@ pub(super) fn run_merge(args: &RunsMerge, output: &CommandOutput) -> Result<Exit
         )?,
     }
     let plan = ChunkPlan::for_folder(folder)?;
-    let mut done = Vec::new();
-    for chunk in 0..plan.chunk_count() {
-        done.extend(read_done_mark(folder, chunk)?);
-    }
+    let checked = check_all(args, folder, &plan, output)?;
+    let done = checked.done;
     let missing = plan.chunk_count() - done.len();
     if missing > 0 && !args.partial {
         return Err(CommandError::usage(
@@ -64,13 +73,13 @@ pub(super) fn run_merge(args: &RunsMerge, output: &CommandOutput) -> Result<Exit
     }
     let _held = wayword_run::run_folder::lock_folder(folder)?;
     let chunks: Vec<PathBuf> = done.iter().map(|done| chunk_folder(folder, done.chunk, done.epoch)).collect();
-    let bar = output.progress_bar(chunks.len(), "chunks");
+    let bar = output.progress_bar(chunks.len(), "chunks put together");
     merge_pictures(folder, &chunks, || bar.inc(1))?;
-    bar.finish_and_clear();
     for name in LINE_FILES {
         merge_lines(folder, &chunks, name)?;
     }
     merge_data(folder, &chunks)?;
+    bar.finish_and_clear();
     // Written last, because a folder with this file counts as a run.
     if !is_begun(folder) {
         write_file(&folder.join(file::CONFIG), &plan.config)?;
@@ -83,9 +92,33 @@ pub(super) fn run_merge(args: &RunsMerge, output: &CommandOutput) -> Result<Exit
         written: sum(|done| done.written),
         rejected: sum(|done| done.rejected),
         failed: sum(ChunkRecord::failed_items),
+        without_hashes: checked.without_hashes.len(),
     };
     output.print_result(&merged, &merged);
     Ok(if missing > 0 || merged.failed > 0 { Exit::WithLoss } else { Exit::Done })
+}
+
+/// Compares all finished chunks with their marks. Damaged chunks are printed, and are an error.
+fn check_all(
+    args: &RunsMerge,
+    folder: &Path,
+    plan: &ChunkPlan,
+    output: &CommandOutput,
+) -> Result<CheckedChunks, CommandError> {
+    let bar = output.progress_bar(plan.chunk_count(), "chunks compared");
+    let checked = ChunkChecker::new(folder, plan, CompareDepth::Everything).check_chunks(|| bar.inc(1));
+    bar.finish_and_clear();
+    let checked = checked?;
+    if checked.damaged.is_empty() {
+        return Ok(checked);
+    }
+    let place = match &args.to {
+        Some(to) => RetryPlace::Store { address: &args.run, folder: to },
+        None => RetryPlace::Folder(&args.run),
+    };
+    let damaged = DamagedRun::new(folder, plan.chunk_count(), &checked);
+    output.print_result(&damaged, &damaged);
+    Err(damaged.into_error(place))
 }
 
 /// Concatenates the files of one name of all chunks.
@@ -156,15 +189,29 @@ fn merge_pictures(folder: &Path, chunks: &[PathBuf], chunk_is_done: impl Fn()) -
 
 impl fmt::Display for MergeSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { run, chunks, missing, written, rejected, failed } = self;
+        let Self { run, chunks, missing, written, rejected, failed, without_hashes } = self;
         write!(
             f,
             "{run}: {} put together: {written} written, {rejected} rejected, {failed} failed",
             count_phrase(*chunks, "chunk")
         )?;
-        match missing {
-            0 => Ok(()),
-            missing => write!(f, "; {} missing", count_phrase(*missing, "chunk")),
+        if *missing > 0 {
+            write!(f, "; {} missing", count_phrase(*missing, "chunk"))?;
+        }
+        if *without_hashes > 0 {
+            write!(
+                f,
+                "\n{} of an older version: their marks hold no hashes, so only counts and names were compared",
+                count_phrase(*without_hashes, "chunk")
+            )?;
+        }
+        match (missing, failed) {
+            (0, 0) => Ok(()),
+            (0, _) => write!(f, "\nexit code 3: merged, but with loss: failed items are in {run}/{}", file::ERRORS),
+            _ => write!(
+                f,
+                "\nexit code 3: merged, but with loss: see `wayword runs status {run}` for the missing chunks"
+            ),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! `wayword runs`: shows, merges and retries a run that many workers make.
 
 pub(crate) mod args;
+mod damage;
 mod database;
 mod merge;
 mod prometheus;

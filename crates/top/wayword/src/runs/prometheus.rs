@@ -14,7 +14,7 @@ pub(super) fn prometheus_text(status: &RunStatus) -> String {
         [("done", status.done), ("running", status.running), ("open", status.open), ("dead", status.dead.len())];
     let texts = [("written", status.written), ("rejected", status.rejected)];
     let labelled = |label: &'static str, name: &str, value: usize| (vec![(label, name.to_owned())], value as f64);
-    let metrics: [PrometheusMetric<'_>; 9] = [
+    let metrics: [PrometheusMetric<'_>; 10] = [
         ("wayword_items", "gauge", "Items of the run.", plain(status.items as f64)),
         ("wayword_items_done", "gauge", "Items of finished chunks.", plain(status.items_done as f64)),
         ("wayword_chunks", "gauge", "Chunks by state.", states.map(|(state, n)| labelled("state", state, n)).into()),
@@ -35,6 +35,12 @@ pub(super) fn prometheus_text(status: &RunStatus) -> String {
             "gauge",
             "How often chunks were begun again, by reason.",
             status.retries.iter().map(|(reason, n)| (vec![("reason", reason.clone())], *n as f64)).collect(),
+        ),
+        (
+            "wayword_chunk_files_damaged",
+            "gauge",
+            "Files of finished chunks whose length does not fit their marks.",
+            plain(status.damaged.len() as f64),
         ),
         ("wayword_cost_usd", "gauge", "What the calls of finished chunks cost, US dollars.", plain(status.usd)),
         ("wayword_items_per_minute", "gauge", "Items a minute over ten minutes.", plain(status.items_per_minute)),

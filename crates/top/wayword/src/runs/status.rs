@@ -1,21 +1,22 @@
 //! `wayword runs status`: how far a run of many workers is.
 
+use super::damage::damage_lines;
 use crate::runs::args::{RunsQueue, RunsStatus};
 use serde::Serialize;
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     fmt,
     path::Path,
     thread,
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
 use wayword_queue::{
-    ChunkPlan, ChunkRecord, HEARTBEAT_LEASE, HeartbeatEntry, read_dead_mark, read_done_mark, read_heartbeats,
+    ChunkPlan, ChunkRecord, CompareDepth, HEARTBEAT_LEASE, HeartbeatEntry, read_dead_mark, read_heartbeats,
 };
 use wayword_run::{
     count::count_phrase,
     error::{CommandError, Exit},
-    generate::ChunkHandout,
+    generate::{ChunkChecker, ChunkDamage, ChunkHandout},
     interrupt,
     stores::RunPlace,
 };
@@ -74,6 +75,10 @@ pub(super) struct RunStatus {
     pub(super) open: usize,
     /// Chunks that were given up, with the reason.
     pub(super) dead: BTreeMap<usize, String>,
+    /// Files of finished chunks that do not fit their marks.
+    pub(super) damaged: Vec<ChunkDamage>,
+    /// Finished chunks whose marks hold no hashes, because an older version finished them.
+    pub(super) without_hashes: usize,
     pub(super) written: usize,
     pub(super) rejected: usize,
     /// Items that failed, by reason.
@@ -107,9 +112,18 @@ pub(super) fn run_status(args: &RunsStatus, show: impl Fn(&RunStatus)) -> Result
     let place = RunPlace::open_named(&args.run)?;
     let (folder, plan) = (place.folder(), ChunkPlan::for_folder(place.folder())?);
     let queue = queue_of(&place, &plan, &args.database)?;
+    let depth = match (place.is_stored(), args.prometheus) {
+        // The results lie in the store.
+        (true, _) => CompareDepth::Marks,
+        // It is asked for again and again.
+        (false, true) => CompareDepth::Lengths,
+        (false, false) => CompareDepth::Files,
+    };
+    let mut checker = ChunkChecker::new(folder, &plan, depth);
     loop {
         place.fetch_marks(&plan)?;
-        let mut status = RunStatus { run: args.run.display().to_string(), ..RunStatus::from_folder(folder, &plan)? };
+        let mut status =
+            RunStatus { run: args.run.display().to_string(), ..RunStatus::from_folder(folder, &plan, &mut checker)? };
         #[cfg(feature = "queue")]
         if let Some(queue) = &queue {
             status.use_queue_status(queue.read_status()?);
@@ -128,15 +142,18 @@ pub(super) fn run_status(args: &RunsStatus, show: impl Fn(&RunStatus)) -> Result
 
 impl RunStatus {
     /// The status according to the files in the folder.
-    fn from_folder(folder: &Path, plan: &ChunkPlan) -> Result<Self, CommandError> {
+    fn from_folder(folder: &Path, plan: &ChunkPlan, checker: &mut ChunkChecker<'_>) -> Result<Self, CommandError> {
         let mut status = Self { items: plan.items.len(), chunks: plan.chunk_count(), ..Self::default() };
-        let mut done = Vec::new();
-        for chunk in 0..plan.chunk_count() {
-            if let Some(record) = read_done_mark(folder, chunk)? {
-                status.items_done += plan.chunk_range(chunk).len();
-                status.count_done(&record);
-                done.push(record);
-            } else if let Some(reason) = read_dead_mark(folder, chunk)? {
+        let checked = checker.check_chunks(|| ())?;
+        let mut done = checked.done;
+        (status.damaged, status.without_hashes) = (checked.damaged, checked.without_hashes.len());
+        for record in &done {
+            status.items_done += plan.chunk_range(record.chunk).len();
+            status.count_done(record);
+        }
+        let finished: BTreeSet<usize> = done.iter().map(|record| record.chunk).collect();
+        for chunk in (0..plan.chunk_count()).filter(|chunk| !finished.contains(chunk)) {
+            if let Some(reason) = read_dead_mark(folder, chunk)? {
                 status.dead.insert(chunk, reason);
             }
         }
@@ -193,8 +210,10 @@ impl RunStatus {
 }
 
 impl From<HeartbeatEntry> for WorkerAtWork {
-    fn from(HeartbeatEntry { beat, age, .. }: HeartbeatEntry) -> Self {
-        Self { worker: beat.worker, has: beat.part, beat_s: age.as_secs_f64(), is_fresh: age < HEARTBEAT_LEASE }
+    fn from(entry: HeartbeatEntry) -> Self {
+        let is_fresh = entry.may_live(HEARTBEAT_LEASE);
+        let HeartbeatEntry { beat, age, .. } = entry;
+        Self { worker: beat.worker, has: beat.part, beat_s: age.as_secs_f64(), is_fresh }
     }
 }
 
@@ -225,6 +244,19 @@ impl fmt::Display for RunStatus {
         }
         if self.usd > 0.0 {
             writeln!(f, "cost     ${:.4} for the finished chunks", self.usd)?;
+        }
+        for line in damage_lines(&self.damaged) {
+            writeln!(f, "damaged  {line}")?;
+        }
+        if !self.damaged.is_empty() {
+            writeln!(f, "         make these chunks again: wayword runs retry {} --damaged", self.run)?;
+        }
+        if self.without_hashes > 0 {
+            writeln!(
+                f,
+                "older    {}: their marks hold no hashes, so only counts and names are compared",
+                count_phrase(self.without_hashes, "finished chunk")
+            )?;
         }
         for (reason, times) in self.failed.iter().take(MAX_SHOWN_ENTRIES) {
             writeln!(f, "failed   {times} x {reason}")?;

@@ -85,9 +85,9 @@ impl<'a> WorkerBoard<'a> {
     ) -> Result<Self, CommandError> {
         match (asked.shard, &asked.queue) {
             (Some(part), _) => {
-                let (folder, token) = (place.folder(), worker.to_owned());
+                let folder = place.folder();
                 ChunkHandout::Shards.record_in(place)?;
-                let beat = WorkerHeartbeat { worker: token.clone(), token, part: format!("shard {part}") };
+                let beat = WorkerHeartbeat::of_this_process(worker, format!("shard {part}"));
                 let heart =
                     HeartbeatThread::start(folder, &part.heartbeat_name(), beat, asked.lease_duration(), |file| {
                         part.overlaps_part(file)
@@ -117,6 +117,18 @@ impl<'a> WorkerBoard<'a> {
     #[cfg(not(feature = "queue"))]
     fn join_queue(_: &RunPlace, _: &ChunkPlan, _: &str, _: &str, _: &AskedWorkers) -> Result<Self, CommandError> {
         Err(CommandError::not_built("--queue cannot be used: this build has no way to a database"))
+    }
+
+    /// How many workers of a queue are at work, this one included; `None` in a shard, whose number of parts is known beforehand.
+    pub(super) fn worker_count(&self) -> Result<Option<usize>, CommandError> {
+        match self {
+            Self::Shard { .. } => Ok(None),
+            #[cfg(feature = "queue")]
+            Self::Queue { queue, lease, .. } => {
+                let workers = queue.read_status()?.workers;
+                Ok(Some(workers.iter().filter(|worker| worker.beat_s < lease.as_secs_f64()).count()))
+            }
+        }
     }
 
     /// The ledger for this worker's calls.

@@ -1,6 +1,6 @@
 //! Makes one chunk of a run, in a run folder of its own.
 
-use super::{WorkerStop, board::recording_path};
+use super::{WorkerStop, board::recording_path, chunk_check::CHUNK_FILES};
 use crate::{
     count::count_phrase,
     error::{CommandError, Exit},
@@ -10,11 +10,10 @@ use crate::{
 };
 use std::{
     collections::BTreeMap,
-    fs,
     path::Path,
     time::{Instant, SystemTime, UNIX_EPOCH},
 };
-use wayword_queue::{ChunkClaim, ChunkOutcome, ChunkPlan, ChunkRecord, chunk_folder, sync_tree};
+use wayword_queue::{ChunkClaim, ChunkOutcome, ChunkPlan, ChunkRecord, chunk_folder, mark_files, sync_tree};
 
 /// Longest reason of a failure that a completion mark keeps, characters. The rest is cut off; `errors.jsonl` has all of
 /// it.
@@ -35,7 +34,7 @@ pub(super) fn make_chunk(
     match fill_chunk(&folder, out, plan, shop, claimed, output) {
         Ok(None) => {
             let spent = ChunkCost { seconds: since.elapsed().as_secs_f64(), usd: usd_so_far(shop) - before };
-            let done = ChunkRecord { worker: worker.to_owned(), ..completion_mark(&folder, claimed, spent)? };
+            let done = ChunkRecord { worker: worker.to_owned(), ..completion_mark(&folder, plan, claimed, spent)? };
             output.say(format_args!(
                 "chunk {} of {}: {}, {} written, {} rejected{}",
                 claimed.chunk,
@@ -97,14 +96,12 @@ fn usd_so_far(shop: &ItemWorkshop<'_>) -> f64 {
 /// The completion mark of a chunk, counted from the files in its folder.
 fn completion_mark(
     folder: &Path,
+    plan: &ChunkPlan,
     claimed: ChunkClaim,
     ChunkCost { seconds, usd }: ChunkCost,
 ) -> Result<ChunkRecord, CommandError> {
-    let lines = |name: &str| -> Result<usize, CommandError> {
-        let path = folder.join(name);
-        let text = fs::read(&path).map_err(CommandError::io(&path, "count the lines of"))?;
-        Ok(text.iter().filter(|byte| **byte == b'\n').count())
-    };
+    let files = mark_files(folder, &CHUNK_FILES)?;
+    let lines = |name: &str| files.get(name).map_or(0, |mark| usize::try_from(mark.count).unwrap_or(usize::MAX));
     let mut failed: BTreeMap<String, usize> = BTreeMap::new();
     for FailedItem { reason, .. } in read_lines(&folder.join(file::ERRORS))? {
         *failed.entry(reason.chars().take(MAX_REASON_CHARS).collect()).or_default() += 1;
@@ -113,13 +110,15 @@ fn completion_mark(
     Ok(ChunkRecord {
         chunk: claimed.chunk,
         epoch: claimed.epoch,
-        made: lines(file::WALKS)?,
-        written: lines(file::INSTRUCTIONS)?,
-        rejected: lines(file::REJECTED)?,
+        made: lines(file::WALKS),
+        written: lines(file::INSTRUCTIONS),
+        rejected: lines(file::REJECTED),
         failed,
         seconds,
         usd,
         at_unix_s,
+        run: plan.run.clone(),
+        files,
         ..ChunkRecord::default()
     })
 }

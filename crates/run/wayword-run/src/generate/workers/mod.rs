@@ -3,8 +3,10 @@
 pub mod args;
 mod board;
 mod chunk;
+mod chunk_check;
 mod plan_file;
 mod summaries;
+mod work_spread;
 
 use super::{
     ItemWorkshop,
@@ -27,9 +29,11 @@ use crate::{
 };
 pub use board::ChunkHandout;
 use board::WorkerBoard;
+pub use chunk_check::{CHUNK_FILES, CheckedChunks, ChunkChecker, ChunkDamage};
 use std::path::Path;
 use summaries::{PlanSummary, WorkerSummary};
 use wayword_queue::{PLAN, WorkSummary, work_chunks};
+pub use work_spread::ChunkedItems;
 
 /// Why a worker stops although chunks are left.
 pub(super) struct WorkerStop {
@@ -56,6 +60,12 @@ pub fn run_worker(
     plan_file::refuse_other_folder(out)?;
     let kept = wayword_queue::ChunkPlan::find_plan(out)?;
     let before = kept.as_ref().map(|kept| plan_file::settings_in_plan(out, kept)).transpose()?;
+    let warn_idle = |items: ChunkedItems| {
+        let warning = asked.shard.and_then(|part| items.idle_warning(part.n));
+        warning.iter().for_each(|warning| output.say(warning));
+    };
+    // Known at once, and before models are loaded.
+    kept.iter().for_each(|kept| warn_idle(ChunkedItems::of_plan(kept)));
     let service = board::worker_service(&job.service, asked, output)?;
     // The list of recordings is filled in once this worker has its part.
     let job = RunJob { service, keeping: CallKeeping::Chunks(Vec::new()), ..job.clone() };
@@ -64,6 +74,7 @@ pub fn run_worker(
     let prepared = PreparedRun::open(&job, continued, check, output)?;
     let (plan, settings) = &prepared.plan_with_settings(output)?;
     if prepared.is_new {
+        warn_idle(ChunkedItems { items: plan.items.len(), chunk: asked.chunk_items(), is_planned: false });
         place.check_store()?;
         plan_file::write_plan(out, plan, settings, asked)?;
         place.publish_file(PLAN)?;
@@ -104,6 +115,9 @@ fn make_chunks(
         place.fetch_marks(kept)?;
     }
     let worker_board = WorkerBoard::open(place, kept, worker, asked)?;
+    let idle_warning =
+        worker_board.worker_count()?.and_then(|workers| ChunkedItems::of_plan(kept).idle_warning(workers));
+    idle_warning.iter().for_each(|warning| output.say(warning));
     let job = RunJob { keeping: worker_board.kept_calls(), ..plan.job.clone() };
     let calls = ModelCalls::open(&job, &kept.run, output)?;
     let lookout = DetectorLookout::from_settings(settings, calls.as_ref(), &plan.styles)?;

@@ -38,7 +38,12 @@ impl fmt::Display for PlanSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { run, items, chunks, chunk, .. } = self;
         writeln!(f, "{run}: {} in {} of {chunk}", count_phrase(*items, "item"), count_phrase(*chunks, "chunk"))?;
-        write!(f, "workers make them with the same command and --shard K/N or --queue DATABASE instead of --plan")
+        writeln!(f, "workers make them with the same command and --shard K/N or --queue DATABASE instead of --plan")?;
+        write!(
+            f,
+            "at most {} have work at the same time; a smaller --chunk gives more of them work",
+            count_phrase(*chunks, "worker")
+        )
     }
 }
 
