@@ -1,6 +1,10 @@
 //! The items of a run: episodes of a dataset, or random paths, which are drawn only when their turn comes.
 
-use crate::{episode_paths::path_for_episode, error::CommandError, settings::RunSettings};
+use crate::{
+    episode_paths::path_for_episode,
+    error::CommandError,
+    settings::{RunSettings, houses},
+};
 use std::{collections::BTreeSet, path::Path as FilePath, sync::Arc};
 use wayword_core::{ObjectId, Path, Platform, PlatformError, SceneId, ViewpointId, seed};
 use wayword_formats::Episode;
@@ -111,7 +115,10 @@ fn random_items(settings: &RunSettings, platform: &dyn Platform) -> Result<Vec<R
         scenes.push(platform.files().canonical_scene(&scene));
     }
     if settings.scan.is_empty() {
-        scenes = platform.list_scenes()?;
+        scenes = match houses::asked_houses(settings)? {
+            Some(houses) => houses,
+            None => platform.list_scenes()?,
+        };
     }
     scenes.retain(|scene| !settings.left_out.contains_key(scene.as_str()));
     if scenes.is_empty() {

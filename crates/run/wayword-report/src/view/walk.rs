@@ -30,6 +30,7 @@ pub(super) fn choose_path(
     }
     let asked = AskedSettings {
         walks: Walks {
+            houses: None,
             episodes: walk.episodes.clone(),
             paths: walk.episodes.is_none().then_some(1),
             scan: walk.scan.clone().map(|scan| vec![scan]),

@@ -2,6 +2,7 @@
 
 pub mod args;
 mod fill;
+mod house_spread;
 mod item_span;
 mod keep;
 mod pace;
@@ -46,6 +47,7 @@ pub fn run_generate(args: &GenerateArgs, output: &CommandOutput) -> Result<Exit,
         let chunk = args.workers.is_asked().then(|| args.workers.chunk_items());
         let plan = prepared.plan_run(output)?;
         let estimate = plan.estimate_calls(chunk)?;
+        say_house_spread(&plan, output);
         output.print_result(&estimate, &estimate);
         return Ok(Exit::Done);
     }
@@ -104,6 +106,11 @@ fn warn_of_no_effect(settings: &RunSettings, output: &CommandOutput) {
     }
 }
 
+/// Says how many generated houses the random paths of a run lie in.
+fn say_house_spread(plan: &RunPlan<'_>, output: &CommandOutput) {
+    house_spread::house_spread(&plan.job.settings, &plan.items).iter().for_each(|spread| output.say(spread));
+}
+
 /// Makes or continues a run.
 ///
 /// # Errors
@@ -132,6 +139,7 @@ pub fn generate_into(folder: &Path, job: &RunJob, output: &CommandOutput) -> Res
         keep_id(folder, &id)?;
     }
     let data = WorldData::from_folder(folder)?;
+    say_house_spread(plan, output);
 
     let shop = ItemWorkshop { plan, settings, calls: calls.as_ref(), team: &team, scenes: KnownScenes::new() };
     let _graceful = interrupt::finish_items_first(calls.as_ref());

@@ -96,6 +96,10 @@ walks:
         /// Number of random paths. [default: 10, if no episodes are given]
         #[arg(long, value_name = "N")]
         pub paths: Option<usize>,
+        /// Random paths through this many generated houses, whose seeds begin at --seed: with as many houses as paths each path lies in a
+        /// house of its own. For platform house. [default: 20 houses, from seed 0 on]
+        #[arg(long, value_name = "N")]
+        pub houses: Option<usize>,
         /// Use only this scene. May be given several times.
         #[arg(long, value_name = "SCENE")]
         pub scan: Option<Vec<String>>,
@@ -218,12 +222,18 @@ impl AskedPlatform {
 impl Walks {
     /// The values of flags, completed by those of a file.
     fn or_file(self, mut file: Self) -> Self {
-        // Episodes and random paths exclude each other, so a flag for one also removes the other of a file.
-        if self.paths.is_some() {
+        // Episodes and random paths exclude each other, so a flag for one also removes the other of a file; likewise houses and scenes.
+        if self.paths.is_some() || self.houses.is_some() {
             file.episodes = None;
         }
         if self.episodes.is_some() {
-            file.paths = None;
+            (file.paths, file.houses) = (None, None);
+        }
+        if self.houses.is_some() {
+            file.scan = None;
+        }
+        if self.scan.is_some() {
+            file.houses = None;
         }
         self.over(file)
     }

@@ -2,6 +2,7 @@
 
 mod asked_settings;
 mod group;
+pub(crate) mod houses;
 mod role_player;
 mod roles;
 mod service;
@@ -55,6 +56,9 @@ pub struct RunSettings {
     /// Numbers of random paths that earlier commands asked for, ascending: later paths come after theirs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub raised_from: Vec<usize>,
+    /// Number of generated houses that random paths lie in, whose seeds begin at `seed`; the platform's own choice if `None`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub houses: Option<usize>,
     /// Scenes to use; none means all.
     pub scan: Vec<String>,
     /// The lengths that random paths may have.
@@ -268,6 +272,10 @@ impl AskedSettings {
                 "make several runs, each with its own --seed",
             ));
         }
+        let seed = draw.seed.unwrap_or(0);
+        if let Some(houses) = walks.houses {
+            houses::refuse_unfit_houses(houses, paths, seed, platform.name(), &walks)?;
+        }
         if writing.reject_ambiguous == Some(true) && writing.no_route == Some(true) {
             return Err(CommandError::usage(
                 "--reject-ambiguous and --no-route cannot be combined: a text that is not followed is not known to be ambiguous",
@@ -331,6 +339,7 @@ impl AskedSettings {
             episodes: walks.episodes,
             paths,
             raised_from: Vec::new(),
+            houses: walks.houses,
             scan: walks.scan.unwrap_or_default(),
             request,
             style: styles.unwrap_or_else(|| vec!["r2r".into(), "reverie".into()]),
@@ -342,7 +351,7 @@ impl AskedSettings {
             refine: writing.refine.unwrap_or(refine),
             candidates: writing.candidates.unwrap_or(candidates),
             per_path: writing.per_path.unwrap_or(1),
-            seed: draw.seed.unwrap_or(0),
+            seed,
             limit: draw.limit,
             evidence,
             detector_figures: writing.detector_figures,

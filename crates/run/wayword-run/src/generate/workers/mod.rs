@@ -11,7 +11,7 @@ mod work_spread;
 use super::{
     ItemWorkshop,
     prepare::{ModelCheck, PreparedRun},
-    warn_of_no_effect,
+    say_house_spread, warn_of_no_effect,
 };
 use crate::{
     calls::{CallKeeping, ModelCalls},
@@ -83,6 +83,7 @@ pub fn run_worker(
     let kept = kept.map_or_else(|| wayword_queue::ChunkPlan::for_folder(out), Ok)?;
     plan_file::check_agreement(place.shown_path(), &kept, plan, settings, asked)?;
     if asked.plan {
+        say_house_spread(plan, output);
         let summary = PlanSummary::from_plan(place.shown_path(), &kept);
         output.print_result(&summary, &summary);
         return Ok(Exit::Done);
@@ -122,6 +123,7 @@ fn make_chunks(
     let calls = ModelCalls::open(&job, &kept.run, output)?;
     let lookout = DetectorLookout::from_settings(settings, calls.as_ref(), &plan.styles)?;
     let team = RoleTeam::new(settings, calls.as_ref(), plan.platform)?.with_lookout(lookout);
+    say_house_spread(plan, output);
     let shop = ItemWorkshop { plan, settings, calls: calls.as_ref(), team: &team, scenes: KnownScenes::new() };
     let _graceful = interrupt::finish_items_first(calls.as_ref());
     let make =
