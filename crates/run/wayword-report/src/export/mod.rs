@@ -41,7 +41,7 @@ use wayword_run::{
     count::count_phrase,
     error::{CommandError, Exit},
     output::CommandOutput,
-    run_folder::{file, refuse_unmerged},
+    run_folder::{file, refuse_torn_line, refuse_unmerged},
     settings::AskedPlatform,
     terms,
     written_files::{expect_output_folder, find_output_place},
@@ -161,7 +161,10 @@ fn refuse_what_does_not_fit(args: &ExportArgs, format: ExportFormat) -> Result<(
 
 /// The records of runs, merged; only those of one style if it is named.
 fn read_records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<InstructionRecord>, CommandError> {
-    runs.iter().try_for_each(|run| refuse_unmerged(run))?;
+    for run in runs {
+        refuse_unmerged(run)?;
+        refuse_torn_line(run)?;
+    }
     let files: Vec<PathBuf> = runs.iter().map(|run| run.join(file::INSTRUCTIONS)).collect();
     let mut records = jsonl::merge_records(&files)?;
     let styles: BTreeSet<String> = records.iter().map(|record| record.instruction.style.clone()).collect();

@@ -20,6 +20,8 @@ pub struct RunSummary {
     pub run: String,
     /// Items of the run.
     pub items: usize,
+    /// Items whose texts are in the folder, accepted or rejected.
+    pub made: usize,
     /// Instructions that passed every check.
     pub passed: usize,
     /// Instructions for which something could not be checked.
@@ -123,6 +125,7 @@ pub(super) fn summarise_run(
     Ok(RunSummary {
         run: folder.display().to_string(),
         items,
+        made: run.walks.len(),
         passed,
         unverified,
         finished_by_rules: finished,
@@ -229,7 +232,7 @@ impl fmt::Display for RunSummary {
         if self.errors > 0 {
             writeln!(
                 f,
-                "{} failed (see errors.jsonl); remove the cause, and the same command tries again",
+                "{} failed; remove the cause, and the same command tries again",
                 count_phrase(self.errors, "item")
             )?;
         }
@@ -280,7 +283,36 @@ impl fmt::Display for RunSummary {
         }
         if let Some(reason) = &self.stopped {
             writeln!(f, "stopped before the end: {reason}")?;
+            let (run, made) = (&self.run, count_phrase(self.made, "item"));
+            writeln!(
+                f,
+                "it need not be finished: `wayword report --run {run}` and `wayword export --run {run}` take the {made} that are \
+                 there"
+            )?;
         }
-        write!(f, "run folder: {}", self.run)
+        write!(f, "run folder: {}", self.run)?;
+        match self.loss_line() {
+            Some(line) => write!(f, "\n{line}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl RunSummary {
+    /// What was lost in a run that ends with the exit code for that, and where to look.
+    fn loss_line(&self) -> Option<String> {
+        if self.exit != Exit::WithLoss {
+            return None;
+        }
+        let part = |count: usize, thing: &str, how: &str, name: &str| {
+            let file = Path::new(&self.run).join(name);
+            (count > 0).then(|| format!("{} {how} (see {})", count_phrase(count, thing), file.display()))
+        };
+        let parts = [
+            part(self.errors, "item", "failed", file::ERRORS),
+            part(self.rejected, "text", "rejected", file::REJECTED),
+        ];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        Some(format!("exit code {}: the run is done, but with loss: {}", Exit::WithLoss as u8, parts.join(", ")))
     }
 }

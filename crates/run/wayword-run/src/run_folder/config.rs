@@ -1,8 +1,9 @@
 //! `config.toml` of a folder: the settings of its run, comparison or robustness test, with the format of the folder. The same
 //! file decides whether a command continues the folder or is refused.
 
-use super::file;
+use super::{file, lines, setting_differences::setting_differences};
 use crate::{
+    count::count_phrase,
     error::CommandError,
     own_format::{self, OwnFormat},
     settings::RunSettings,
@@ -10,7 +11,7 @@ use crate::{
     written_files::write_file,
 };
 use serde::Serialize;
-use std::{collections::BTreeSet, path::Path};
+use std::path::Path;
 
 /// Writes the settings into a new folder. In an old one, refuses settings that differ from those of the file.
 pub fn keep_config<S>(folder: &Path, settings: &S) -> Result<(), CommandError>
@@ -26,15 +27,11 @@ where
 }
 
 fn other_settings<S: Serialize>(folder: &Path, before: &S, settings: &S) -> CommandError {
-    let differs = differing_keys(before, settings).into_iter().collect::<Vec<_>>().join(", ");
+    let differs = setting_differences(before, settings).join(", ");
     let problem = format!("{} holds a run with other settings: {differs}", folder.display());
-    let config = folder.join(file::CONFIG);
     CommandError::usage(
         problem,
-        format!(
-            "to continue it, give the old settings and input files again ({} has the settings); for a new run, another --out",
-            config.display()
-        ),
+        "to continue it, give its own values as flags or in a settings file, and the same input files; for a new run, another --out",
     )
 }
 
@@ -46,17 +43,29 @@ pub(super) fn keep_settings(folder: &Path, settings: &RunSettings) -> Result<(),
     }
     let before: RunSettings = read_config(folder)?;
     if settings.paths < before.paths {
-        let problem =
-            format!("{} holds a run of {} paths, but {} are asked for", folder.display(), before.paths, settings.paths);
-        return Err(CommandError::usage(
-            problem,
-            "ask for as many or more to continue it, or give another --out for a new run",
-        ));
+        return Err(fewer_paths(folder, &before, settings)?);
     }
     if before.raised_to(settings) != *settings {
         return Err(other_settings(folder, &before, settings));
     }
     if before == *settings { Ok(()) } else { write_config(&path, settings) }
+}
+
+/// The error about a run that is asked for fewer paths than it has. A run can be used as it is, however many of its items are made.
+fn fewer_paths(folder: &Path, before: &RunSettings, settings: &RunSettings) -> Result<CommandError, CommandError> {
+    let (shown, mut made) = (folder.display(), 0);
+    lines::each_line(&folder.join(file::WALKS), |_| {
+        made += 1;
+        Ok(())
+    })?;
+    let problem = format!("{shown} holds a run of {} paths, but {} are asked for", before.paths, settings.paths);
+    let hint = format!(
+        "it need not be finished: `wayword report --run {shown}` and `wayword export --run {shown}` take what is there ({}); to \
+         continue it, ask for {} or more; for a new run, give another --out",
+        count_phrase(made, "item"),
+        before.paths
+    );
+    Ok(CommandError::usage(problem, hint))
 }
 
 fn write_config<S: Serialize + OwnFormat>(path: &Path, settings: &S) -> Result<(), CommandError> {
@@ -157,21 +166,4 @@ pub fn read_config<S: OwnFormat>(folder: &Path) -> Result<S, CommandError> {
         let hint = unread.hint_or("it was written by another command or another version: use another folder");
         CommandError::usage(format!("{}: {unread}", path.display()), hint)
     })
-}
-
-/// The keys in which two settings differ. Inputs that differ are listed as "contents of NAME".
-pub fn differing_keys<S: Serialize>(a: &S, b: &S) -> BTreeSet<String> {
-    let table = |settings: &S| toml::Table::try_from(settings).unwrap_or_default();
-    let (a, b) = (table(a), table(b));
-    let keys: BTreeSet<&String> = a.keys().chain(b.keys()).collect();
-    let differs = |key: &&String| a.get(*key) != b.get(*key);
-    let contents = |name: &String| {
-        let (before, after) = (a.get("inputs")?.get(name)?, b.get("inputs")?.get(name)?);
-        (before != after).then(|| format!("contents of {name}"))
-    };
-    let inputs = a.get("inputs").and_then(toml::Value::as_table).into_iter().flat_map(toml::Table::keys);
-    let inputs: Vec<String> = inputs.filter_map(contents).collect();
-    let settings =
-        keys.into_iter().filter(differs).filter(|key| !["inputs", "raised_from"].contains(&key.as_str())).cloned();
-    settings.chain(inputs).collect()
 }

@@ -14,6 +14,7 @@ mod journal;
 mod line_check;
 pub mod lines;
 mod record;
+mod setting_differences;
 mod text_hash;
 mod world_data;
 
@@ -32,15 +33,14 @@ use wayword_core::hex_text;
 use wayword_world::files;
 
 use config::keep_settings;
-pub use config::{
-    config_text, differing_keys, is_comparison, keep_config, read_config, refuse_other_format, refuse_unmerged,
-};
+pub use config::{config_text, is_comparison, keep_config, read_config, refuse_other_format, refuse_unmerged};
 pub use config::{continued_settings, is_begun, read_run_settings};
 pub use cost::{ItemCalls, TextCost};
 pub use folder_lock::{FolderLock, lock_folder};
 pub use journal::{Journal, read_lines};
-pub use line_check::{refuse_edited_lines, refuse_repeated_lines};
+pub use line_check::{refuse_edited_lines, refuse_repeated_lines, refuse_torn_line};
 pub use record::{FailedItem, PathMap, RejectedText, WalkRecord, extra_fields, text_file_name, text_name};
+pub use setting_differences::setting_differences;
 pub(crate) use text_hash::add_text_hash;
 pub use text_hash::hash_of_text;
 pub use world_data::WorldData;

@@ -112,7 +112,11 @@ fn a_folder_with_a_run_of_other_settings_is_refused_and_left_alone() {
         &["--episodes", EPISODES, "--style", "reverie", "--style", "r2r", "--seed", "5", "--repairs", "2"],
     );
     let error = ran.refused();
-    assert!(error.contains("other settings: repairs, seed\nhint") && error.contains("--out"), "{error}");
+    assert!(
+        error.contains("other settings: repairs (8 before, 2 now), seed (0 before, 5 now)\nhint")
+            && error.contains("--out"),
+        "{error}"
+    );
     assert!(files(&building.path("run")) == before);
 }
 

@@ -12,6 +12,7 @@ mod compare;
 mod compare_models;
 mod compare_tools;
 mod contained;
+mod damaged_chunks;
 mod damaged_files;
 mod detectors;
 mod documents;

@@ -6,7 +6,7 @@ use crate::{
     item::RunItem,
     own_format,
     plan::RunPlan,
-    run_folder::{config_text, differing_keys, fresh_id, is_begun, scene_hashes},
+    run_folder::{config_text, fresh_id, is_begun, scene_hashes, setting_differences},
     settings::RunSettings,
 };
 use std::{collections::BTreeSet, fs, path::Path};
@@ -58,7 +58,7 @@ pub(super) fn check_agreement(
     asked: &AskedWorkers,
 ) -> Result<(), CommandError> {
     let before = settings_in_plan(out, kept)?;
-    let mut differs: Vec<String> = differing_keys(&before, settings).into_iter().collect();
+    let mut differs = setting_differences(&before, settings);
     if asked.chunk.is_some_and(|chunk| chunk.get() != kept.chunk) {
         differs.push(format!("chunk ({} in the plan)", kept.chunk));
     }
