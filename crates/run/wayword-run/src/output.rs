@@ -1,8 +1,8 @@
 //! The only place that writes to the terminal: results to standard output, messages and progress to standard error. Inside
 //! another program (the Python package) a listener gets them instead.
 
-use crate::error::CommandError;
 use crate::command_progress::{LastPrint, LinePace, LineWords};
+use crate::error::CommandError;
 
 pub use crate::command_progress::{CommandProgress, SilenceWatch};
 pub use indicatif::ProgressBar;
