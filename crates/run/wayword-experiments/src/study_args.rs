@@ -57,7 +57,7 @@ pub enum StudyCommand {
 #[command(after_long_help = "\
 Examples:
   wayword study new --run ours=runs/houses#r2r --mode follow --out STUDY
-  wayword study new --run a=runs/central#r2r --run b=runs/other#r2r --include people,other-path --episodes R2R_val_seen.json \\
+  wayword study new --run a=runs/central#r2r --run b=runs/other#r2r --include original,other-path --episodes R2R_val_seen.json \\
       --platform matterport --data DATA --i-have-the-right --items 60 --per-item 5 --mode rate --out STUDY
   wayword study new --run plain=runs/a#r2r --run marked=runs/a#r2r --doubts marked --mode follow --out STUDY
   wayword study new --run a=runs/a#r2r --run b=runs/b#r2r --mode pair --recruiter prolific --out STUDY
@@ -68,7 +68,7 @@ pub struct StudyNew {
     /// A set of texts: NAME=RUN#STYLE or NAME=FILE. Give the flag several times to compare sets.
     #[arg(long, value_name = "NAME=SET", required = true)]
     pub run: Vec<NamedSet>,
-    /// Controls: people (the texts of --episodes) and other-path (a text of another path in the same scene: what a wrong text reaches).
+    /// Controls: original (the texts of --episodes) and other-path (a text of another path in the same scene: what a wrong text reaches).
     #[arg(long, value_name = "CONTROLS", value_delimiter = ',')]
     pub include: Vec<StudyControl>,
     /// Mark the words to doubt in the texts of this set or control, with the alternatives, for those who walk by them.
@@ -115,6 +115,7 @@ pub struct StudyNew {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum StudyControl {
     /// Those of the dataset.
+    #[value(name = "original", alias = "people")]
     People,
     /// Those of other paths.
     OtherPath,
@@ -191,14 +192,15 @@ fn public_url(text: &str) -> Result<String, String> {
 
 /// `wayword study invite`.
 #[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  wayword study invite STUDY --links 20 --public https://study.example.org")]
 pub struct StudyInvite {
     /// Folder of the study.
     pub study: PathBuf,
     /// How many links.
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long = "links", alias = "count", value_name = "N", default_value_t = 1)]
     pub count: u32,
     /// The address that participants open.
-    #[arg(long, value_name = "URL", default_value = "http://127.0.0.1:8080", value_parser = public_url)]
+    #[arg(long = "public", alias = "url", value_name = "URL", default_value = "http://127.0.0.1:8080", value_parser = public_url)]
     pub url: String,
 }
 
@@ -241,6 +243,7 @@ pub struct StudyPlan {
 
 /// `wayword study status`.
 #[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  wayword study status STUDY\n  wayword study status STUDY --participants")]
 pub struct StudyStatus {
     /// Folder of the study.
     pub study: PathBuf,
@@ -251,6 +254,7 @@ pub struct StudyStatus {
 
 /// `wayword study results`.
 #[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  wayword study results STUDY --out FOLDER")]
 pub struct StudyResults {
     /// Folder of the study.
     pub study: PathBuf,
@@ -261,6 +265,9 @@ pub struct StudyResults {
 
 /// `wayword study forget`.
 #[derive(Debug, Args)]
+#[command(
+    after_long_help = "Examples:\n  wayword study forget STUDY --participant 5f2c1e --dry-run\n  wayword study forget STUDY --participant 5f2c1e"
+)]
 pub struct StudyForget {
     /// Folder of the study.
     pub study: PathBuf,
@@ -275,6 +282,7 @@ pub struct StudyForget {
 
 /// `wayword study reconcile`.
 #[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  wayword study reconcile STUDY prolific_export.csv")]
 pub struct StudyReconcile {
     /// Folder of the study.
     pub study: PathBuf,
@@ -284,6 +292,7 @@ pub struct StudyReconcile {
 
 /// `wayword study close`.
 #[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  wayword study close STUDY")]
 pub struct StudyClose {
     /// Folder of the study.
     pub study: PathBuf,

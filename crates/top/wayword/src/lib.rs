@@ -29,8 +29,6 @@ mod platform_list;
 mod report_command;
 mod runs;
 
-use clap::Parser;
-use cli::WaywordCli;
 use std::{borrow::Cow, ffi::OsString};
 use wayword_run::{
     error::Exit,
@@ -43,7 +41,7 @@ pub fn main(arguments: Vec<OsString>) -> u8 {
     wayword_platforms::process::stand_guard_if_asked(arguments.get(1..).unwrap_or_default());
     let pending = interrupt::catch_signals();
     leave_contained_panics_to_errors();
-    let cli = match WaywordCli::try_parse_from(arguments) {
+    let cli = match cli::parse_arguments(arguments) {
         Ok(cli) => cli,
         Err(parse_error) => {
             // A closed output is no error. A value that is quoted may be an address with a password in it.

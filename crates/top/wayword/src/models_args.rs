@@ -25,9 +25,13 @@ pub struct ModelsArgs {
 #[derive(Debug, Subcommand)]
 pub enum ModelsCommand {
     /// List the models on this machine.
+    #[command(after_long_help = "Examples:\n  wayword models list")]
     List,
     /// Fetch a model. If it is here already, update it to the newest version of its branch. A fetch that was cut off continues
     /// where it ended.
+    #[command(
+        after_long_help = "Examples:\n  wayword models fetch hf/Salesforce/blip-vqa-base\n  wayword models fetch --tokenizer hf/google-bert/bert-base-uncased"
+    )]
     Fetch {
         /// Its name: hf/ORG/NAME or hf/ORG/NAME@REVISION.
         name: String,
@@ -36,6 +40,7 @@ pub enum ModelsCommand {
         tokenizer: bool,
     },
     /// Print a model's folder, or the file that it lacks, without fetching it.
+    #[command(after_long_help = "Examples:\n  wayword models path hf/Salesforce/blip-vqa-base")]
     Path {
         /// Its name.
         name: String,

@@ -103,9 +103,8 @@ pub struct CompareArgs {
     /// Print what the models would be asked and what that would cost, and ask nothing.
     #[arg(long)]
     pub dry_run: bool,
-    /// Refused, with the reason: a calibration weighs how much the silence of labels counts against a claim, and no agent judges
-    /// claims. `check` and `generate` take it.
-    #[arg(long, value_name = "FILE")]
+    /// Refused with the reason, and so not listed: other commands take it, and no agent judges claims.
+    #[arg(long, value_name = "FILE", hide = true)]
     pub calibration: Option<PathBuf>,
     /// Use only the first N items.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]

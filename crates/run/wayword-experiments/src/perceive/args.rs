@@ -33,7 +33,7 @@ pub struct PerceiveArgs {
     #[arg(long, value_name = "FILE")]
     pub episodes: Option<PathBuf>,
     /// Use only this scene. May be given several times.
-    #[arg(long, value_name = "SCENE")]
+    #[arg(long, alias = "scene", value_name = "SCENE")]
     pub scan: Option<Vec<String>>,
     /// At each frame, look along the heading, or in all four directions, as `check` does with a detector. [default: central]
     #[arg(long)]

@@ -21,7 +21,7 @@ use wayword_run::{count::count_phrase, episode_paths::path_for_episode, error::C
 use wayword_study::{ConditionKind, StudyCondition, StudyTask, StudyText};
 
 /// The names of the two control conditions: texts that people wrote, and texts of other paths.
-const PEOPLE_CONDITION: &str = "people";
+const PEOPLE_CONDITION: &str = "original";
 const OTHER_PATH_CONDITION: &str = "other-path";
 
 /// A path with one text for each condition, in the order of the conditions.
@@ -58,7 +58,7 @@ pub(super) fn study_conditions(args: &StudyNew) -> Result<Vec<StudyCondition>, C
     let mut all: Vec<StudyCondition> = args.run.iter().map(run).collect();
     if args.include.contains(&StudyControl::People) {
         let Some(file) = &args.episodes else {
-            let problem = "--include people: it is not known which texts people wrote";
+            let problem = "--include original: it is not known which texts people wrote";
             return Err(CommandError::usage(problem, "give the dataset's file with --episodes"));
         };
         all.push(condition(PEOPLE_CONDITION, ConditionKind::People, file.display().to_string()));

@@ -6,6 +6,11 @@ use wayword_run::settings::AskedPlatform;
 
 /// `wayword view`.
 #[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  wayword view panorama --scan house2-7 --out living.png
+  wayword view path --scan house2-7 --seed 3 --out frames/
+  wayword view map --scan house2-7 --out ground.svg")]
 pub struct ViewArgs {
     /// What to show.
     #[command(subcommand)]
@@ -27,7 +32,7 @@ pub enum ViewCommand {
 #[derive(Debug, Args)]
 pub struct ShownPathArgs {
     /// Use this scene. [default: the platform's first; with --episodes, that of the item]
-    #[arg(long, value_name = "SCENE")]
+    #[arg(long, alias = "scene", value_name = "SCENE")]
     pub scan: Option<String>,
     /// Show the first random path that `generate` makes with this seed. [default: 0, if a random path is shown]
     #[arg(long, value_name = "N")]
@@ -61,7 +66,7 @@ pub struct ViewPanorama {
     #[command(flatten)]
     pub platform: AskedPlatform,
     /// Use this scene. [default: the platform's first]
-    #[arg(long, value_name = "SCENE")]
+    #[arg(long, alias = "scene", value_name = "SCENE")]
     pub scan: Option<String>,
     /// Stand at this viewpoint. [default: the scene's first]
     #[arg(long, value_name = "ID", conflicts_with = "seed")]

@@ -23,7 +23,8 @@ impl ModelCalls {
         settings_prompts(&job.settings)?;
         let models = job.settings.roles.model_names();
         // `--ledger` is often given for all runs; no one is surprised that a run without models does not use it.
-        let unused: Vec<String> = job.service.given().into_iter().filter(|flag| flag != "--ledger").collect();
+        let service = job.service.given().into_iter().filter(|flag| flag != "--ledger");
+        let unused: Vec<String> = service.chain(job.settings.roles.given_for_models()).collect();
         if models.is_empty() && !unused.is_empty() {
             output.say(format_args!(
                 "warning: no role has a model, so these settings have no effect: {}",

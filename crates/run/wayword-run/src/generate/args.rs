@@ -21,12 +21,13 @@ Examples:
   wayword generate --paths 100000 --out runs/big --shard 3/64       (or: --queue wayword_db)
   wayword generate --paths 20 --out runs/houses --spans runs/houses-spans")]
 pub struct GenerateArgs {
-    /// Settings as TOML, with the names of these flags. A flag wins over the file.
-    #[arg(long, value_name = "FILE")]
-    pub config: Option<PathBuf>,
     /// Folder for the run; required without --dry-run. Give the same command again to continue it.
     #[arg(long, value_name = "DIR", required_unless_present = "dry_run")]
     pub out: Option<PathBuf>,
+    /// Settings as TOML, with the names of these flags. A flag wins over the file. Paths in the file start, like those of flags,
+    /// where the command is run.
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
     /// Estimate the calls, tokens and money that the run would need, without making a call. The real run may need
     /// more, because questions that are asked twice and texts that are rewritten are not counted.
     #[arg(long)]

@@ -101,7 +101,7 @@ walks:
         #[arg(long, value_name = "N")]
         pub houses: Option<usize>,
         /// Use only this scene. May be given several times.
-        #[arg(long, value_name = "SCENE")]
+        #[arg(long, alias = "scene", value_name = "SCENE")]
         pub scan: Option<Vec<String>>,
         /// Number of hops of a random path, on platforms with a viewpoint graph (matterport, process, habitat with --connectivity, recordings without poses).
         /// [default: 4..7]

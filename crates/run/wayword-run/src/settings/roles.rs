@@ -15,7 +15,6 @@ group! {
     /// Who plays which role in a run: flags, and the table `[roles]` of a settings file.
     #[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
     #[serde(deny_unknown_fields, default)]
-    #[command(next_help_heading = "Roles")]
     pub struct AskedRoles {
         /// Language model that asks, summarises and writes, as provider/model.
         #[arg(long, value_name = "MODEL")]
@@ -219,6 +218,19 @@ impl RunRoles {
             }
         }
         models
+    }
+
+    /// The flags, other than their defaults, that only a model uses.
+    pub(crate) fn given_for_models(&self) -> Vec<String> {
+        let default = Self::default();
+        let given = [
+            ("--finish", self.finish != default.finish),
+            ("--base-url", self.base_url.is_some()),
+            ("--picture-px", self.picture_px != default.picture_px),
+            ("--precision", self.precision.is_some()),
+            ("--prompts", self.prompts.is_some()),
+        ];
+        given.into_iter().filter(|(_, is_given)| *is_given).map(|(flag, _)| flag.to_owned()).collect()
     }
 
     /// The models over HTTP that are shown pictures, each once.

@@ -4,13 +4,12 @@ use super::group::group;
 use crate::error::CommandError;
 use clap::Args;
 use serde::Deserialize;
-use std::{collections::BTreeMap, path::PathBuf};
+use std::{collections::BTreeMap, fmt::Display, path::PathBuf};
 
 group! {
     /// Limits and files of the calls to models: flags, and the table `[service]` of a settings file.
     #[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
     #[serde(deny_unknown_fields, default)]
-    #[command(next_help_heading = "Calls to models")]
     pub struct Service {
         /// Stop before the costs exceed this, in US dollars. The limit is for the whole run, however often it is continued. Models
         /// without a known price are refused.
@@ -95,22 +94,27 @@ impl Service {
     /// # Errors
     /// When a number is out of range, or two settings exclude each other.
     pub fn into_checked(self) -> Result<Self, CommandError> {
-        let refuse = |flag: &str, hint: &str| Err(CommandError::usage(format!("{flag} is out of range"), hint));
-        if self.max_usd.is_some_and(|usd| !usd.is_finite() || usd < 0.0) {
-            return refuse("--max-usd", "give US dollars, as in --max-usd 2.50");
+        let refuse = |flag: &str, value: &dyn Display, hint: &str| {
+            Err(CommandError::usage(format!("{flag} {value} is out of range"), hint))
+        };
+        if let Some(usd) = self.max_usd.filter(|usd| !usd.is_finite() || *usd < 0.0) {
+            return refuse("--max-usd", &usd, "give US dollars, as in --max-usd 2.50");
         }
-        if self.concurrency.is_some_and(|at_a_time| !(1..=MAX_CONCURRENCY).contains(&at_a_time)) {
-            return refuse("--concurrency", "give a number from 1 to 512");
+        if let Some(at_a_time) = self.concurrency.filter(|at_a_time| !(1..=MAX_CONCURRENCY).contains(at_a_time)) {
+            return refuse("--concurrency", &at_a_time, "give a number from 1 to 512");
         }
-        if self.timeout_s.is_some_and(|timeout_s| !(0.1..=3600.0).contains(&timeout_s)) {
-            return refuse("--timeout-s", "give seconds, from 0.1 to 3600");
+        if let Some(timeout_s) = self.timeout_s.filter(|timeout_s| !(0.1..=3600.0).contains(timeout_s)) {
+            return refuse("--timeout-s", &timeout_s, "give seconds, from 0.1 to 3600");
         }
-        if self.memory_gib.is_some_and(|gib| !(gib.is_finite() && gib > 0.0)) {
-            return refuse("--memory-gib", "give a number above 0, as in --memory-gib 8");
+        if let Some(gib) = self.memory_gib.filter(|gib| !(gib.is_finite() && *gib > 0.0)) {
+            return refuse("--memory-gib", &gib, "give a number above 0, as in --memory-gib 8");
         }
-        let no_rate = |rate: Option<f64>| rate.is_some_and(|rate| !(rate.is_finite() && rate > 0.0));
-        if no_rate(self.requests_per_minute) || no_rate(self.tokens_per_minute) {
-            return refuse("a rate per minute", "give a number above 0, or leave the flag out for no limit");
+        let rates =
+            [("--requests-per-minute", self.requests_per_minute), ("--tokens-per-minute", self.tokens_per_minute)];
+        for (flag, rate) in rates {
+            if let Some(rate) = rate.filter(|rate| !(rate.is_finite() && *rate > 0.0)) {
+                return refuse(flag, &rate, "give a number above 0, or leave the flag out for no limit");
+            }
         }
         if self.replay.is_some() && (self.record.is_some() || self.ledger.is_some()) {
             return Err(CommandError::usage(
@@ -141,6 +145,8 @@ mod tests {
             "memory_gib = 0",
         ] {
             assert!(refused(bad), "{bad}");
+            let told = toml::from_str::<Service>(bad).unwrap().into_checked().unwrap_err().to_string();
+            assert!(told.contains(&bad.split(' ').next().unwrap_or_default().replace('_', "-")), "{told}");
         }
         assert!(!refused("max_usd = 0.0\nmax_calls = 0\nconcurrency = 32"));
     }

@@ -1,5 +1,8 @@
 //! The command line: global flags and the list of commands, parsed by clap.
 
+mod help;
+mod parsing;
+
 use crate::{
     demo::DemoArgs, doctor::args::DoctorArgs, house::args::HouseArgs, launch::args::LaunchArgs,
     ledger::args::LedgerArgs, models_args::ModelsArgs, report_command::ReportArgs, runs::args::RunsArgs,
@@ -15,9 +18,11 @@ use wayword_experiments::{
 use wayword_report::{export::args::ExportArgs, view::args::ViewArgs};
 use wayword_run::{align::AlignArgs, calibrate::CalibrateArgs, check::args::CheckArgs, generate::args::GenerateArgs};
 
+pub use parsing::parse_arguments;
+
 /// Writes and checks wayfinding instructions, as a person would give them to a robot, for any simulator.
 #[derive(Debug, Parser)]
-#[command(version, after_long_help = HELP_EXAMPLES)]
+#[command(version, after_long_help = HELP_EXAMPLES, mut_subcommands = help::arrange_help)]
 pub struct WaywordCli {
     /// What to do.
     #[command(subcommand)]
@@ -111,6 +116,7 @@ pub enum WaywordCommand {
     /// List, fetch or locate the models that run inside this program.
     Models(ModelsArgs),
     /// List the platforms: what each needs and offers.
+    #[command(after_long_help = "Examples:\n  wayword platforms\n  wayword platforms --json")]
     Platforms,
     /// Draw a panorama, what is seen along a path, or a map.
     View(ViewArgs),
@@ -121,6 +127,11 @@ pub enum WaywordCommand {
     /// Save generated houses as a set of scenes that AI Habitat reads, with episodes that its agents walk.
     House(HouseArgs),
     /// Print shell completions.
+    #[command(after_long_help = "\
+Examples:
+  wayword completions bash > ~/.local/share/bash-completion/completions/wayword
+  wayword completions zsh > ~/.zfunc/_wayword
+  wayword completions fish > ~/.config/fish/completions/wayword.fish")]
     Completions {
         /// For which shell.
         shell: clap_complete::Shell,

@@ -35,6 +35,10 @@ pub enum LaunchCommand {
 
 /// `wayword launch slurm`.
 #[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  wayword launch slurm --workers 40 --gpus 1 --time 4:00:00 -- generate --paths 100000 --out /shared/big > big.sh
+  wayword launch slurm --workers 40 --time 4:00:00 --submit -- generate --paths 100000 --out /shared/big")]
 pub struct LaunchSlurm {
     /// Number of workers. Clusters often end arrays at 1,001.
     #[arg(long, value_name = "N")]
@@ -80,6 +84,10 @@ pub struct LaunchSlurm {
 
 /// `wayword launch kubernetes`.
 #[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  wayword launch kubernetes --workers 40 --image ghcr.io/me/wayword --shared-claim runs=/shared \\
+      -- generate --paths 100000 --out /shared/big | kubectl apply -f -")]
 pub struct LaunchKubernetes {
     /// Number of workers.
     #[arg(long, value_name = "N")]

@@ -26,6 +26,9 @@ pub struct LedgerArgs {
 #[derive(Debug, Subcommand)]
 pub enum LedgerCommand {
     /// Show the latest calls, with their answers.
+    #[command(
+        after_long_help = "Examples:\n  wayword ledger show --limit 5\n  wayword ledger show --model ollama/llava"
+    )]
     Show {
         /// Which calls.
         #[command(flatten)]
@@ -35,12 +38,16 @@ pub enum LedgerCommand {
         limit: usize,
     },
     /// Show what the calls cost.
+    #[command(after_long_help = "Examples:\n  wayword ledger cost\n  wayword ledger cost --by run")]
     Cost {
         /// Add the costs up per model, run or day.
         #[arg(long, default_value = "model")]
         by: SumBy,
     },
     /// Write calls as JSON lines, which `--replay` can read.
+    #[command(
+        after_long_help = "Examples:\n  wayword ledger export --out calls.jsonl\n  wayword ledger export --model ollama/llava --out llava.jsonl"
+    )]
     Export {
         /// Which calls.
         #[command(flatten)]
@@ -50,6 +57,9 @@ pub enum LedgerCommand {
         out: PathBuf,
     },
     /// Delete calls. A run that needs one of them later pays for it again.
+    #[command(
+        after_long_help = "Examples:\n  wayword ledger prune --older-than-days 180\n  wayword ledger prune --changed"
+    )]
     Prune {
         /// Delete calls that are older than this.
         #[arg(long, value_name = "DAYS")]

@@ -10,7 +10,7 @@ Examples:
   wayword runs status runs/big --watch
   wayword runs status runs/big --prometheus > /var/lib/node_exporter/wayword.prom
   wayword runs merge runs/big
-  wayword runs merge s3://bucket/big --to runs/big
+  wayword runs merge s3://bucket/big --out runs/big
   wayword runs retry runs/big --reason timeout
   wayword runs retry runs/big --damaged
   wayword runs database wayword_db --sql --role workers | psql wayword_db")]
@@ -46,6 +46,7 @@ pub struct RunsQueue {
 
 /// `wayword runs status`.
 #[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  wayword runs status runs/big\n  wayword runs status runs/big --watch")]
 pub struct RunsStatus {
     /// The run folder, or its address in an object store.
     pub run: PathBuf,
@@ -62,11 +63,14 @@ pub struct RunsStatus {
 
 /// `wayword runs merge`.
 #[derive(Debug, Args)]
+#[command(
+    after_long_help = "Examples:\n  wayword runs merge runs/big\n  wayword runs merge s3://bucket/big --out runs/big"
+)]
 pub struct RunsMerge {
     /// The run folder, or its address in an object store.
     pub run: PathBuf,
     /// Fetch a run from an object store into this folder, and merge it there. Needs a build with the feature cloud.
-    #[arg(long, value_name = "DIR")]
+    #[arg(long = "out", alias = "to", value_name = "DIR")]
     pub to: Option<PathBuf>,
     /// Put together what is finished, although chunks are missing. Merge again later for the whole.
     #[arg(long)]
@@ -75,6 +79,7 @@ pub struct RunsMerge {
 
 /// `wayword runs retry`.
 #[derive(Debug, Args)]
+#[command(after_long_help = "Examples:\n  wayword runs retry runs/big --reason timeout")]
 pub struct RunsRetry {
     /// The run folder, or its address in an object store.
     pub run: PathBuf,
@@ -95,6 +100,9 @@ pub struct RunsRetry {
 
 /// `wayword runs database`.
 #[derive(Debug, Args)]
+#[command(
+    after_long_help = "Examples:\n  wayword runs database wayword_db\n  wayword runs database wayword_db --sql --role workers | psql wayword_db"
+)]
 pub struct RunsDatabase {
     /// The database: a name, or postgresql://USER@HOST/NAME without a password.
     pub database: String,

@@ -55,7 +55,7 @@ pub(super) fn run_merge(args: &RunsMerge, output: &CommandOutput) -> Result<Exit
         None => stores::refuse_address(
             &args.run,
             "a run is not merged in an object store",
-            "name a folder of this machine, as in --to runs/big",
+            "name a folder of this machine, as in --out runs/big",
         )?,
     }
     let plan = ChunkPlan::for_folder(folder)?;

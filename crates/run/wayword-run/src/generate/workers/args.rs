@@ -9,7 +9,6 @@ const DEFAULT_CHUNK_ITEMS: usize = 64;
 
 /// Which part of a run this worker makes.
 #[derive(Debug, Clone, Default, Args)]
-#[command(next_help_heading = "Many workers")]
 pub struct AskedWorkers {
     /// Only write the plan of the run into the folder: items, chunks, hashes of the inputs, expected cost. Workers refuse other
     /// settings and other data. The first worker writes it if it is missing.

@@ -27,7 +27,7 @@ fn workers_send_what_they_make_and_it_is_merged_as_one_machine_makes_it() {
     let mut other = RUN.to_vec();
     other.extend(["--shard", "1/2", "--repairs", "1"]);
     assert!(building.generate(&run, &other).refused().contains("these differ: repairs"));
-    assert!(wayword(&["runs", "merge", &run]).refused().contains("--to"));
+    assert!(wayword(&["runs", "merge", &run]).refused().contains("--out"));
     assert!(wayword(&["runs", "merge", &run, "--to", "early"]).refused().contains("not finished"));
 
     assert_eq!(worker(&building, &run, "1/2").code, Some(0));
