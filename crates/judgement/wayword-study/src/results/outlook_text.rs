@@ -33,7 +33,7 @@ impl fmt::Display for StudyOutlook {
         if self.conditions.iter().all(|planned| planned.kind == ConditionKind::Run) && self.mode != StudyTask::Pair {
             writeln!(
                 f,
-                "\nThere is no control. --include people,other-path shows how well a good and a wrong text do."
+                "\nThere is no control. --include original,other-path shows how well a good and a wrong text do."
             )?;
         }
         if self.per_participant == 1 {

@@ -6,7 +6,7 @@ use crate::{
     styles,
 };
 use clap::{Args, ValueEnum};
-use std::path::PathBuf;
+use std::{path::PathBuf, str::FromStr};
 
 /// `wayword check`.
 #[derive(Debug, Args)]
@@ -15,6 +15,7 @@ Examples:
   wayword check REVERIE_val_seen.json --platform matterport --data DATA --style reverie
   wayword check R2R_val_seen.json --platform matterport --data DATA --style r2r --json
   wayword check runs/houses/instructions.jsonl --platform house --style r2r
+  wayword check R2R_val_seen.json --platform matterport --data DATA --show fail
   wayword check edited.json --run runs/houses")]
 pub struct CheckArgs {
     /// File of instructions: R2R, REVERIE, RxR, VLN-CE or Wayword.
@@ -54,14 +55,13 @@ pub struct CheckArgs {
     /// A detector that looks for what the texts name.
     #[command(flatten)]
     pub detecting: CheckDetectorArgs,
-    /// Show at most this many of the instructions that did not pass.
-    #[arg(long, value_name = "N", default_value_t = 10)]
-    pub show: usize,
+    /// Which of the instructions that did not pass are shown, those that failed first: at most N, fail (each that failed) or all.
+    #[arg(long, value_name = "N|fail|all", default_value = "10")]
+    pub show: ShownTexts,
 }
 
 /// The detector of `wayword check`.
 #[derive(Debug, Default, Args)]
-#[command(next_help_heading = "Detector")]
 pub struct CheckDetectorArgs {
     /// Look for the things that the texts name in the pictures along their paths, where the platform has no labels: a model as
     /// hf/ORG/NAME, which runs inside this program.
@@ -112,6 +112,41 @@ impl CheckDetectorArgs {
     }
 }
 
+/// Which of the texts that did not pass are shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ShownTexts {
+    /// At most so many.
+    Most(usize),
+    /// Each that failed.
+    Failed,
+    /// Each that failed or is unverified.
+    All,
+}
+
+impl ShownTexts {
+    /// How many of the texts that failed and of those that are unverified are shown.
+    #[must_use]
+    pub(super) fn how_many(self, failed: usize, unverified: usize) -> [usize; 2] {
+        match self {
+            Self::Most(most) => [failed.min(most), unverified.min(most.saturating_sub(failed))],
+            Self::Failed => [failed, 0],
+            Self::All => [failed, unverified],
+        }
+    }
+}
+
+impl FromStr for ShownTexts {
+    type Err = &'static str;
+
+    fn from_str(typed: &str) -> Result<Self, Self::Err> {
+        match typed {
+            "fail" | "failed" => Ok(Self::Failed),
+            "all" => Ok(Self::All),
+            number => number.parse().map(Self::Most).map_err(|_| "give a number, fail or all"),
+        }
+    }
+}
+
 /// The world in which texts are checked, as the user asks for it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum AskedWorld {
@@ -122,4 +157,17 @@ pub enum AskedWorld {
     Open,
     /// Closed for all texts.
     Closed,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_that_failed_are_shown_before_those_that_are_unverified() {
+        let how_many = |typed: &str| typed.parse::<ShownTexts>().unwrap().how_many(3, 5);
+        assert_eq!([how_many("0"), how_many("2"), how_many("4"), how_many("99")], [[0, 0], [2, 0], [3, 1], [3, 5]]);
+        assert_eq!([how_many("fail"), how_many("all")], [[3, 0], [3, 5]]);
+        assert!("some".parse::<ShownTexts>().is_err() && "-1".parse::<ShownTexts>().is_err());
+    }
 }

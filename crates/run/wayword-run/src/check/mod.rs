@@ -47,7 +47,7 @@ pub use report::{AmbiguousText, CheckReport, CheckedText, DoubtedText, VerdictCo
 /// As [`check_texts`].
 pub fn run_check(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
     let report = check_texts(args, output)?;
-    output.print_result(&report, CheckReportText { report: &report, most: args.show });
+    output.print_result(&report, CheckReportText { report: &report, shown: args.show });
     Ok(if report.failed == 0 { Exit::Done } else { Exit::WithLoss })
 }
 

@@ -10,6 +10,7 @@ use wayword_core::{Path, Platform, PlatformError, SceneId, TextProvenance, Viewp
 use wayword_formats::{
     DatasetFormat,
     jsonl::{self, InstructionRecord},
+    submission::instr_id,
 };
 use wayword_world::path_over_viewpoints;
 
@@ -25,6 +26,8 @@ pub(crate) struct FileText {
     pub(crate) at: usize,
     /// The name of its path.
     pub(crate) path: String,
+    /// Its own name: that of its item with its number, from 0, as submissions have it, or the path with the style.
+    pub(crate) name: String,
     /// Its words.
     pub words: String,
     /// The style that it was written in, if the file names it.
@@ -37,9 +40,14 @@ pub(crate) struct FileText {
 
 impl FileText {
     /// A text of a dataset, which has no provenance.
-    fn from_dataset(path: &Path, words: String, tag: Option<String>) -> Self {
-        Self { at: 0, path: path.id.clone(), words, style: None, tag, origin: None }
+    fn from_dataset(path: &Path, name: String, words: String, tag: Option<String>) -> Self {
+        Self { at: 0, path: path.id.clone(), name, words, style: None, tag, origin: None }
     }
+}
+
+/// The name of a record's text: a path has one in each style.
+pub(super) fn name_of_record(path: &str, style: &str) -> String {
+    format!("{path} ({style})")
 }
 
 /// A style, as a record names it.
@@ -54,10 +62,14 @@ pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
     if wayword_formats::detect_format(file)? == DatasetFormat::Wayword {
         for InstructionRecord { path, instruction, platform: made_on, .. } in jsonl::read_records(file)? {
             let id = path.id.clone();
+            if made_on != platform.name() {
+                refuse_other_platform(file, (made_on.as_str(), &path.scene), platform)?;
+            }
             let path = with_platform_poses(platform, path).map_err(unusable_path(file, &id))?;
             let text = FileText {
                 at: 0,
                 path: path.id.clone(),
+                name: name_of_record(&path.id, &instruction.style),
                 words: instruction.text,
                 tag: None,
                 style: Some(StyleReference {
@@ -77,10 +89,27 @@ pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
         items += 1;
         for (at, words) in episode.instructions.iter().enumerate() {
             let tag = episode.language_of(at).map(str::to_owned);
-            walks.add_text(path.clone(), FileText::from_dataset(&path, words.clone(), tag));
+            let name = instr_id(&episode, at);
+            walks.add_text(path.clone(), FileText::from_dataset(&path, name, words.clone(), tag));
         }
     }
     walks.expect_texts(file, items)
+}
+
+/// Refuses texts about a scene that only the platform has on which they were made, and not the one that was opened.
+fn refuse_other_platform(
+    file: &FilePath,
+    (made_on, scene): (&str, &SceneId),
+    platform: &dyn Platform,
+) -> Result<(), CommandError> {
+    match platform.graph_for_scene(scene) {
+        Err(PlatformError::UnknownScene { .. }) => {
+            let name = platform.name();
+            let problem = format!("{}: its paths are of platform {made_on}, and --platform is {name}", file.display());
+            Err(CommandError::usage(problem, format!("give --platform {made_on}")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Texts about paths, gathered by their paths.
@@ -88,7 +117,7 @@ pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
 pub(crate) fn gather_by_path(texts: Vec<(Path, String)>) -> Vec<PathTexts> {
     let mut walks = PathTextIndex::default();
     for (path, words) in texts {
-        let text = FileText::from_dataset(&path, words, None);
+        let text = FileText::from_dataset(&path, path.id.clone(), words, None);
         walks.add_text(path, text);
     }
     walks.all
@@ -171,7 +200,7 @@ mod tests {
         let mut walks = PathTextIndex::default();
         for (id, end_m) in [("1_7", 2.0), ("2", 4.0), ("1_7", 2.0), ("1_9", 2.0)] {
             let path = path(id, end_m);
-            walks.add_text(path.clone(), FileText::from_dataset(&path, "Stop.".into(), None));
+            walks.add_text(path.clone(), FileText::from_dataset(&path, id.into(), "Stop.".into(), None));
         }
         let texts: Vec<Vec<(usize, &str)>> = walks
             .all
@@ -181,7 +210,7 @@ mod tests {
         assert_eq!(texts, [vec![(0, "1_7"), (2, "1_7"), (3, "1_9")], vec![(1, "2")]]);
         let mut other = path("1_7", 2.0);
         other.motion = PathMotion::Unknown;
-        walks.add_text(other.clone(), FileText::from_dataset(&other, "Stop.".into(), None));
+        walks.add_text(other.clone(), FileText::from_dataset(&other, "1_7".into(), "Stop.".into(), None));
         assert_eq!(walks.all.len(), 3, "texts are checked against the motion too");
     }
 }

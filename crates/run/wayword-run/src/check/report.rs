@@ -1,6 +1,6 @@
 //! The report of `wayword check`: counts by verdict and check, and the texts that did not pass.
 
-use super::{CheckedWalk, path_texts::FileText};
+use super::{CheckedWalk, args::ShownTexts, path_texts::FileText};
 use crate::{count::count_phrase, doubts::TextDoubts, follow::RouteShares};
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt};
@@ -74,6 +74,8 @@ pub struct AmbiguousText {
 pub struct CheckedText {
     /// The id of its path.
     pub path: String,
+    /// Its own name: that of its item with its number, from 0, as in the instr_id of a submission; or the path with the style.
+    pub name: String,
     /// Its words.
     pub text: String,
     /// The verdict of all checks together.
@@ -142,13 +144,14 @@ impl DoubtedText {
 impl CheckedText {
     pub(super) fn from_text(text: &FileText, checked: &TextFindings) -> Self {
         let findings = checked.findings.iter().filter(|finding| finding.verdict != Verdict::Pass).cloned().collect();
-        let (path, words) = (text.path.clone(), text.words.clone());
+        let (path, name, words) = (text.path.clone(), text.name.clone(), text.words.clone());
         let (verdict, world) = (checked.verdict(), checked.world.name());
         let style = text.style.as_ref().map(|style| style.name.clone());
         let (route, turn_gain, ambiguity, doubted) = (None, None, None, None);
         let (parts, coverage_of_walk) = (checked.parts.clone(), Vec::new());
         Self {
             path,
+            name,
             text: words,
             verdict,
             world,
@@ -237,20 +240,36 @@ impl VerdictCounts {
 /// The report as people read it.
 pub(super) struct CheckReportText<'a> {
     pub(super) report: &'a CheckReport,
-    /// The most texts to show of those that did not pass.
-    pub(super) most: usize,
+    /// Which texts to show of those that did not pass.
+    pub(super) shown: ShownTexts,
 }
 
 impl fmt::Display for CheckReportText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { report, most } = self;
-        for text in report.not_passed.iter().take(*most) {
-            writeln!(f, "{} {}: {}", text.path, text.verdict_words(), text.text)?;
+        let Self { report, shown } = self;
+        let (failed, unverified): (Vec<_>, Vec<_>) =
+            report.not_passed.iter().partition(|text| text.verdict == Verdict::Fail);
+        let [failed_shown, unverified_shown] = shown.how_many(failed.len(), unverified.len());
+        let listed = failed.iter().take(failed_shown).chain(unverified.iter().take(unverified_shown));
+        for text in listed {
+            writeln!(f, "{} {}: {}", text.name, text.verdict_words(), text.text)?;
             for finding in &text.findings {
                 let words = finding.span.and_then(|[from, to]| text.text.get(from..to));
                 let words = words.map_or(String::new(), |words| format!(" \"{words}\""));
                 writeln!(f, "    {} ({:?}){words}: {}", finding.check.name(), finding.verdict, finding.reason)?;
             }
+        }
+        let (more_failed, more) =
+            (failed.len() - failed_shown, report.not_passed.len() - failed_shown - unverified_shown);
+        if more > 0 {
+            let others = if failed_shown + unverified_shown > 0 { " more" } else { "" };
+            let what = match more_failed {
+                0 => "could not be checked completely: --show all lists them".to_owned(),
+                _ => format!(
+                    "did not pass, {more_failed} of which failed: --show fail lists those that failed, --show all all of them"
+                ),
+            };
+            writeln!(f, "{more}{others} {what}; --json has every finding\n")?;
         }
         writeln!(f, "{:<10} {:>7} {:>11} {:>7}", "check", "passed", "unverified", "failed")?;
         let all = VerdictCounts { passed: report.passed, unverified: report.unverified, failed: report.failed };

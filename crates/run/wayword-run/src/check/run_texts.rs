@@ -2,7 +2,7 @@
 
 use super::{
     CheckOptions, CheckedWalk, TextChecker,
-    path_texts::{FileText, PathTexts, StyleReference},
+    path_texts::{FileText, PathTexts, StyleReference, name_of_record},
     report::{CheckReport, CheckedText},
     styles::CheckStyles,
 };
@@ -11,14 +11,14 @@ use crate::{
     error::CommandError,
     output::CommandOutput,
     platforms,
-    run_folder::{WalkRecord, file, lines, read_run_settings},
+    run_folder::{WalkRecord, expect_run, file, lines, read_run_settings},
     settings::RunSettings,
 };
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::Path as FilePath};
 use wayword_checks::{CheckSubject, Evidence, TurnJudge, WorldReach, check_own_text};
-use wayword_core::{ObjectId, Path, SceneId, ViewpointId};
-use wayword_formats::{DatasetFormat, jsonl};
+use wayword_core::{CheckFinding, ObjectId, Path, SceneId, ViewpointId};
+use wayword_formats::{DatasetFormat, jsonl, submission::instr_id};
 use wayword_synthesis::walk::ObservedWalk;
 
 /// A text, and how its path is found in the run.
@@ -47,6 +47,7 @@ pub(super) fn check_file(
     how: CheckOptions<'_>,
     output: &CommandOutput,
 ) -> Result<CheckReport, CommandError> {
+    expect_run(run)?;
     let settings = read_run_settings(run)?;
     let styles = CheckStyles::for_run(how.style, &settings)?;
     let (walks, unmatched) = match_walks(read_texts(texts)?, run)?;
@@ -208,7 +209,8 @@ fn read_texts(file: &FilePath) -> Result<Vec<RunText>, CommandError> {
         {
             let style = StyleReference { name: instruction.style, hash: instruction.provenance.style_hash.clone() };
             let (words, made) = (instruction.text, Some((platform, instruction.provenance)));
-            let text = FileText { at, path: path.id.clone(), words, tag: None, style: Some(style), origin: made };
+            let name = name_of_record(&path.id, &style.name);
+            let text = FileText { at, path: path.id.clone(), name, words, tag: None, style: Some(style), origin: made };
             all.push(RunText { text, path: RunPathKey::Id(path.id) });
         }
         return Ok(all);
@@ -219,6 +221,7 @@ fn read_texts(file: &FilePath) -> Result<Vec<RunText>, CommandError> {
             let text = FileText {
                 at: all.len(),
                 path: episode.id.clone(),
+                name: instr_id(&episode, at),
                 words: words.clone(),
                 tag,
                 style: None,
