@@ -46,6 +46,7 @@ use wayword_run::{
     written_files::expect_output_folder,
 };
 
+pub(crate) use outputs::followed_set;
 pub use page::write_page_from_folder;
 pub(crate) use settings::ComparisonSettings;
 

@@ -10,7 +10,7 @@ use wayword_navigation::{
 };
 use wayword_report::pages;
 use wayword_robustness::sets::FollowResult;
-use wayword_run::{error::CommandError, written_files::write_file};
+use wayword_run::{error::CommandError, text_file, written_files::write_file};
 
 /// Everything that the files need from the walks, collected in one pass.
 #[derive(Default)]
@@ -89,4 +89,15 @@ pub(super) fn write_outputs(
         submission::write_submission(&submissions.join(format!("{agent}.{set}.json")), submitted)?;
     }
     Ok(())
+}
+/// The set of texts that the walks of a submission follow, with its source, if a comparison wrote the submission and the texts are not
+/// those of the episodes' file. A submission names no texts itself.
+pub(crate) fn followed_set(submission: &Path, episodes: &Path) -> Option<String> {
+    let folder = submission.parent().filter(|folder| folder.ends_with(file::SUBMISSIONS))?.parent()?;
+    let text = text_file::read_text_file(&folder.join(file::COMPARISON), "read the comparison").ok()?;
+    let comparison: AgentComparison = serde_json::from_str(&text).ok()?;
+    let name = submission.file_name()?.to_str()?.trim_end_matches(".gz").strip_suffix(".json")?;
+    let set = comparison.sets.into_iter().find(|set| name.ends_with(&format!(".{}", set.name)))?;
+    let is_own = episodes.file_name().is_some_and(|name| name.to_string_lossy() == set.source);
+    (!is_own).then(|| format!("{} ({})", set.name, set.source))
 }

@@ -129,6 +129,7 @@ impl ComparisonSettings {
                 ));
             }
             if !source.is_empty() {
+                crate::text_sets::refuse_other_folder(&source)?;
                 inputs.insert(format!("instructions {name}"), hash_of_file(&crate::text_sets::text_set_file(&source))?);
             }
             instructions.push((name, source));

@@ -3,6 +3,7 @@
 
 use super::SubmissionCoverage;
 use crate::{
+    compare::followed_set,
     evaluate::args::EvaluateArgs,
     judge::{CONFIDENCE_LEVEL, SubmissionScores},
 };
@@ -30,6 +31,9 @@ pub(super) struct SubmissionResampling {
 pub(super) struct SubmissionReport {
     submission: String,
     episodes: String,
+    /// The set of texts that the agents followed, if a comparison wrote the submission and the set is not that of the episodes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    followed: Option<String>,
     /// Instructions that were scored, and the items and paths that they belong to.
     instructions: usize,
     items: usize,
@@ -90,6 +94,7 @@ impl SubmissionReport {
         Self {
             submission: args.submission.display().to_string(),
             episodes: args.episodes.display().to_string(),
+            followed: followed_set(&args.submission, &args.episodes),
             instructions: scores.rows().len(),
             items: scores.item_ids().collect::<BTreeSet<_>>().len(),
             paths: scores.path_names().collect::<BTreeSet<_>>().len(),
@@ -156,6 +161,13 @@ impl fmt::Display for SubmissionReport {
                 count_phrase(self.of_instructions, "instruction"),
                 self.items,
                 count_phrase(self.of_items, "item"),
+                self.episodes
+            )?;
+        }
+        if let Some(set) = &self.followed {
+            writeln!(
+                f,
+                "these walks follow the set {set}, and no text of {}: the figures are of that set, scored on the paths of these episodes",
                 self.episodes
             )?;
         }

@@ -47,6 +47,7 @@ pub fn run_evaluate(args: &Args, output: &CommandOutput) -> Result<Exit, Command
     refuse_to_overwrite(args)?;
     let place = args.per_item.as_deref().map(find_output_place).transpose()?;
     let output = &place.map_or_else(|| output.clone(), |place| output.beside_data(&place));
+    refuse_swapped(args)?;
     let platform = platforms::open_at(args.platform.name(), (&args.platform).into())?;
     let mut split = episodes::read_split(&args.episodes, platform.as_ref())?;
     let hidden = if args.partial && !split.known.is_empty() { std::mem::take(&mut split.hidden) } else { Vec::new() };
@@ -114,6 +115,16 @@ fn refuse_jumps(file: &Path, episodes: &[Episode], platform: &dyn Platform) -> R
         }
     }
     Ok(())
+}
+
+/// Refuses a dataset in the place of the submission, where the submission is in its place.
+fn refuse_swapped(args: &Args) -> Result<(), CommandError> {
+    if detect_format(&args.episodes).is_ok() || detect_format(&args.submission).is_err() {
+        return Ok(());
+    }
+    let (submission, episodes) = (args.submission.display(), args.episodes.display());
+    let problem = format!("{submission} holds episodes, and --episodes {episodes} does not: they seem to be swapped");
+    Err(CommandError::usage(problem, format!("write `wayword evaluate {episodes} --episodes {submission}`")))
 }
 
 /// Refuses a `--per-item` file that is one of the inputs, under whatever name.

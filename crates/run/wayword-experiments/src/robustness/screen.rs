@@ -3,8 +3,9 @@
 use serde::Serialize;
 use std::fmt::Write as _;
 use wayword_metrics::MeanEstimate;
-use wayword_report::pages::robustness::results::{
-    ChangeResults, ExpectationResult, RobustnessFigure, RobustnessResults,
+use wayword_report::pages::robustness::{
+    missing_reasons,
+    results::{ChangeResults, ExpectationResult, RobustnessFigure, RobustnessResults},
 };
 use wayword_robustness::{Change, DoseKind, WholeChange};
 
@@ -74,6 +75,9 @@ pub(super) fn format_results(results: &RobustnessResults) -> String {
             for change in &style.changes {
                 let _ = writeln!(text, "{}", change_row(change));
             }
+        }
+        for reason in missing_reasons(style) {
+            let _ = writeln!(text, "{reason}");
         }
         for expectation in &style.expectations {
             let _ = writeln!(text, "{}", expectation_row(expectation));

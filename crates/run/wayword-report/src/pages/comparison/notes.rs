@@ -4,7 +4,7 @@
 use super::figures::{DEAF_MARK, RoundedFigure, deaf_agents, other_path_swaps, printable_name};
 use wayword_metrics::{TrajectoryMetric, TrajectorySuccessRule};
 use wayword_navigation::comparison::{
-    AgentComparison, AgentKind, ComparisonInfo, InstructionSet, ListeningVerdict, MIN_PATHS, SwapEffect,
+    AgentComparison, AgentKind, ComparisonInfo, ComparisonRow, InstructionSet, ListeningVerdict, MIN_PATHS, SwapEffect,
 };
 use wayword_run::count::count_phrase;
 
@@ -255,6 +255,7 @@ fn grounding_notes(comparison: &AgentComparison) -> Vec<String> {
                 .to_owned(),
         );
     }
+    notes.extend(never_passed_note(comparison));
     if about.parameters.keys().any(|agent| agent != TOOLS_AGENT) {
         notes.push(match about.swept {
             true => "The thresholds of the agents were chosen on REVERIE's train split.".to_owned(),
@@ -285,6 +286,29 @@ fn grounding_notes(comparison: &AgentComparison) -> Vec<String> {
         );
     }
     notes
+}
+
+/// Why OSR equals SR for some sets and not for others, where labels score the views: no agent passes the target of such a set.
+fn never_passed_note(comparison: &AgentComparison) -> Option<String> {
+    let mean = |row: &ComparisonRow, metric| row.figures.get(&metric).map(|figure| figure.mean);
+    // The rows are those of agents that may stop too late. Equal means are the same walks, so they are equal to the last digit.
+    let passes = |name: &str| {
+        let rows =
+            comparison.rows.iter().filter(|row| row.kind == AgentKind::Agent && row.set.as_deref() == Some(name));
+        let both =
+            |row| Some((mean(row, TrajectoryMetric::SuccessRate)?, mean(row, TrajectoryMetric::OracleSuccessRate)?));
+        let rates: Vec<(f64, f64)> = rows.filter_map(both).filter(|(_, oracle)| *oracle > 0.0).collect();
+        (!rates.is_empty()).then(|| rates.iter().any(|(success, oracle)| success < oracle))
+    };
+    let sets = || comparison.sets.iter().map(|set| set.name.as_str());
+    let never: Vec<String> = sets().filter(|name| passes(name) == Some(false)).map(printable_name).collect();
+    let is_told = comparison.about.grounder.starts_with("labels") && sets().any(|name| passes(name) == Some(true));
+    (is_told && !never.is_empty()).then(|| {
+        format!(
+            "OSR equals SR for {}: these texts name the target by its label, and the labels score the views, so an agent stops wherever the target is in sight and never walks past it.",
+            never.join(", ")
+        )
+    })
 }
 
 /// A level in words: 0.95 is `95 %`.

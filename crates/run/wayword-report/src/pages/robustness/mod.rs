@@ -221,7 +221,8 @@ fn dash_text() -> String {
 }
 
 /// Why figures are missing, each reason once.
-fn missing_reasons(style: &StyleResults) -> Vec<String> {
+#[must_use]
+pub fn missing_reasons(style: &StyleResults) -> Vec<String> {
     let mut reasons: Vec<String> = Vec::new();
     for figure in style.changes.iter().flat_map(|change| &change.figures) {
         let Some(reason) = &figure.reason else { continue };
