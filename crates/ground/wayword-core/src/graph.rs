@@ -49,7 +49,9 @@ pub enum GraphError {
     #[error("viewpoint {0} is not in the graph")]
     Unknown(ViewpointId),
     /// Two consecutive viewpoints have no edge.
-    #[error("there is no edge from viewpoint {0} to {1}")]
+    #[error(
+        "there is no edge from viewpoint {0} to {1}; a path lists every viewpoint that it passes, so add those between them"
+    )]
     NoEdge(ViewpointId, ViewpointId),
 }
 

@@ -120,6 +120,9 @@ fn contents_by_object(fields: &Map<String, Value>) -> FileContents {
     if fields.contains_key("format") {
         return FileContents::Dataset(DatasetFormat::Wayword);
     }
+    if let Some(what) = written_beside_texts(fields) {
+        return FileContents::Other(what);
+    }
     let as_line = contents_by_item(fields);
     if as_line != FileContents::Unknown {
         return as_line;
@@ -134,6 +137,22 @@ fn contents_by_object(fields: &Map<String, Value>) -> FileContents {
             _ => wrapped_list(fields),
         },
         _ => wrapped_list(fields),
+    }
+}
+
+/// What a line is that this program writes into a folder, beside the file that has the texts or the walks.
+fn written_beside_texts(fields: &Map<String, Value>) -> Option<&'static str> {
+    let has_all = |names: &[&str]| names.iter().all(|name| fields.contains_key(*name));
+    if has_all(&["path", "observations"]) {
+        Some("walks.jsonl of a run, whose texts are in instructions.jsonl beside it")
+    } else if has_all(&["agent", "item", "steps"]) {
+        Some("walks.jsonl of a comparison, whose folder submissions has what an evaluator reads")
+    } else if has_all(&["item", "style", "reason"]) {
+        Some("the texts that a run rejected")
+    } else if has_all(&["item", "failure", "reason"]) {
+        Some("the items of a run that failed")
+    } else {
+        None
     }
 }
 

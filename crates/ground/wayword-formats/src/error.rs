@@ -9,7 +9,7 @@ use std::{
 #[derive(Debug, thiserror::Error)]
 pub enum FormatError {
     /// The operating system could not open, read or write the file.
-    #[error("{}: cannot {doing} it: {source}{}", file.display(), io_advice(source))]
+    #[error("{}: cannot {doing} it: {source}{}", file.display(), io_advice(doing, source))]
     Io {
         /// Which file.
         file: PathBuf,
@@ -70,9 +70,11 @@ impl fmt::Display for ItemPlace {
 }
 
 /// Advice about an error of the system, after a semicolon; empty where its message is enough.
-fn io_advice(error: &std::io::Error) -> String {
-    let advice = match error.kind() {
-        std::io::ErrorKind::NotFound => Some("check the spelling of the path"),
+fn io_advice(doing: &str, error: &std::io::Error) -> String {
+    let advice = match (error.kind(), doing) {
+        (std::io::ErrorKind::NotFound, "write") => Some("its folder is not there: make it, or correct the path"),
+        (std::io::ErrorKind::IsADirectory, "write") => Some("it is a folder: give the name of a file"),
+        (std::io::ErrorKind::NotFound, _) => Some("check the spelling of the path"),
         _ => disk_advice(error),
     };
     advice.map_or_else(String::new, |advice| format!("; {advice}"))

@@ -30,7 +30,11 @@ pub(crate) fn open_input(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
     let meta = fs::metadata(file).map_err(failed)?;
     if !meta.is_file() {
         let kind = if meta.is_dir() { "a folder" } else { "a pipe or a device" };
-        return Err(FormatError::for_document(file, format!("it is not a file but {kind}"), "give a dataset file"));
+        let hint = match file.join("instructions.jsonl").is_file() {
+            true => "give the file instructions.jsonl in it",
+            false => "give a dataset file",
+        };
+        return Err(FormatError::for_document(file, format!("it is not a file but {kind}"), hint));
     }
     let opened = File::open(file).map_err(failed)?;
     if meta.len() > limits::MAX_FILE_BYTES {

@@ -9,7 +9,11 @@ use wayword_formats::{
     DatasetFormat,
     jsonl::{self, InstructionRecord},
 };
-use wayword_run::{error::CommandError, run_folder::file};
+use wayword_run::{
+    error::CommandError,
+    run_folder::{file, refuse_other_format},
+    settings::RunSettings,
+};
 
 /// The texts of each item by the item's id, or of each path by its name.
 pub(crate) type TextSet = BTreeMap<String, ItemTexts>;
@@ -25,6 +29,7 @@ pub(crate) struct ItemTexts {
 /// Reads a set: a run folder, or a file of any format, with `#STYLE` at the end to take one style.
 pub(crate) fn read_text_set(name: &str, style: Option<&str>, by: TextPairing) -> Result<TextSet, CommandError> {
     let (_, own_style) = split_style(name);
+    refuse_other_folder(name)?;
     let path = text_set_file(name);
     let texts = if wayword_formats::detect_format(&path)? == DatasetFormat::Wayword {
         texts_from_records(&path, own_style.or(style))?
@@ -40,6 +45,17 @@ pub(crate) fn read_text_set(name: &str, style: Option<&str>, by: TextPairing) ->
         items.entry(key).or_insert_with(|| ItemTexts { path, texts: Vec::new() }).texts.push(text);
     }
     Ok(items)
+}
+
+/// Refuses a folder that another command than `generate` made: it has no texts.
+///
+/// # Errors
+/// When its settings are those of another command.
+pub(crate) fn refuse_other_folder(name: &str) -> Result<(), CommandError> {
+    match text_set_run(name) {
+        Some(folder) => refuse_other_format::<RunSettings>(&folder),
+        None => Ok(()),
+    }
 }
 
 /// The file of a set: the instructions in a run folder, or the file itself.

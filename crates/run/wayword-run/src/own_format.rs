@@ -38,6 +38,14 @@ impl OwnFormat for DetectorFigures {
 /// Why a file of this program cannot be used.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum OwnFormatError {
+    /// Another command wrote the file.
+    #[error("`wayword {by}` wrote it, and here it has to be of `wayword {wanted}`")]
+    OfCommand {
+        /// The command that wrote it.
+        by: &'static str,
+        /// The command whose files are read here.
+        wanted: &'static str,
+    },
     /// The file has another format than the one that is read.
     #[error("its format is {found}{}, and this is version {}, which reads {known}", .by.as_ref().map_or_else(String::new, |by| format!(" and version {by} of this program wrote it")), env!("CARGO_PKG_VERSION"))]
     Other {
@@ -57,10 +65,27 @@ impl OwnFormatError {
     /// The hint for the user. `otherwise` is the hint for a broken file, which depends on the kind of file.
     pub(crate) fn hint_or<'a>(&self, otherwise: &'a str) -> &'a str {
         match self {
+            Self::OfCommand { .. } => "give another file or folder; for a new result, another --out",
             Self::Other { .. } => "use the version that wrote it, or give another file or folder",
             Self::Broken(_) => otherwise,
         }
     }
+}
+
+/// The families of formats, each with the command that writes it.
+const WRITTEN_BY: [(&str, &str); 6] = [
+    ("wayword-run", "generate"),
+    ("wayword-comparison", "compare"),
+    ("wayword-robustness", "robustness"),
+    ("wayword-calibration", "calibrate"),
+    ("wayword-detector-figures", "perceive"),
+    ("wayword-steps", "export"),
+];
+
+/// The command that writes a format, whatever its number.
+fn command_of(format: &str) -> Option<&'static str> {
+    let family = format.split('/').next();
+    WRITTEN_BY.iter().find(|(known, _)| family == Some(*known)).map(|(_, command)| *command)
 }
 
 /// The text of a file with the content `body`, below its head.
@@ -101,6 +126,10 @@ fn parse_body<S: OwnFormat>(text: &str) -> Result<Table, OwnFormatError> {
         Some(Value::String(format)) if format == S::NAME => Ok(table),
         Some(Value::Integer(number)) if S::NUMBER == Some(number) => Ok(table),
         Some(found) => {
+            let commands = found.as_str().and_then(command_of).zip(command_of(S::NAME));
+            if let Some((by, wanted)) = commands.filter(|(by, wanted)| by != wanted) {
+                return Err(OwnFormatError::OfCommand { by, wanted });
+            }
             Err(OwnFormatError::Other { found: short_value(&found), by: by.as_ref().map(short_value), known: S::NAME })
         }
     }

@@ -6,7 +6,7 @@ const MIN_SIMILARITY: f64 = 0.7;
 /// The name most similar to a word, if any is similar enough.
 pub(crate) fn most_similar<'n>(word: &str, names: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     let word = word.to_lowercase();
-    let rated = names.into_iter().map(|name| (strsim::jaro(&word, name), name));
+    let rated = names.into_iter().map(|name| (strsim::jaro(&word, &name.to_lowercase()), name));
     rated.filter(|(alike, _)| *alike > MIN_SIMILARITY).max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, name)| name)
 }
 
@@ -26,5 +26,6 @@ mod tests {
         assert_eq!(most_similar("poem", ["r2r", "reverie"]), None);
         assert_eq!(did_you_mean("hause", ["house"]), "; did you mean \"house\"?");
         assert_eq!(did_you_mean("moon", ["r2r"]), "");
+        assert_eq!(most_similar("17drp5sb8fy", ["1LXtFkjw3qL", "17DRP5sb8fy"]), Some("17DRP5sb8fy"));
     }
 }

@@ -1,9 +1,12 @@
 //! Finds the styles that a run names: built-in ones, TOML files, and the texts of datasets.
 
-use crate::{error::CommandError, similar::did_you_mean, text_file};
-use std::path::Path;
+use crate::{error::CommandError, similar::did_you_mean, text_file, toml_message::plain_toml_message};
+use std::{collections::BTreeSet, path::Path};
 use wayword_core::{InstructionStyle, StyleConstraints};
-use wayword_synthesis::style::{StyleProfile, built_in, built_in_names, hash_style, parse_style_with, validate_style};
+use wayword_language::{Language, reading::read_instruction};
+use wayword_synthesis::style::{
+    StyleError, StyleProfile, built_in, built_in_names, hash_style, parse_style_with, validate_style,
+};
 
 /// A style with the measures of its reference texts.
 #[derive(Debug, Clone)]
@@ -14,6 +17,25 @@ pub struct MeasuredStyle {
     pub profile: StyleProfile,
     /// The style's hash, for provenance.
     pub hash: String,
+}
+
+/// Number of reference texts by which the language of a style is judged.
+const JUDGED_REFERENCES: usize = 20;
+
+impl MeasuredStyle {
+    /// The language of its reference texts, if most of those at the beginning are not English.
+    #[must_use]
+    pub(crate) fn foreign_language(&self) -> Option<&'static str> {
+        let judged = self.style.references.iter().take(JUDGED_REFERENCES);
+        let number = judged.len();
+        let foreign: Vec<&'static str> = judged
+            .filter_map(|text| match read_instruction(text, &BTreeSet::new()).language {
+                Language::Other(name) => Some(name),
+                Language::English | Language::Partly(_) => None,
+            })
+            .collect();
+        foreign.first().copied().filter(|_| foreign.len() * 2 > number)
+    }
 }
 
 /// The name of a style as a flag takes it: a built-in style, a TOML file, or NAME=DATASET.
@@ -76,10 +98,14 @@ fn find_one(name: &str) -> Result<InstructionStyle, CommandError> {
         Some((name, file)) => (name, Some(Path::new(file))),
         None => (name, None),
     };
+    if let Some(file) = dataset.and_then(Path::to_str).filter(|file| is_toml(file)) {
+        let problem = format!("--style {name}={file}: after = stands a dataset, and this is the file of a style");
+        return Err(CommandError::usage(problem, format!("give the style alone, as in --style {file}")));
+    }
     let more = dataset.map(dataset_texts).transpose()?;
     if is_toml(name) {
         let text = text_file::read_text_file(Path::new(name), "read the style")?;
-        let style = parse_style_with(name, &text, more.unwrap_or_default())?;
+        let style = parse_style_with(name, &text, more.unwrap_or_default()).map_err(suggest_field)?;
         refuse_built_in_name(name, &style)?;
         return Ok(style);
     }
@@ -91,6 +117,14 @@ fn find_one(name: &str) -> Result<InstructionStyle, CommandError> {
         constraints,
         ..InstructionStyle::default()
     })?)
+}
+
+/// The error about a style with the name of the field that was meant, if one was mistyped.
+fn suggest_field(error: StyleError) -> StyleError {
+    match error {
+        StyleError::Unreadable { name, reason } => StyleError::Unreadable { name, reason: plain_toml_message(&reason) },
+        error => error,
+    }
 }
 
 /// The instructions of a dataset, each once.
@@ -137,6 +171,42 @@ mod tests {
         let both = told(&[&mine, &other]);
         assert!(both.contains("mine.toml") && both.contains("other.toml") && both.contains("two styles"), "{both}");
         assert_eq!(told(&["r2r", &mine]), "");
+    }
+
+    #[test]
+    fn style_file_in_the_place_of_a_dataset_is_told_apart() {
+        let told = told(&["r2r=mine.toml"]);
+        assert!(
+            told.contains("--style r2r=mine.toml: after = stands a dataset") && told.contains("--style mine.toml"),
+            "{told}"
+        );
+    }
+
+    #[test]
+    fn a_mistyped_field_is_told_with_its_line_and_the_field_that_was_meant() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mine.toml");
+        fs::write(&path, format!("name = \"mine\"\n{OWN}\n[constraints]\nmin_sentence = 5")).unwrap();
+        let told = told(&[&path.display().to_string()]);
+        assert!(told.contains("at line 4, column 1\n") && told.contains("\n4 | min_sentence = 5\n"), "{told}");
+        assert!(told.ends_with("did you mean \"min_sentences\"?"), "{told}");
+    }
+
+    #[test]
+    fn style_of_another_language_is_known_by_most_of_its_texts() {
+        let style = |references: &[&str]| {
+            let references = references.iter().map(|text| (*text).to_owned()).collect();
+            let style = InstructionStyle { name: "x".into(), references, ..InstructionStyle::default() };
+            MeasuredStyle { profile: StyleProfile::for_style(&style), hash: String::new(), style }.foreign_language()
+        };
+        let (german, english) = ("Gehe an der Lampe vorbei und warte am Schreibtisch.", "Walk past the lamp and wait.");
+        assert_eq!(style(&[german]), Some("German"));
+        assert_eq!(style(&[german, english]), None);
+        assert_eq!(
+            style(&["Gire a la izquierda y espere en la cocina.", "Camine hasta la puerta.", english]),
+            Some("Spanish")
+        );
+        assert_eq!(style(&["चलो और दरवाजे पर रुको।"]), Some("Hindi"));
     }
 
     #[test]

@@ -1,10 +1,7 @@
 //! `wayword report`: writes the HTML pages of a run or a comparison.
 
 use clap::Args;
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::path::PathBuf;
 #[cfg(feature = "experiments")]
 use wayword_experiments::compare;
 use wayword_formats::OutputPlace;
@@ -13,7 +10,7 @@ use wayword_run::{
     check::{CheckedAgain, check_run_again, find_changed_texts},
     error::{CommandError, Exit},
     output::CommandOutput,
-    run_folder::{file, is_comparison, refuse_unmerged},
+    run_folder::{expect_run, file, is_comparison},
     written_files::find_output_place,
 };
 
@@ -48,8 +45,6 @@ const MAX_REPORT_ITEMS: usize = 1000;
 /// Walks of a comparison that are shown, unless `--items` gives another number.
 #[cfg(feature = "experiments")]
 const MAX_REPORT_WALKS: usize = 100;
-/// Most runs below a folder that an error names.
-const MAX_NAMED_ITEMS: usize = 3;
 
 /// Runs `wayword report`: finds out whether the folder holds a run or a comparison, and writes its pages.
 pub(crate) fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
@@ -89,38 +84,4 @@ pub(crate) fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Ex
     }
     output.print_result(&written, &written);
     Ok(Exit::Done)
-}
-
-/// Refuses a path that is not a run folder, and names the one that the user may mean.
-fn expect_run(folder: &Path) -> Result<(), CommandError> {
-    if is_run(folder) {
-        return Ok(());
-    }
-    refuse_unmerged(folder)?;
-    let name = folder.display();
-    let around = folder.parent().filter(|around| folder.is_file() && is_run(around));
-    let within = runs_within(folder);
-    let what = match (fs::exists(folder), folder.is_dir()) {
-        (Ok(false), _) => "there is no such folder".to_owned(),
-        (_, true) => format!("it is not a run folder, because it holds no {}", file::CONFIG),
-        _ => "it is a file, not a run folder".to_owned(),
-    };
-    let hint = match around {
-        Some(around) => format!("give the folder that it is in: --run {}", around.display()),
-        None if !within.is_empty() => format!("name one of the runs in it: --run {}", within.join(", --run ")),
-        None => "give the --out folder of a `wayword generate` or `wayword compare`".to_owned(),
-    };
-    Err(CommandError::usage(format!("--run {name}: {what}"), hint))
-}
-
-fn is_run(folder: &Path) -> bool {
-    folder.join(file::CONFIG).is_file()
-}
-
-/// The first runs directly below a folder, by name.
-fn runs_within(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut runs: Vec<_> = entries.map(|entry| entry.path()).filter(|path| is_run(path)).collect();
-    runs.sort();
-    runs.iter().take(MAX_NAMED_ITEMS).map(|run| run.display().to_string()).collect()
 }

@@ -87,6 +87,12 @@ struct ScoredCaption {
 /// # Errors
 /// When the settings are wrong, the platform cannot be opened, a file cannot be written, and as [`measure_perception`].
 pub fn run_perceive(args: &PerceiveArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
+    if args.views == 0 {
+        return Err(CommandError::usage(
+            "--views 0 asks for no view",
+            "give at least 1, or leave the flag out for 100",
+        ));
+    }
     let place = args.figures.as_deref().map(find_output_place).transpose()?;
     let output = &place.map_or_else(|| output.clone(), |place| output.beside_data(&place));
     let mut asked = args.asked_settings().or_file(settings_file::read_settings(args.config.as_deref())?);

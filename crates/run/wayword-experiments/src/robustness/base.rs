@@ -9,7 +9,7 @@ use wayword_formats::jsonl;
 use wayword_report::pages::robustness::results::RepeatedTexts;
 use wayword_run::{
     error::CommandError,
-    run_folder::{WalkRecord, file, lines, read_run_settings},
+    run_folder::{WalkRecord, expect_run, file, lines, read_run_settings},
     settings::{RunSettings, TargetMode},
     styles::{self, MeasuredStyle},
 };
@@ -31,6 +31,7 @@ impl BaseRun {
     /// # Errors
     /// When it cannot be read, a style is not known, or no path is left.
     pub(super) fn read_run(folder: &FilePath, limit: Option<u32>) -> Result<Self, CommandError> {
+        expect_run(folder)?;
         let settings = RunSettings { per_path: 1, ..read_run_settings(folder)? };
         let styles = styles::find_styles(&settings.style)?;
         let max_paths = limit.map_or(usize::MAX, |limit| limit as usize);

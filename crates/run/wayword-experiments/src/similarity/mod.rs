@@ -7,7 +7,7 @@ mod pictures;
 
 use crate::{
     encoder,
-    similarity::args::SimilarityArgs as Args,
+    similarity::args::{SimilarityArgs as Args, TextPairing},
     text_sets::{self, TextSet},
 };
 use serde::Serialize;
@@ -32,7 +32,11 @@ pub fn run_similarity(args: &Args, output: &CommandOutput) -> Result<Exit, Comma
     let (a, b) = (a?, b?);
     if !a.keys().any(|item| b.contains_key(item)) {
         let problem = format!("{} and {} have no item in common", args.a, args.b);
-        return Err(CommandError::usage(problem, "items are matched by id; --by path matches them by scene and path"));
+        let hint = match args.by {
+            TextPairing::Item => "items are matched by id; --by path matches them by scene and path",
+            TextPairing::Path => "they are matched by scene and path id: give texts about the same paths",
+        };
+        return Err(CommandError::usage(problem, hint));
     }
     if args.pictured.clip.is_some() && !args.metrics {
         return Err(CommandError::usage("--clip is a metric, and none are asked for", "give --metrics too"));

@@ -98,7 +98,8 @@ pub struct ExportArgs {
     /// Run folder. Several can be merged in the formats wayword, parquet and hf.
     #[arg(long, value_name = "DIR")]
     pub run: Vec<PathBuf>,
-    /// Export only the instructions of this style; required for all formats but wayword, parquet, hf and steps.
+    /// Export only the instructions of this style; required for a run of several styles and all formats but wayword, parquet, hf
+    /// and steps.
     #[arg(long, value_name = "STYLE")]
     pub style: Option<String>,
     /// Instead of a dataset, write NAME.html and NAME.json: the texts with the words that a reader should doubt, and up to three

@@ -115,6 +115,7 @@ fn file_name(dataset: AgentDataset, split: &str, is_xlm: bool) -> String {
     }
 }
 
+#[cfg(feature = "local")]
 fn no_tokenizer() -> CommandError {
     let problem = "--tokenizer is missing: these files hold the ids of the tokens that an agent was trained with";
     let hint = format!(
@@ -155,11 +156,10 @@ fn find_tokenizer_file(tokenizer: &str, output: &CommandOutput) -> Result<PathBu
 
 #[cfg(not(feature = "local"))]
 fn encode_instructions(
-    tokenizer: Option<&str>,
+    _tokenizer: Option<&str>,
     _records: &[InstructionRecord],
     _output: &CommandOutput,
 ) -> Result<EncodedInstructions, CommandError> {
-    tokenizer.ok_or_else(no_tokenizer)?;
     Err(CommandError::not_built("--format duet: this build has no tokenizers"))
 }
 

@@ -41,7 +41,7 @@ use wayword_run::{
     count::count_phrase,
     error::{CommandError, Exit},
     output::CommandOutput,
-    run_folder::{file, refuse_torn_line, refuse_unmerged},
+    run_folder::{expect_texts, file, refuse_torn_line},
     settings::AskedPlatform,
     terms,
     written_files::{expect_output_folder, find_output_place},
@@ -84,6 +84,7 @@ pub fn run_export(args: &ExportArgs, output: &CommandOutput) -> Result<Exit, Com
     refuse_what_does_not_fit(args, format)?;
     let output = &output_beside(format, out, output)?;
     let mut records = read_records(&args.run, args.style.as_deref())?;
+    refuse_several_styles(format, &records)?;
     if let Some(share) = args.val_share {
         split_by_scene(&mut records, share, args.seed);
     }
@@ -147,9 +148,6 @@ fn refuse_what_does_not_fit(args: &ExportArgs, format: ExportFormat) -> Result<(
         let problem = "--split puts all texts into one split, and --val-share and --format wayword divide them";
         return refused(problem.to_owned(), "give one of the two; for --format wayword, --val-share");
     }
-    if !format.takes_all_styles() && args.style.is_none() {
-        return refused(format!("a file of format {format} has texts of one style only"), "choose it with --style");
-    }
     if format != ExportFormat::Duet && (args.tokenizer.is_some() || args.dataset.is_some()) {
         return refused("--tokenizer and --dataset are for --format duet".to_owned(), "leave them out");
     }
@@ -159,10 +157,21 @@ fn refuse_what_does_not_fit(args: &ExportArgs, format: ExportFormat) -> Result<(
     Ok(())
 }
 
+/// Refuses texts of several styles for a format that has one.
+fn refuse_several_styles(format: ExportFormat, records: &[InstructionRecord]) -> Result<(), CommandError> {
+    let styles: BTreeSet<&str> = records.iter().map(|record| record.instruction.style.as_str()).collect();
+    if format.takes_all_styles() || styles.len() < 2 {
+        return Ok(());
+    }
+    let styles = styles.into_iter().collect::<Vec<_>>().join(", ");
+    let problem = format!("a file of format {format} has texts of one style only, and the run has texts of {styles}");
+    Err(CommandError::usage(problem, "choose one with --style"))
+}
+
 /// The records of runs, merged; only those of one style if it is named.
 fn read_records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<InstructionRecord>, CommandError> {
     for run in runs {
-        refuse_unmerged(run)?;
+        expect_texts(run)?;
         refuse_torn_line(run)?;
     }
     let files: Vec<PathBuf> = runs.iter().map(|run| run.join(file::INSTRUCTIONS)).collect();

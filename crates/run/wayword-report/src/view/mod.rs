@@ -76,8 +76,12 @@ pub fn open_platform(asked: &AskedPlatform) -> Result<Box<dyn Platform>, Command
 /// The scene with this name, or the platform's first if there is no name.
 fn choose_scene(platform: &dyn Platform, name: Option<&str>) -> Result<SceneId, CommandError> {
     match name {
-        Some(name) => SceneId::new(name)
-            .map_err(|error| CommandError::usage(format!("--scan {name}: {error}"), "give the name of a scene")),
+        Some(name) => {
+            let scene = SceneId::new(name)
+                .map_err(|error| CommandError::usage(format!("--scan {name}: {error}"), "give the name of a scene"))?;
+            platform.graph_for_scene(&scene).map_err(|error| platforms::suggest_scene(error.into(), platform))?;
+            Ok(scene)
+        }
         None => platform
             .list_scenes()?
             .into_iter()

@@ -22,8 +22,9 @@ use crate::{
     plan::RunPlan,
     platforms::has_hops,
     run_folder::{RunFolder, WorldData, continued_settings, is_begun, keep_id, run_id_or_fresh},
-    settings::{RunJob, RunSettings},
+    settings::{Perception, RunJob, RunSettings, TargetMode},
     settings_file, stores,
+    styles::MeasuredStyle,
     team::RoleTeam,
     watch::{self, CommandWatch},
     written_files::expect_output_folder,
@@ -32,6 +33,7 @@ use fill::ItemWorkshop;
 use prepare::{ModelCheck, PreparedRun};
 use std::path::Path;
 use wayword_core::PathRequest;
+use wayword_synthesis::dialogue::DEFAULT_MAX_QUESTIONS;
 
 pub use summary::{DetectorSummary, RunSummary};
 pub use workers::{CHUNK_FILES, CheckedChunks, ChunkChecker, ChunkDamage, ChunkHandout, ChunkedItems};
@@ -54,6 +56,7 @@ pub fn run_generate(args: &GenerateArgs, output: &CommandOutput) -> Result<Exit,
     let out = args.out.as_deref().ok_or_else(|| {
         CommandError::usage("a run needs a folder", "give --out DIR, or --dry-run to see what the run would cost")
     })?;
+    args.spans.as_deref().map_or(Ok(()), refuse_file)?;
     let watch = CommandWatch::start(args.spans.as_deref(), output)?;
     watch.watch_work(|worker| make_run(args, out, &job, worker, output))
 }
@@ -69,6 +72,7 @@ fn make_run(
     if args.workers.is_asked() {
         return workers::run_worker(out, job, &args.workers, worker, output);
     }
+    refuse_file(out)?;
     // A run of one machine appends lines to files, which object stores cannot do.
     stores::refuse_address(
         out,
@@ -96,6 +100,15 @@ fn warn_of_no_effect(settings: &RunSettings, output: &CommandOutput) {
             settings.platform
         ));
     }
+    if settings.episodes.is_some() && settings.request != PathRequest::default() {
+        output.say(
+            "warning: --hops and --metres have no effect with --episodes, because its paths are given; leave them out",
+        );
+    }
+    let asks_questions = matches!(settings.perception, Perception::Dialogue | Perception::FollowUp);
+    if settings.questions != DEFAULT_MAX_QUESTIONS && !asks_questions {
+        output.say("warning: --questions has no effect without --perception dialogue or follow-up");
+    }
     let cannot_follow = settings.no_route || !settings.evidence.labels || settings.platform == "recording";
     if settings.candidates > 1 && cannot_follow && settings.roles.write.model_name().is_some() {
         output.say(format_args!(
@@ -111,6 +124,24 @@ fn say_house_spread(plan: &RunPlan<'_>, output: &CommandOutput) {
     house_spread::house_spread(&plan.job.settings, &plan.items).iter().for_each(|spread| output.say(spread));
 }
 
+/// Warns of styles that do not fit the run: with reference texts in another language than English, or without a task whose target
+/// could be free.
+fn warn_of_styles(settings: &RunSettings, styles: &[MeasuredStyle], output: &CommandOutput) {
+    for style in styles {
+        if let Some(language) = style.foreign_language() {
+            output.say(format_args!(
+                "warning: the reference texts of style {} are in {language}; rules write English, and the checks read English \
+                 only, so other texts stay unverified",
+                style.style.name
+            ));
+        }
+    }
+    let has_task = styles.iter().any(|style| style.style.constraints.ends_in_task);
+    if settings.target == TargetMode::Free && !has_task {
+        output.say("warning: --target free has no effect, because no style of this run ends in a task");
+    }
+}
+
 /// Makes or continues a run.
 ///
 /// # Errors
@@ -124,6 +155,7 @@ pub fn generate_into(folder: &Path, job: &RunJob, output: &CommandOutput) -> Res
     let check = if is_recording { ModelCheck::ReadyLast } else { ModelCheck::ReadyFirst };
     let prepared = PreparedRun::open(job, continued, check, output)?;
     let (plan, settings) = &prepared.plan_with_settings(output)?;
+    warn_of_styles(settings, &plan.styles, output);
     // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.
     expect_output_folder(folder)?;
     let begun = is_begun(folder).then(|| RunFolder::open(folder, settings)).transpose()?;

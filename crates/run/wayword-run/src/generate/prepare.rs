@@ -67,7 +67,9 @@ impl PreparedRun {
     /// # Errors
     /// As for [`RunPlan::for_writing`], or when a model is not ready.
     pub(super) fn plan_run(&self, output: &CommandOutput) -> Result<RunPlan<'_>, CommandError> {
-        let plan = RunPlan::for_writing(&self.job, self.platform.as_ref())?;
+        let platform = self.platform.as_ref();
+        let plan =
+            RunPlan::for_writing(&self.job, platform).map_err(|error| platforms::suggest_scene(error, platform))?;
         if self.check == ModelCheck::ReadyLast {
             ModelCalls::check_ready(&self.job, output)?;
         }

@@ -5,6 +5,7 @@ mod listing;
 mod live;
 mod python_worlds;
 mod remembering;
+mod scene_names;
 
 use crate::{
     error::CommandError,
@@ -25,6 +26,7 @@ pub(crate) use listing::platform_names;
 pub use listing::{PLATFORMS, PlatformListing};
 pub use python_worlds::{register_world, unregister_world};
 pub use remembering::RememberingPlatform;
+pub use scene_names::suggest_scene;
 
 /// Number of scene surveys that a command keeps in memory.
 pub const MAX_KEPT_SURVEYS: usize = 128;

@@ -282,33 +282,33 @@ impl AskedSettings {
                 "give one of them",
             ));
         }
-        if writing.repairs.is_some_and(|repairs| repairs > MAX_REPAIRS) {
+        if let Some(repairs) = writing.repairs.filter(|repairs| *repairs > MAX_REPAIRS) {
             return Err(CommandError::usage(
-                format!("--repairs is more than {MAX_REPAIRS}"),
+                format!("--repairs {repairs} is more than {MAX_REPAIRS}"),
                 "give fewer: a text that fails that often will not pass later",
             ));
         }
-        if writing.refine.is_some_and(|rounds| rounds > MAX_REFINEMENTS) {
+        if let Some(rounds) = writing.refine.filter(|rounds| *rounds > MAX_REFINEMENTS) {
             return Err(CommandError::usage(
-                format!("--refine is more than {MAX_REFINEMENTS}"),
+                format!("--refine {rounds} is more than {MAX_REFINEMENTS}"),
                 "give fewer: each round is a call, and later ones gain little",
             ));
         }
-        if writing.candidates.is_some_and(|candidates| !(1..=MAX_CANDIDATES).contains(&candidates)) {
+        if let Some(candidates) = writing.candidates.filter(|candidates| !(1..=MAX_CANDIDATES).contains(candidates)) {
             return Err(CommandError::usage(
-                format!("--candidates is not from 1 to {MAX_CANDIDATES}"),
+                format!("--candidates {candidates} is not from 1 to {MAX_CANDIDATES}"),
                 "give a number in that range: each further text gains less",
             ));
         }
-        if writing.per_path.is_some_and(|number| !(1..=MAX_PER_PATH).contains(&number)) {
+        if let Some(number) = writing.per_path.filter(|number| !(1..=MAX_PER_PATH).contains(number)) {
             return Err(CommandError::usage(
-                format!("--per-path is not from 1 to {MAX_PER_PATH}"),
+                format!("--per-path {number} is not from 1 to {MAX_PER_PATH}"),
                 "for more texts make several runs, each with its own --seed",
             ));
         }
-        if writing.questions.is_some_and(|questions| questions > MAX_QUESTIONS) {
+        if let Some(questions) = writing.questions.filter(|questions| *questions > MAX_QUESTIONS) {
             return Err(CommandError::usage(
-                format!("--questions is more than {MAX_QUESTIONS}"),
+                format!("--questions {questions} is more than {MAX_QUESTIONS}"),
                 "give fewer: after about nine questions a dialogue brings little that is new",
             ));
         }

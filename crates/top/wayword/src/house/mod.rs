@@ -18,7 +18,7 @@ use wayword_run::{
     error::{CommandError, Exit},
     interrupt,
     output::CommandOutput,
-    run_folder::{file, lock_folder},
+    run_folder::{expect_texts, file, lock_folder},
     written_files::{expect_output_folder, write_file},
 };
 
@@ -128,13 +128,19 @@ fn bake_navmesh(_house: &wayword_house::House) -> Result<Option<Vec<u8>>, Comman
 
 /// The records of a run, of one style.
 fn read_records(run: &Path, style: Option<&str>) -> Result<Vec<InstructionRecord>, CommandError> {
+    expect_texts(run)?;
     let mut records = jsonl::read_records(&run.join(file::INSTRUCTIONS))?;
     let styles: BTreeSet<String> = records.iter().map(|record| record.instruction.style.clone()).collect();
     records.retain(|record| style.is_none_or(|style| record.instruction.style == style));
     let listed = styles.iter().map(String::as_str).collect::<Vec<_>>().join(", ");
     match (records.is_empty(), style) {
+        (true, Some(style)) if !styles.is_empty() => {
+            let problem = format!("{}: it has no instruction of style {style}", run.display());
+            Err(CommandError::usage(problem, format!("it has these styles: {listed}")))
+        }
         (true, _) => {
-            Err(CommandError::usage(format!("{}: no such instruction", run.display()), format!("its styles: {listed}")))
+            let problem = format!("{}: it has no instruction", run.display());
+            Err(CommandError::usage(problem, "see errors.jsonl and rejected.jsonl of the run"))
         }
         (false, None) if styles.len() > 1 => {
             let problem = format!("{} has texts of several styles, and an episode has one text", run.display());

@@ -8,10 +8,13 @@ mod prometheus;
 mod retry;
 mod status;
 
-use crate::runs::args::{RunsArgs, RunsCommand};
+use crate::runs::args::{RunsArgs, RunsCommand, RunsMerge, RunsRetry, RunsStatus};
+use std::path::Path;
+use wayword_queue::ChunkPlan;
 use wayword_run::{
     error::{CommandError, Exit},
     output::CommandOutput,
+    run_folder::is_begun,
 };
 
 /// Whether the command shows a run again and again until it is ended.
@@ -21,6 +24,12 @@ pub(crate) fn is_watching(args: &RunsArgs) -> bool {
 
 pub(crate) fn run_runs(args: &RunsArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     match &args.command {
+        RunsCommand::Status(RunsStatus { run, .. })
+        | RunsCommand::Merge(RunsMerge { run, .. })
+        | RunsCommand::Retry(RunsRetry { run, .. }) => refuse_single_run(run)?,
+        RunsCommand::Database(_) => {}
+    }
+    match &args.command {
         RunsCommand::Status(args) => status::run_status(args, |status| match args.prometheus {
             true => output.print_result(status, prometheus::prometheus_text(status)),
             false => output.print_result(status, status),
@@ -29,4 +38,23 @@ pub(crate) fn run_runs(args: &RunsArgs, output: &CommandOutput) -> Result<Exit, 
         RunsCommand::Retry(args) => retry::run_retry(args, output),
         RunsCommand::Database(args) => database::run_database(args, output),
     }
+}
+
+/// Refuses a folder that is not there, and a run that one machine made or makes: it has no chunks.
+fn refuse_single_run(run: &Path) -> Result<(), CommandError> {
+    // An address in an object store is no folder of this machine.
+    if !run.exists() && !run.to_string_lossy().contains("://") {
+        return Err(CommandError::usage(
+            format!("{}: there is no such folder", run.display()),
+            "give the --out folder of the run",
+        ));
+    }
+    if !is_begun(run) || ChunkPlan::find_plan(run)?.is_some() {
+        return Ok(());
+    }
+    let problem = format!("{}: one machine makes this run, and it has no chunks", run.display());
+    Err(CommandError::usage(
+        problem,
+        "the command that began it continues it; `wayword report --run` shows what is there",
+    ))
 }

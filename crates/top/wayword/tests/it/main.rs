@@ -32,6 +32,7 @@ mod invariants;
 mod known_paths;
 mod local_models;
 mod lost_worlds;
+mod mistakes;
 mod model_kills;
 mod models;
 mod models_in_process;

@@ -67,8 +67,10 @@ pub enum StyleError {
     /// No text can keep its rules.
     #[error("style {name}: no text can keep its rules: {reason}")]
     Contradictory {
-        /// The style.
+        /// The style, or its file with the line of the field.
         name: String,
+        /// The field to change.
+        field: &'static str,
         /// The rules, and what to do.
         reason: String,
     },
@@ -110,7 +112,7 @@ pub fn parse_style(name: &str, text: &str) -> Result<InstructionStyle, StyleErro
 pub fn parse_style_with(name: &str, text: &str, more: Vec<String>) -> Result<InstructionStyle, StyleError> {
     let unreadable = |reason: String| StyleError::Unreadable { name: name.to_owned(), reason };
     let mut style: InstructionStyle =
-        toml::from_str(text).map_err(|error| unreadable(error.to_string().trim().replace('\n', " ")))?;
+        toml::from_str(text).map_err(|error| unreadable(error.to_string().trim().to_owned()))?;
     style.references.extend(more);
     validate_style(style).map_err(|error| match error {
         StyleError::Unnamed => unreadable("its `name` is empty: give it one".into()),
@@ -118,6 +120,13 @@ pub fn parse_style_with(name: &str, text: &str, more: Vec<String>) -> Result<Ins
         StyleError::TooLarge(_) => StyleError::TooLarge(name.to_owned()),
         StyleError::ChoiceOutOfRange { field, found, most, .. } => {
             StyleError::ChoiceOutOfRange { name: name.to_owned(), field, found, most }
+        }
+        StyleError::Contradictory { field, reason, .. } => {
+            let sets = |line: &str| {
+                line.trim_start().strip_prefix(field).is_some_and(|rest| rest.trim_start().starts_with('='))
+            };
+            let line = text.lines().position(sets).map_or_else(String::new, |at| format!(", line {}", at + 1));
+            StyleError::Contradictory { name: format!("{name}{line}"), field, reason }
         }
         other => other,
     })
@@ -145,24 +154,33 @@ pub fn validate_style(style: InstructionStyle) -> Result<InstructionStyle, Style
         }
     }
     match contradiction_in(&style) {
-        Some(reason) => Err(StyleError::Contradictory { name: style.name, reason }),
+        Some((field, reason)) => Err(StyleError::Contradictory { name: style.name, field, reason }),
         None => Ok(style),
     }
 }
 
-/// Rules of a style that no text can keep together, with what to do. A sentence has at least one word.
-fn contradiction_in(style: &InstructionStyle) -> Option<String> {
+/// Rules of a style that no text can keep together: the field to change, and what to do. A sentence has at least one word.
+fn contradiction_in(style: &InstructionStyle) -> Option<(&'static str, String)> {
     let StyleConstraints { min_sentences, max_sentences, fewer_words_than, .. } = style.constraints;
     let least = min_sentences.unwrap_or(1).max(1);
     if let Some(most) = max_sentences.filter(|most| *most < least) {
-        return Some(format!("min_sentences is {least}, and max_sentences {most}; change one of them"));
+        let reason = format!("min_sentences is {least}, and max_sentences {most}; change one of them");
+        return Some(("max_sentences", reason));
+    }
+    if !style.words.is_empty() && style.words.iter().all(|words| *words < least) {
+        let reason = format!(
+            "every number in `words` is below {least}, and each sentence has at least one word; change it or min_sentences"
+        );
+        return Some(("words", reason));
     }
     let limit = fewer_words_than?;
     if limit <= least {
-        return Some(format!("min_sentences is {least}, and fewer_words_than {limit}; change one of them"));
+        let reason = format!("min_sentences is {least}, and fewer_words_than {limit}; change one of them");
+        return Some(("fewer_words_than", reason));
     }
     let are_too_long = !style.words.is_empty() && style.words.iter().all(|words| *words >= limit);
-    are_too_long.then(|| format!("every number in `words` is {limit} or more; change it or fewer_words_than"))
+    are_too_long
+        .then(|| ("words", format!("every number in `words` is {limit} or more; change it or fewer_words_than")))
 }
 
 /// A short hash of a style's content, for provenance.
@@ -230,7 +248,11 @@ mod tests {
             let text = format!("name = \"x\"\nreferences = [\"Stop.\"]\n[constraints]\n{rules}");
             let error = parse_style("x.toml", &text).unwrap_err().to_string();
             assert!(error.contains(told) && error.contains("; change "), "{error}");
+            assert!(error.starts_with("style x.toml, line "), "{error}");
         }
+        let text = "name = \"x\"\nreferences = [\"Stop.\"]\nwords = [0, 2]\n[constraints]\nmin_sentences = 3";
+        let told = parse_style("x.toml", text).unwrap_err().to_string();
+        assert!(told.starts_with("style x.toml, line 3: ") && told.contains("`words` is below 3"), "{told}");
         let text = "name = \"x\"\nreferences = [\"Stop.\"]\nwords = [8, 12]\n[constraints]\nfewer_words_than = 8";
         assert!(parse_style("x.toml", text).unwrap_err().to_string().contains("every number in `words` is 8 or more"));
         assert!(parse_style("x.toml", &text.replace("= 8", "= 9")).is_ok());
