@@ -56,7 +56,7 @@ pub fn run_generate(args: &GenerateArgs, output: &CommandOutput) -> Result<Exit,
     let out = args.out.as_deref().ok_or_else(|| {
         CommandError::usage("a run needs a folder", "give --out DIR, or --dry-run to see what the run would cost")
     })?;
-    args.spans.as_deref().map_or(Ok(()), refuse_file)?;
+    args.spans.as_deref().map_or(Ok(()), expect_output_folder)?;
     let watch = CommandWatch::start(args.spans.as_deref(), output)?;
     watch.watch_work(|worker| make_run(args, out, &job, worker, output))
 }
@@ -72,7 +72,7 @@ fn make_run(
     if args.workers.is_asked() {
         return workers::run_worker(out, job, &args.workers, worker, output);
     }
-    refuse_file(out)?;
+    expect_output_folder(out)?;
     // A run of one machine appends lines to files, which object stores cannot do.
     stores::refuse_address(
         out,
