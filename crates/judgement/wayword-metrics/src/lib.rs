@@ -1,11 +1,12 @@
 //! Figures about instructions, trajectories and studies with people, each with an interval and with the anchors that give it a
 //! meaning (as: what another person reaches, and what a text about another path reaches).
 //!
-//! Architecture invariant: this crate does not read files or run models, and uses only the graph of a platform; vectors come
+//! Architecture invariant: this crate does not read files or run models, and uses only the graph and the ground of a platform; vectors come
 //! from the caller. Distances are computed once and cached ([`DistanceAtlas`]), and equal input gives equal figures.
 //!
 //! # Where things are
-//! - `trajectory/mod.rs`: the rules of success; `fidelity.rs`, `score.rs`: the other figures of trajectories.
+//! - `trajectory/mod.rs`: the rules of success; `fidelity.rs`, `score.rs`: the other figures of trajectories; `walk_survey.rs`: how well a
+//!   graph stands for the ground.
 //! - [`captions`]: BLEU, ROUGE-L, CIDEr-D, their tokenizers, diversity. [`picture_scores`]: agreement with pictures.
 //! - `similarity`: vectors of texts, with both anchors. `bootstrap`: intervals clustered by path.
 //! - `latex`: the escapes of LaTeX tables.
@@ -39,6 +40,7 @@ pub use study::{
     search_for_power, share_difference, wilson_interval,
 };
 pub use trajectory::{
-    AgentTrajectory, DistanceAtlas, EpisodeDemand, EpisodeScorer, SceneDistances, SuccessOutcome, TargetGrounding,
-    TrajectoryError, TrajectoryMetric, TrajectoryScore, TrajectorySuccessRule, find_problems, score_trajectory,
+    AgentTrajectory, DistanceAtlas, EpisodeDemand, EpisodeScorer, GraphRoute, SceneDistances, SuccessOutcome,
+    TargetGrounding, TrajectoryError, TrajectoryMetric, TrajectoryScore, TrajectorySuccessRule, WalkSurvey,
+    find_problems, score_trajectory, survey_walks,
 };

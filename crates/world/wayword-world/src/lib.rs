@@ -6,7 +6,7 @@
 //!
 //! Paths: [`open_ground`] draws random paths over open ground, and [`graph_walk`] along a viewpoint graph. [`grid_search`]
 //! finds shortest ways over a grid. [`episode_path`] turns an episode's viewpoints into a path, and [`floor_path`] positions
-//! on a floor.
+//! on a floor. [`graph_route`] finds the route over the viewpoints for a path that lies between them.
 //!
 //! Scenes: [`survey_scene`](mod@survey) collects the rooms and objects at all viewpoints, and [`seen_from`](mod@seen_from)
 //! finds the viewpoints that show an object. [`levels`] finds the storeys of viewpoints. [`object_names`] and [`region_letters`]
@@ -19,6 +19,7 @@ mod credentials;
 pub mod episode_path;
 pub mod files;
 pub mod floor_path;
+pub mod graph_route;
 pub mod graph_walk;
 pub mod grid_search;
 pub mod json_values;
@@ -33,5 +34,6 @@ pub mod survey;
 pub use credentials::mask_credentials;
 pub use episode_path::{labels_around, path_over_viewpoints};
 pub use floor_path::frames_over_floor;
+pub use graph_route::route_along_frames;
 pub use seen_from::seen_from;
 pub use survey::survey_scene;

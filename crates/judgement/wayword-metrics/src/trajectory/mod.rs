@@ -12,12 +12,14 @@ mod testing;
 #[cfg(test)]
 mod tests;
 mod trajectory_error;
+mod walk_survey;
 
 pub use distance_atlas::DistanceAtlas;
 pub use distances::SceneDistances;
 pub use episode_scorer::EpisodeScorer;
 pub use score::score_trajectory;
 pub use trajectory_error::{TrajectoryError, find_problems};
+pub use walk_survey::{GraphRoute, WalkSurvey, survey_walks};
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
