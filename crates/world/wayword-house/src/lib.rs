@@ -38,6 +38,7 @@ mod save;
 mod scene;
 mod shapes;
 mod stairs;
+mod standing_places;
 mod structure;
 mod surface;
 mod textures;

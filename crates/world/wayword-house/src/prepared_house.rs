@@ -3,13 +3,14 @@
 
 use super::{
     furnish::furnish_house,
-    graph::{EYE_M, viewpoint_graph},
+    graph::{EYE_M, graph_over_places},
     ground::HouseGround,
     labels::{LABELS_SIZE_PX, visible_labels},
     layout::{HouseLayout, lay_out},
     model::{House, WallOpening},
     names::{old_seed_of, scene_name, seed_of},
     scene::HouseScene,
+    standing_places::standing_places,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -24,6 +25,9 @@ use wayword_world::seen_from;
 
 /// An eye in an opening is at most this far from the middle line of the wall, centimetres.
 const THRESHOLD_CM: i32 = 25;
+
+/// A standing place is at most so far from a viewpoint over the ground, metres.
+const TO_VIEWPOINT_M: f64 = 2.0;
 
 /// Generates the house of a seed. It is the same on every machine.
 #[must_use]
@@ -41,6 +45,8 @@ pub(super) struct PreparedHouse {
     pub(super) scene: HouseScene,
     pub(super) ground: HouseGround,
     pub(super) graph: Arc<ViewpointGraph>,
+    /// The places on the ground at which paths begin and end. A viewpoint is at most about a metre away from each.
+    pub(super) standing_places: Vec<DVec3>,
     /// The viewpoints from which each object is seen; computed on first use.
     seen_from: OnceLock<BTreeMap<ObjectId, BTreeSet<ViewpointId>>>,
     /// The largest distance between two viewpoints; computed on first use.
@@ -52,8 +58,9 @@ impl PreparedHouse {
     pub(super) fn for_scene(scene: &SceneId) -> Result<Self, PlatformError> {
         let house = generate_house(seed_of(scene.as_str()).ok_or_else(|| unknown_scene_error(scene.as_str()))?);
         let ground = HouseGround::for_house(&house);
-        let graph =
-            viewpoint_graph(&house, &ground).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
+        let places = standing_places(&house, &ground);
+        let graph = graph_over_places(&house, &ground, &places)
+            .map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
         let drawn = HouseScene::new(house)
             .map_err(|error| PlatformError::NotDrawn { scene: scene.clone(), reason: error.to_string() })?;
         Ok(Self {
@@ -61,6 +68,7 @@ impl PreparedHouse {
             scene: drawn,
             ground,
             graph: Arc::new(graph),
+            standing_places: places.into_iter().map(|(_, place)| place).collect(),
             seen_from: OnceLock::new(),
             longest_m: OnceLock::new(),
         })
@@ -143,13 +151,14 @@ impl PreparedHouse {
         visible_labels(&self.scene, pose.position, gaze, LABELS_SIZE_PX).map_err(|error| self.not_drawn_error(&error))
     }
 
-    /// The largest distance between two viewpoints along the graph. Since the graph's edges can be walked, no shortest way is
-    /// longer. So a request for a path that is too long for the house is refused without a search.
+    /// An upper bound of the distance over the ground between two standing places: the largest distance between two viewpoints along the
+    /// graph, whose edges can be walked, and the ways to them. So a request for a path that is too long for the house is refused
+    /// without a search.
     pub(super) fn longest_m(&self) -> f64 {
         *self.longest_m.get_or_init(|| {
             let from = |id| self.graph.distances_from(id).unwrap_or_default();
             let all = self.graph.viewpoints().flat_map(|id| from(id).into_values());
-            all.fold(0.0, f64::max)
+            all.fold(0.0, f64::max) + 2.0 * TO_VIEWPOINT_M
         })
     }
 
@@ -172,12 +181,6 @@ impl PreparedHouse {
             return Ok(());
         }
         Err(PlatformError::for_unknown_place(&self.id, frame))
-    }
-
-    /// The place on the ground under every viewpoint.
-    pub(super) fn standing_places(&self) -> Vec<DVec3> {
-        let eyes = self.graph.viewpoints().filter_map(|id| self.graph.position_of(id));
-        eyes.map(|eye| eye - DVec3::Z * EYE_M).collect()
     }
 }
 

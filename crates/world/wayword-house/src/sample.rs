@@ -31,7 +31,7 @@ const MIN_PICTURED_M: f64 = 1.2;
 
 /// Draws a path of a length that `request` allows, with frames at most `interval_m` apart and at every corner.
 ///
-/// Both ends are the places of random viewpoints. The path does not end in an opening, because a walker there is in no
+/// Both ends are random standing places. The path does not end in an opening, because a walker there is in no
 /// room, nor on stairs. The target is in the room where the path ends. The first frame looks along the first move.
 pub(super) fn sample_house_path(
     scene: &SceneId,
@@ -44,7 +44,7 @@ pub(super) fn sample_house_path(
         return Err(no_such_walk(scene, request));
     }
     let dice = HouseDice::new(derive_seed(seed, &["house path"]), &[scene.as_str()]);
-    let places = home.standing_places();
+    let places = home.standing_places.clone();
     let goals = places.iter().copied().filter(|place| !home.is_in_opening(*place + DVec3::Z * EYE_M)).collect();
     let mut walker = HouseWalker { home, places, goals, dice, interval_m };
     sample_open_path(&mut walker, scene, request, seed)?.ok_or_else(|| no_such_walk(scene, request))
