@@ -6,6 +6,7 @@
 
 use super::{NavMeshGround, polygon::nearest_on_edge};
 use crate::axes::EYE_M;
+use std::collections::BTreeSet;
 use wayword_core::{DVec3, GroundRoute, ViewpointGraph, ViewpointId, graph::GraphError, seeded_rng};
 
 /// Least distance between two viewpoints of the same storey, metres.
@@ -14,8 +15,8 @@ const APART_M: f64 = 1.8;
 const REACH_M: f64 = 4.0;
 /// Greatest length of the way along an edge, as a multiple of the straight line's length.
 const MAX_DETOUR_FACTOR: f64 = 1.1;
-/// If two edges leave a viewpoint within this angle, the longer one is dropped: it would lead past the end of the other.
-const CLOSE_RAD: f64 = 0.35;
+/// An edge is left out where the way over a third viewpoint is at most so many times as long: it would lead past that one.
+const MAX_PASSING_FACTOR: f64 = 1.03;
 /// Random places that are tried, for each square metre of ground.
 const TRIES_PER_M2: f64 = 12.0;
 /// Most random places that are tried.
@@ -88,7 +89,8 @@ impl ViewpointRoadMap<'_> {
         closed.map(|(corner, next)| (corner.place, next.place)).collect()
     }
 
-    /// Joins viewpoints at most [`REACH_M`] apart between which the way is nearly straight, the nearest pairs first.
+    /// Joins viewpoints at most [`REACH_M`] apart between which the way is nearly straight, the nearest pairs first. An edge that leads past
+    /// a third viewpoint is left out.
     fn join_near(&mut self) {
         let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
         for a in 0..self.nodes.len() {
@@ -103,14 +105,14 @@ impl ViewpointRoadMap<'_> {
             }
         }
         pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
-        for (_, a, b) in pairs {
-            let leads_past = |from: usize, to: usize| {
-                let way = (self.nodes[to] - self.nodes[from]).normalize_or_zero();
-                self.neighbours(from).any(|other| {
-                    (self.nodes[other] - self.nodes[from]).normalize_or_zero().dot(way) > libm::cos(CLOSE_RAD)
-                })
-            };
-            if !leads_past(a, b) && !leads_past(b, a) {
+        for (straight_m, a, b) in pairs {
+            let beside_b: BTreeSet<usize> = self.neighbours(b).collect();
+            let over =
+                |third: usize| self.nodes[a].distance(self.nodes[third]) + self.nodes[third].distance(self.nodes[b]);
+            let leads_past = self
+                .neighbours(a)
+                .any(|third| beside_b.contains(&third) && over(third) <= MAX_PASSING_FACTOR * straight_m);
+            if !leads_past {
                 self.edges.push((a, b));
             }
         }

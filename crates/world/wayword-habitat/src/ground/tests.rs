@@ -199,6 +199,24 @@ fn the_viewpoint_graph_reaches_every_floor() {
     }
 }
 
+#[test]
+fn what_is_near_over_the_ground_is_near_over_the_graph() {
+    let ground = NavMeshGround::new(&paved(&two_storeys()));
+    let graph = viewpoint_graph(&ground, 0).unwrap();
+    let under = |id| graph.position_of(id).unwrap() - DVec3::Z * crate::axes::EYE_M;
+    let (mut near, mut arrived) = (0, 0);
+    for a in graph.viewpoints() {
+        let over_graph = graph.distances_from(a).unwrap();
+        for b in graph.viewpoints().filter(|b| *b > a && under(a).distance(under(b)) < 3.0) {
+            if ground.geodesic(under(a), under(b)).unwrap().length_m < 3.0 {
+                near += 1;
+                arrived += usize::from(over_graph[b] < 3.0);
+            }
+        }
+    }
+    assert!(near > 10 && 100 * arrived >= 95 * near, "{arrived} of {near}");
+}
+
 proptest! {
     #[test]
     fn corrupt_navmeshes_never_panic_the_search(at in 0usize..2400, with: [u8; 2], seed: u64) {
