@@ -79,11 +79,13 @@ pub fn join_panorama(
     let height = (2.0 * lowest * FRAC_1_SQRT_2 / step_rad).floor().max(1.0);
     check_size(width.into(), height as u64)?;
     let height = height as u32;
+    let columns: Vec<PanoramaColumn> =
+        (0..width).map(|x| PanoramaColumn::at((f64::from(x) + 0.5) * step_rad - PI)).collect();
     let mut rgb = vec![0; 3 * width as usize * height as usize];
     rgb.par_chunks_exact_mut(3 * width as usize).enumerate().for_each(|(y, row)| {
         let up = (0.5 * f64::from(height) - (y as f64 + 0.5)) * step_rad;
-        for (x, out) in row.chunks_exact_mut(3).enumerate() {
-            let colour = colour_along(&views, (x as f64 + 0.5) * step_rad - PI, up);
+        for (column, out) in columns.iter().zip(row.chunks_exact_mut(3)) {
+            let colour = column.colour_at(&views, up);
             out.copy_from_slice(&colour.unwrap_or(blank));
         }
     });
@@ -99,18 +101,33 @@ fn check_view(index: usize, view: &QuarterView<'_>) -> Result<(), PanoramaError>
     Err(PanoramaError::Bytes { view: index, width, height, bytes })
 }
 
-/// The colour along a ray: `turn_rad` to the right of the first view's middle, `up` above the horizon on a cylinder of
-/// radius 1.
-fn colour_along(views: &[Option<QuarterView<'_>>; 4], turn_rad: f64, up: f64) -> Option<[u8; 3]> {
-    let side = ((turn_rad + FRAC_PI_4) / FRAC_PI_2).floor();
-    let view = views[side.rem_euclid(4.0) as usize % 4]?;
-    let off_rad = turn_rad - side * FRAC_PI_2;
-    let focal_px = 0.5 * f64::from(view.width);
-    let x_px = focal_px * (1.0 + libm::tan(off_rad));
-    let y_px = 0.5 * f64::from(view.height) - focal_px * up / libm::cos(off_rad);
-    let size = [view.width as usize, view.height as usize];
-    let colour = sample_bilinear(view.rgb, size, [x_px as f32, y_px as f32]) + Vec3::splat(0.5);
-    Some(colour.to_array().map(|value| value as u8))
+/// A direction of the panorama, as its view has it.
+struct PanoramaColumn {
+    /// The index of the view.
+    side: usize,
+    /// Tangent and cosine of the turn from the middle of the view.
+    tan: f64,
+    cos: f64,
+}
+
+impl PanoramaColumn {
+    /// The direction `turn_rad` to the right of the first view's middle.
+    fn at(turn_rad: f64) -> Self {
+        let side = ((turn_rad + FRAC_PI_4) / FRAC_PI_2).floor();
+        let off_rad = turn_rad - side * FRAC_PI_2;
+        Self { side: side.rem_euclid(4.0) as usize % 4, tan: libm::tan(off_rad), cos: libm::cos(off_rad) }
+    }
+
+    /// The colour along a ray in this direction, `up` above the horizon on a cylinder of radius 1.
+    fn colour_at(&self, views: &[Option<QuarterView<'_>>; 4], up: f64) -> Option<[u8; 3]> {
+        let view = views[self.side]?;
+        let focal_px = 0.5 * f64::from(view.width);
+        let x_px = focal_px * (1.0 + self.tan);
+        let y_px = 0.5 * f64::from(view.height) - focal_px * up / self.cos;
+        let size = [view.width as usize, view.height as usize];
+        let colour = sample_bilinear(view.rgb, size, [x_px as f32, y_px as f32]) + Vec3::splat(0.5);
+        Some(colour.to_array().map(|value| value as u8))
+    }
 }
 
 #[cfg(test)]
