@@ -33,6 +33,6 @@ pub use study::{
     EndQuestion, EndQuestionKind, ExclusionRules, FilmPicture, ItemSlot, PageTexts, PairChoice, Participant,
     ParticipantAnswer, ParticipantMove, ParticipantStatus, RecruiterSettings, SlotState, Study, StudyCondition,
     StudyData, StudyDesign, StudyError, StudyItem, StudyRoute, StudyScene, StudySettings, StudyTask, StudyText,
-    StudyViewpoint, TextMark,
+    StudyViewpoint, TextMark, WindowSize,
 };
 pub use wording::{FOLLOW_STATEMENTS, RATE_QUESTIONS, RatingScale};

@@ -18,9 +18,9 @@ use std::{
 use tempfile::TempDir;
 use wayword_core::{DoubtGrade, Heading, SceneId, ViewpointId};
 use wayword_study::{
-    ConditionKind, ConsentLink, ENGLISH_TEXTS, EndQuestion, EndQuestionKind, FilmPicture, ListenOptions, PageTexts,
+    ConditionKind, ConsentLink, ENGLISH_TEXTS, EndQuestion, EndQuestionKind, FilmPicture, ListenOptions, PageTexts, ParticipantAnswer,
     RecruiterSettings, SiteAddress, SiteSecurity, Study, StudyCondition, StudyDesign, StudyItem, StudyRoute,
-    StudyScene, StudySettings, StudyTask, StudyText, StudyViewpoint, TextMark, preview_study, serve_study,
+    StudyScene, StudySettings, StudyTask, StudyText, StudyViewpoint, TextMark, WindowSize, preview_study, serve_study,
 };
 
 /// Words that no page may have: the conditions, the scene, the route, the goal.
@@ -296,6 +296,59 @@ fn no_page_names_a_condition_a_path_or_a_goal() {
         assert!(pages >= 3);
         assert_eq!(site.study.read_progress().unwrap().rows[0].answered, 1);
     }
+}
+
+#[test]
+fn a_walk_for_practice_says_how_it_went_and_can_be_walked_again() {
+    let site = Site::with(StudyTask::Follow, |study| {
+        let goal = ViewpointId::new("goal-g").unwrap();
+        study.scenes[0].places.get_mut(&goal).unwrap().position[0] = 3.5;
+    });
+    let mut browser = site.participant();
+    let page = browser.get("/");
+    let slot = page.field("slot");
+    assert!(
+        page.is_page("follow") && page.body.contains("<h1 tabindex=\"-1\">Follow the instruction</h1>"),
+        "{page:?}"
+    );
+    // The goal lies behind the one way.
+    assert_eq!(browser.post("/stop", &format!("slot={slot}&seq=0&looks=0")).status, 303);
+    let after = browser.get("/");
+    assert!(
+        after.is_page("follow_after") && after.body.contains("You did not arrive.</b> The instruction ends 4 m"),
+        "{}",
+        after.body
+    );
+    assert_eq!(browser.post("/again", &format!("slot={slot}")).status, 303);
+    let page = browser.get("/");
+    assert!(page.is_page("follow") && page.field("seq") == "0" && page.field("slot") == slot, "{page:?}");
+    assert_eq!(browser.post("/move", &format!("slot={slot}&seq=0&to=0")).status, 303);
+    assert_eq!(browser.post("/stop", &format!("slot={slot}&seq=1&looks=0")).status, 303);
+    assert!(browser.get("/").body.contains("You arrived."));
+    let answer = format!("slot={slot}&window=1400+1000+1+mouse&s0=1&s1=1&s2=1");
+    assert_eq!(browser.post("/answer", &answer).status, 303);
+    // A walk that counts is made once, and nobody is told how it went.
+    let slot = browser.get("/").field("slot");
+    assert_eq!(browser.post("/stop", &format!("slot={slot}&seq=0&looks=0")).status, 303);
+    let after = browser.get("/");
+    assert!(!after.body.contains("arrive") && !after.body.contains("again"), "{}", after.body);
+    assert_eq!(browser.post("/again", &format!("slot={slot}")).status, 409);
+    let answered = site.study.clone().into_data().unwrap().slots;
+    let window = Some(WindowSize { width_px: 1400, height_px: 1000, pixel_ratio: 1, has_touch: false });
+    assert!(
+        answered
+            .iter()
+            .any(|slot| matches!(slot.answer, Some(ParticipantAnswer::Follow { window: kept, .. }) if kept == window)),
+        "{answered:?}"
+    );
+}
+
+#[test]
+fn the_ways_from_a_place_have_names_of_their_own() {
+    let site = Site::new(StudyTask::Follow, |_| {});
+    let page = site.participant().get("/");
+    assert!(page.body.contains("data-slope=") && !page.body.contains("(0 m)"), "{}", page.body);
+    assert!(page.body.contains("Go <span class=\"words\">"), "{}", page.body);
 }
 
 #[test]

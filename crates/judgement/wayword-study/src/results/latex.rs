@@ -103,6 +103,7 @@ fn control_label(kind: ConditionKind) -> &'static str {
         ConditionKind::Run => "",
         ConditionKind::People => "control: people",
         ConditionKind::OtherPath => "control: other path",
+        ConditionKind::Corrupted => "control: corrupted",
     }
 }
 

@@ -9,7 +9,8 @@ use super::{
     walks::WalkScorer,
 };
 use crate::{
-    ConditionKind, PairChoice, Participant, ParticipantAnswer, SlotState, StudyData, StudyTask, wording::RatingScale,
+    ConditionKind, PairChoice, Participant, ParticipantAnswer, SlotState, StudyData, StudyTask, WindowSize,
+    wording::RatingScale,
 };
 use std::collections::BTreeMap;
 
@@ -112,13 +113,14 @@ impl SheetSources<'_> {
         };
         let levels = one.chosen_levels().iter().map(|level| SheetCell::Whole(i64::from(*level)));
         match one.answer {
-            ParticipantAnswer::Follow { looks, .. } => {
+            ParticipantAnswer::Follow { looks, window, .. } => {
                 cells.push(condition(0));
                 cells.extend(walk_figure_cells(one));
                 cells.extend([SheetCell::count(one.slot.moves.len()), SheetCell::Whole(i64::from(*looks))]);
                 cells
                     .push(one.count_presses().map_or(SheetCell::Empty, |presses| SheetCell::Whole(i64::from(presses))));
                 cells.extend(levels);
+                cells.extend(window_cells(*window));
             }
             ParticipantAnswer::Rate { .. } => {
                 cells.push(condition(0));
@@ -365,7 +367,36 @@ fn follow_columns() -> Vec<SheetColumn> {
         sheet_column("presses", "moves and looks", "", "number"),
     ]);
     columns.extend(level_columns(&crate::wording::FOLLOW_STATEMENTS));
+    columns.extend([
+        sheet_column(
+            "window_width",
+            "width of the window, to the nearest 50",
+            "CSS pixels",
+            "number; empty if not measured",
+        ),
+        sheet_column(
+            "window_height",
+            "height of the window, to the nearest 50",
+            "CSS pixels",
+            "number; empty if not measured",
+        ),
+        sheet_column("pixel_ratio", "pixels of the screen for each CSS pixel", "", "1 to 4; empty if not measured"),
+        sheet_column("touch", "whether the screen is used by touch", "", "yes or no; empty if not measured"),
+    ]);
     columns
+}
+
+/// The cells of the window in which a walk was shown.
+fn window_cells(window: Option<WindowSize>) -> [SheetCell; 4] {
+    let number = |of: fn(&WindowSize) -> u32| {
+        window.as_ref().map_or(SheetCell::Empty, |window| SheetCell::Whole(i64::from(of(window))))
+    };
+    [
+        number(|window| window.width_px),
+        number(|window| window.height_px),
+        number(|window| window.pixel_ratio),
+        window.map_or(SheetCell::Empty, |window| SheetCell::yes_or_no(window.has_touch)),
+    ]
 }
 
 fn rate_columns() -> Vec<SheetColumn> {
@@ -412,5 +443,6 @@ pub(super) fn kind_name(kind: ConditionKind) -> &'static str {
         ConditionKind::Run => "run",
         ConditionKind::People => "people",
         ConditionKind::OtherPath => "other-path",
+        ConditionKind::Corrupted => "corrupted",
     }
 }

@@ -58,6 +58,7 @@ pub(super) fn condition_title(condition: &str, kind: ConditionKind) -> String {
         ConditionKind::Run => "",
         ConditionKind::People => " (control: people)",
         ConditionKind::OtherPath => " (control: other path)",
+        ConditionKind::Corrupted => " (control: corrupted)",
     };
     format!("{}{note}", to_table_name(condition))
 }

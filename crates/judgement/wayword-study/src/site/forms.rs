@@ -2,7 +2,7 @@
 
 use crate::{
     store::{MAX_OWN_TEXT_CHARS, ParticipantInput},
-    study::{EndAnswerFault, EndQuestion, PairChoice, StudyTask},
+    study::{EndAnswerFault, EndQuestion, PairChoice, StudyTask, WindowSize},
 };
 use std::collections::BTreeMap;
 
@@ -47,12 +47,19 @@ pub(super) fn read_stop(fields: &FormFields) -> Result<ParticipantInput, &'stati
     Ok(ParticipantInput::Stop { slot: slot_field(fields)?, seq, looks: number_field(fields, "looks").unwrap_or(0) })
 }
 
+/// Reads the wish to walk the practice item again.
+pub(super) fn read_again(fields: &FormFields) -> Result<ParticipantInput, &'static str> {
+    Ok(ParticipantInput::WalkAgain { slot: slot_field(fields)? })
+}
+
 pub(super) fn read_answer(fields: &FormFields, mode: StudyTask) -> Result<ParticipantInput, &'static str> {
     let (slot, pictures) = (slot_field(fields)?, number_field(fields, "pictures"));
     match mode {
-        StudyTask::Follow => {
-            Ok(ParticipantInput::Followed { slot, statements: level_fields(fields, 's').ok_or("every_statement")? })
-        }
+        StudyTask::Follow => Ok(ParticipantInput::Followed {
+            slot,
+            window: fields.get("window").and_then(|window| WindowSize::from_form(window)),
+            statements: level_fields(fields, 's').ok_or("every_statement")?,
+        }),
         StudyTask::Rate => {
             Ok(ParticipantInput::Rated { slot, ratings: level_fields(fields, 'q').ok_or("every_question")?, pictures })
         }

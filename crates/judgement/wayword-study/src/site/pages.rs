@@ -27,6 +27,7 @@ const TEMPLATES: [(&str, &str); 14] = [
     ("pair.html", include_str!("pages/pair.html")),
     ("follow.html", include_str!("pages/follow.html")),
     ("follow_after.html", include_str!("pages/follow_after.html")),
+    ("practice_result.html", include_str!("pages/practice_result.html")),
     ("attention.html", include_str!("pages/attention.html")),
     ("end.html", include_str!("pages/end.html")),
     ("done.html", include_str!("pages/done.html")),
@@ -266,7 +267,9 @@ impl StudyPage {
                 ("pair", context! { film => film(), a, b })
             }
             StudyTask::Follow if held.stopped_ms.is_some() => {
-                ("follow_after", context! { text, statements => scale_contexts(&study.texts, &FOLLOW_STATEMENTS) })
+                let result = if held.is_practice { practice_result(held, route, scene?) } else { Value::UNDEFINED };
+                let statements = scale_contexts(&study.texts, &FOLLOW_STATEMENTS);
+                ("follow_after", context! { text, statements, ..result })
             }
             StudyTask::Follow => {
                 let marked_text = item.texts.first()?;
@@ -332,6 +335,22 @@ fn marked_runs(study_text: &StudyText) -> Value {
     };
     let runs: Vec<Value> = runs.map(run).collect();
     context! { runs, marks => number }
+}
+
+/// Under so many metres from the end a walk has arrived, as in the results.
+const ARRIVED_M: f64 = 3.0;
+
+/// The values for the result of a walk: how far its end is from the end of the route.
+fn practice_result(held: &StoredSlot, route: &StudyRoute, scene: &StudyScene) -> Value {
+    let here = held.moves.last().or(route.viewpoints.first());
+    let way = here
+        .zip(route.viewpoints.last())
+        .and_then(|(here, goal)| scene.to_graph().ok()?.shortest_path(here, goal).ok().flatten());
+    let off_m = way.map(|way| way.length_m);
+    let arrived = off_m.is_some_and(|off_m| off_m < ARRIVED_M);
+    // Rounded away from the border, so that the number does not contradict the word.
+    let round = |off_m: f64| if arrived { off_m.floor() } else { off_m.ceil() } as u32;
+    context! { arrived, arrived_m => ARRIVED_M as u32, off_m => off_m.map(round) }
 }
 
 /// The values for a walker's page: the place, the viewing direction and the ways on.

@@ -81,6 +81,7 @@ pub(super) fn build_router(site: Arc<StudySite>) -> Router {
         .route("/preview", get(begin_preview))
         .route("/move", post(post_move))
         .route("/stop", post(post_stop))
+        .route("/again", post(post_again))
         .route("/answer", post(post_answer))
         .route("/attention", post(post_attention))
         .route("/withdraw", get(show_withdraw_page).post(post_withdraw))
@@ -494,6 +495,10 @@ async fn post_move(State(site): SiteState, request: Request) -> Response {
 
 async fn post_stop(State(site): SiteState, request: Request) -> Response {
     response_or_problem_page(post_input(&site, request, forms::read_stop).await, &site)
+}
+
+async fn post_again(State(site): SiteState, request: Request) -> Response {
+    response_or_problem_page(post_input(&site, request, forms::read_again).await, &site)
 }
 
 async fn post_answer(State(site): SiteState, request: Request) -> Response {

@@ -1,11 +1,21 @@
-//! Describes the ways on from a place, for the buttons of a walker.
+//! Describes the ways on from a place, for the buttons of a walker. The script describes them again whenever the walker turns, by the
+//! same rules: `nameWays` in `assets/script.js`.
 
 use crate::study::{StudyScene, StudyViewpoint};
 use serde::Serialize;
+use std::{cmp::Ordering, collections::BTreeMap};
 use wayword_core::Heading;
 
 /// Slope, radians (20 degrees). A steeper way counts as stairs. A ramp is flatter.
 const MIN_STAIRS_SLOPE_RAD: f64 = 0.35;
+/// Height of the eye above the floor, metres: about that of all platforms.
+const EYE_M: f64 = 1.5;
+/// Two ways in one direction are told apart by their lengths if they differ by less than this, degrees.
+const SAME_DIRECTION_DEG: f64 = 8.0;
+/// How the ways in one direction are told apart from left to right, if they are two, three or more.
+const TWO_SIDES: [&str; 2] = ["the left one", "the right one"];
+const THREE_SIDES: [&str; 3] = ["the left one", "the middle one", "the right one"];
+const ORDINALS: [&str; 8] = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"];
 
 /// A way to a neighbouring viewpoint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -14,44 +24,82 @@ pub(super) struct OnwardWay {
     pub(super) id: String,
     /// Its heading, degrees.
     pub(super) deg: f64,
-    /// Its direction in words, seen from the viewing direction.
+    /// The rise from the eye to the floor at its end, metres for each metre along the floor; negative below the eye.
+    pub(super) slope: f64,
+    /// `up` or `down` on stairs; otherwise empty.
+    pub(super) stairs: &'static str,
+    /// Its direction in words, seen from the viewing direction. No two ways of a place have the same.
     pub(super) words: String,
+    /// Its length in whole metres, at least 1.
+    pub(super) metres: u32,
     /// Its length, metres.
-    pub(super) metres: f64,
+    pub(super) length_m: f64,
 }
 
 /// The ways on from a place for a walker who looks along `facing`, from left to right.
 pub(super) fn ways_from_place(scene: &StudyScene, place: &StudyViewpoint, facing: Heading) -> Vec<OnwardWay> {
     let way = |(index, neighbour): (usize, &wayword_core::ViewpointId)| {
-        let there = scene.places.get(neighbour)?.eye_position();
-        let heading = Heading::towards(place.eye_position(), there).unwrap_or(facing);
-        let flat_m = libm::hypot(there.x - place.eye_position().x, there.y - place.eye_position().y);
-        let slope_rad = libm::atan2(there.z - place.eye_position().z, flat_m);
-        let turn_deg = facing.turn_to(heading).to_degrees();
-        let stairs = match slope_rad {
-            up if up > MIN_STAIRS_SLOPE_RAD => ", up",
-            down if down < -MIN_STAIRS_SLOPE_RAD => ", down",
+        let off = scene.places.get(neighbour)?.eye_position() - place.eye_position();
+        let heading = Heading::towards(place.eye_position(), place.eye_position() + off).unwrap_or(facing);
+        let flat_m = libm::hypot(off.x, off.y);
+        let stairs = match libm::atan2(off.z, flat_m) {
+            up if up > MIN_STAIRS_SLOPE_RAD => "up",
+            down if down < -MIN_STAIRS_SLOPE_RAD => "down",
             _ => "",
         };
-        let words = format!("{}{stairs}", describe_turn(turn_deg));
-        let metres = place.eye_position().distance(there);
-        Some((
-            turn_deg,
-            OnwardWay {
-                id: index.to_string(),
-                deg: round_to_tenth(heading.deg()),
-                words,
-                metres: round_to_tenth(metres),
-            },
-        ))
+        let length_m = off.length();
+        let way = OnwardWay {
+            id: index.to_string(),
+            deg: round_to_tenth(heading.deg()),
+            slope: ((off.z - EYE_M) / flat_m.max(0.1) * 1000.0).round() / 1000.0,
+            stairs,
+            words: String::new(),
+            metres: (length_m.round() as u32).max(1),
+            length_m: round_to_tenth(length_m),
+        };
+        Some((facing.turn_to(heading).to_degrees(), way))
     };
     let mut ways: Vec<(f64, OnwardWay)> = place.neighbours.iter().enumerate().filter_map(way).collect();
     ways.sort_by(|a, b| a.0.total_cmp(&b.0));
-    ways.into_iter().map(|(_, way)| way).collect()
+    let turns_deg: Vec<f64> = ways.iter().map(|(turn_deg, _)| *turn_deg).collect();
+    let mut ways: Vec<OnwardWay> = ways.into_iter().map(|(_, way)| way).collect();
+    name_ways(&mut ways, &turns_deg);
+    ways
 }
 
 fn round_to_tenth(number: f64) -> f64 {
     (number * 10.0).round() / 10.0
+}
+
+/// Gives each way its words. `turns_deg` are the turns to the ways, from left to right.
+fn name_ways(ways: &mut [OnwardWay], turns_deg: &[f64]) {
+    let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    for (at, (way, turn_deg)) in ways.iter().zip(turns_deg).enumerate() {
+        let stairs = if way.stairs.is_empty() { String::new() } else { format!(", {}", way.stairs) };
+        groups.entry(format!("{}{stairs}", describe_turn(*turn_deg))).or_default().push(at);
+    }
+    for (words, group) in groups {
+        let by_distance = match group[..] {
+            [a, b] if (turns_deg[a] - turns_deg[b]).abs() < SAME_DIRECTION_DEG => {
+                Some(ways[a].length_m.total_cmp(&ways[b].length_m)).filter(|order| *order != Ordering::Equal)
+            }
+            _ => None,
+        };
+        for (rank, at) in group.iter().enumerate() {
+            let which = match (group.len(), by_distance) {
+                (1, _) => String::new(),
+                (_, Some(order)) if (order == Ordering::Less) == (rank == 0) => ", the near one".to_owned(),
+                (_, Some(_)) => ", the far one".to_owned(),
+                (2, None) => format!(", {}", TWO_SIDES[rank]),
+                (3, None) => format!(", {}", THREE_SIDES[rank]),
+                _ => match ORDINALS.get(rank) {
+                    Some(ordinal) => format!(", {ordinal} from the left"),
+                    None => format!(", number {} from the left", rank + 1),
+                },
+            };
+            ways[*at].words = format!("{words}{which}");
+        }
+    }
 }
 
 /// A turn in words. It uses the bounds of the turn words in `core::motion`, and finer ones, because two neighbouring doors need
@@ -69,28 +117,69 @@ fn describe_turn(turn_deg: f64) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeMap;
+    use proptest::prelude::*;
+    use std::collections::{BTreeMap, BTreeSet};
     use wayword_core::{SceneId, ViewpointId};
+
+    /// The ways from the origin to these positions, for a walker who faces north.
+    fn ways_to(positions: &[[f64; 3]]) -> Vec<OnwardWay> {
+        let id = |at: usize| ViewpointId::new(format!("v{at}")).unwrap();
+        let place = |position: [f64; 3], neighbours: Vec<ViewpointId>| StudyViewpoint {
+            position,
+            level: None,
+            neighbours,
+            panorama: String::new(),
+        };
+        let here = place([0.0; 3], (0..positions.len()).map(id).collect());
+        let places: BTreeMap<_, _> =
+            positions.iter().enumerate().map(|(at, position)| (id(at), place(*position, Vec::new()))).collect();
+        let scene = StudyScene { scene: SceneId::new("s").unwrap(), places };
+        ways_from_place(&scene, &here, Heading::NORTH)
+    }
+
+    fn words(positions: &[[f64; 3]]) -> Vec<(String, String)> {
+        ways_to(positions).into_iter().map(|way| (way.id, way.words)).collect()
+    }
+
+    fn told(expected: &[(&str, &str)]) -> Vec<(String, String)> {
+        expected.iter().map(|(id, words)| ((*id).to_owned(), (*words).to_owned())).collect()
+    }
 
     #[test]
     fn ways_go_from_left_to_right_and_name_stairs() {
-        let id = |name: &str| ViewpointId::new(name).unwrap();
-        let place = |position: [f64; 3], neighbours: &[&str]| StudyViewpoint {
-            position,
-            level: None,
-            neighbours: neighbours.iter().map(|name| id(name)).collect(),
-            panorama: String::new(),
-        };
-        let places = BTreeMap::from([
-            (id("here"), place([0.0; 3], &["east", "west", "stairs"])),
-            (id("east"), place([2.0, 0.0, 0.0], &[])),
-            (id("west"), place([-2.0, 0.0, 0.0], &[])),
-            (id("stairs"), place([0.0, 2.0, 1.5], &[])),
-        ]);
-        let scene = StudyScene { scene: SceneId::new("s").unwrap(), places };
-        let found = ways_from_place(&scene, &scene.places[&id("here")], Heading::NORTH);
-        let told: Vec<(&str, &str)> = found.iter().map(|way| (way.id.as_str(), way.words.as_str())).collect();
-        assert_eq!(told, [("1", "to the left"), ("2", "ahead, up"), ("0", "to the right")]);
-        assert_eq!(found[1].metres, 2.5);
+        let positions = [[2.0, 0.0, 0.0], [-2.0, 0.0, 0.0], [0.0, 2.0, 1.5]];
+        assert_eq!(words(&positions), told(&[("1", "to the left"), ("2", "ahead, up"), ("0", "to the right")]));
+        let stairs = &ways_to(&positions)[1];
+        assert_eq!((stairs.metres, stairs.length_m, stairs.slope), (3, 2.5, 0.0), "its floor is as high as the eye");
+    }
+
+    #[test]
+    fn ways_in_one_direction_are_told_apart() {
+        let two = [[0.3, 2.0, 0.0], [-0.3, 2.0, 0.0]];
+        assert_eq!(words(&two), told(&[("1", "ahead, the left one"), ("0", "ahead, the right one")]));
+        let behind_each_other = [[0.0, 3.0, 0.0], [0.1, 1.5, 0.0]];
+        assert_eq!(words(&behind_each_other), told(&[("0", "ahead, the far one"), ("1", "ahead, the near one")]));
+        let four = [[1.0, 1.2, 0.0], [1.0, 0.9, 0.0], [1.0, 2.0, 0.0], [1.0, 1.5, 0.0]];
+        let ordinals =
+            ["first", "second", "third", "fourth"].map(|one| format!("slightly to the right, {one} from the left"));
+        assert_eq!(words(&four).into_iter().map(|(_, words)| words).collect::<Vec<_>>(), ordinals);
+    }
+
+    #[test]
+    fn a_short_way_is_a_metre_and_its_end_lies_at_the_feet() {
+        let way = &ways_to(&[[0.0, 0.3, 0.0]])[0];
+        assert_eq!((way.metres, way.slope), (1, -5.0));
+    }
+
+    proptest! {
+        #[test]
+        fn no_two_ways_have_one_name(
+            positions in prop::collection::vec(prop::array::uniform3(-3.0..3.0f64), 1..16),
+        ) {
+            let ways = ways_to(&positions);
+            let names: BTreeSet<&str> = ways.iter().map(|way| way.words.as_str()).collect();
+            prop_assert_eq!(names.len(), positions.len());
+            prop_assert!(ways.iter().all(|way| way.metres >= 1 && way.slope.is_finite()));
+        }
     }
 }

@@ -2,7 +2,7 @@
 //! again.
 
 use super::{StudyTransaction, stage::StoredSlot};
-use crate::study::{EndAnswer, PairChoice, ParticipantAnswer, ParticipantStatus, StudyError, StudyTask};
+use crate::study::{EndAnswer, PairChoice, ParticipantAnswer, ParticipantStatus, StudyError, StudyTask, WindowSize};
 use rusqlite::params;
 
 /// Most steps of a walk; a further one is refused. Paths of the known datasets have fewer than 20.
@@ -23,8 +23,10 @@ pub(crate) enum ParticipantInput {
     Move { slot: String, seq: usize, to: usize },
     /// The end of a walk, after `seq` steps and `looks` turns to look around.
     Stop { slot: String, seq: usize, looks: u32 },
-    /// The levels of the statements after a walk, 1 to 5.
-    Followed { slot: String, statements: [u8; 3] },
+    /// The wish to walk a practice item again from its start.
+    WalkAgain { slot: String },
+    /// The levels of the statements after a walk, 1 to 5, and the window in which the page was shown.
+    Followed { slot: String, statements: [u8; 3], window: Option<WindowSize> },
     /// The levels of the questions about a text, 1 to 5, after seeing `pictures` pictures of the film.
     Rated { slot: String, ratings: [u8; 4], pictures: Option<u32> },
     /// Which text is better, after seeing `pictures` pictures of the film.
@@ -80,11 +82,13 @@ impl StudyTransaction<'_> {
                 self.store_viewing(held, pictures)?;
                 self.store_answer(person, held, StudyTask::Pair, false, &ParticipantAnswer::Pair { choice })
             }),
-            ParticipantInput::Followed { slot, statements } => self.with_slot(person, &slot, |held| {
+            ParticipantInput::WalkAgain { slot } => self.with_slot(person, &slot, |held| self.restart_practice(held)),
+            ParticipantInput::Followed { slot, statements, window } => self.with_slot(person, &slot, |held| {
                 let answer = ParticipantAnswer::Follow {
                     statements,
                     looks: held.looks,
                     stopped_ms: held.stopped_ms.unwrap_or(self.now_ms),
+                    window,
                 };
                 self.store_answer(person, held, StudyTask::Follow, held.stopped_ms.is_none(), &answer)
             }),
@@ -202,6 +206,18 @@ impl StudyTransaction<'_> {
             }
             let update = "UPDATE slot SET stopped_ms = ?2, looks = ?3 WHERE id = ?1";
             self.db.execute(update, params![held.id, self.now_ms, looks.min(MAX_STORED_LOOKS)])?;
+        }
+        Ok(Ok(()))
+    }
+
+    /// Forgets the walk of a practice item that has ended, so that it begins again. A walk that counts is made once.
+    fn restart_practice(&self, held: &StoredSlot) -> InputResult {
+        if !held.is_practice {
+            return Ok(Err(InputRefusal::OutOfTurn));
+        }
+        if held.stopped_ms.is_some() {
+            self.db.execute("DELETE FROM move WHERE slot = ?1", [held.id])?;
+            self.db.execute("UPDATE slot SET stopped_ms = NULL, looks = 0 WHERE id = ?1", [held.id])?;
         }
         Ok(Ok(()))
     }

@@ -147,7 +147,7 @@ impl Desk {
             StudyTask::Follow => {
                 self.give(person, ParticipantInput::Stop { slot: slot.clone(), seq: held.moves.len(), looks: 2 })
                     .unwrap();
-                ParticipantInput::Followed { slot, statements: [1, 2, 3] }
+                ParticipantInput::Followed { slot, statements: [1, 2, 3], window: None }
             }
         };
         self.give(person, given).unwrap();
@@ -312,7 +312,7 @@ fn a_walk_goes_by_the_graph_and_each_step_counts_once() {
     assert_eq!(desk.held(person).moves, ["b", "c"].map(viewpoint));
     assert_eq!(desk.ask(|book| book.panorama_file(person, &slot, 2)).as_deref(), Some("4.jpg"));
     assert_eq!(desk.ask(|book| book.panorama_file(person, &slot, 3)), None, "no place is seen before one is there");
-    let followed = || ParticipantInput::Followed { slot: slot.clone(), statements: [3; 3] };
+    let followed = || ParticipantInput::Followed { slot: slot.clone(), statements: [3; 3], window: None };
     assert_eq!(desk.give(person, followed()), Err(InputRefusal::OutOfTurn), "one stops first");
     desk.give(person, ParticipantInput::Stop { slot: slot.clone(), seq: 2, looks: 7 }).unwrap();
     assert_eq!(desk.give(person, step(2, 0)), Err(InputRefusal::OutOfTurn), "one does not go on after that");

@@ -1,6 +1,6 @@
 //! The answers of a study as data, the input of [`crate::compute_results()`].
 
-use super::{EndAnswer, PageTexts, StudyDesign, StudyItem, StudyRoute, StudyScene, StudySettings};
+use super::{EndAnswer, PageTexts, StudyDesign, StudyItem, StudyRoute, StudyScene, StudySettings, WindowSize};
 use serde::{Deserialize, Serialize};
 use wayword_core::ViewpointId;
 
@@ -163,6 +163,9 @@ pub enum ParticipantAnswer {
         looks: u32,
         /// Unix time of stopping, milliseconds.
         stopped_ms: i64,
+        /// The window in which the page was shown; `None` where the page could not measure it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        window: Option<WindowSize>,
     },
     /// The rating of a text.
     Rate {

@@ -11,6 +11,7 @@ mod page_texts;
 mod plan;
 mod serve_lock;
 mod settings;
+mod window;
 
 pub use consent_page::ConsentLink;
 pub use data::{
@@ -29,3 +30,4 @@ pub use page_texts::{ENGLISH_TEXTS, PageTexts};
 pub use plan::{ConditionKind, StudyCondition, StudyDesign, StudyTask};
 pub(crate) use serve_lock::ServeLock;
 pub use settings::{CompletionCodes, ComprehensionQuestion, RecruiterSettings, StudySettings};
+pub use window::WindowSize;

@@ -42,6 +42,9 @@ pub enum ConditionKind {
     People,
     /// Another path in the same scene. This control shows how well a wrong text does.
     OtherPath,
+    /// Another condition's texts with their sides turned and their landmarks exchanged. This control too shows how well a wrong text
+    /// does.
+    Corrupted,
 }
 
 /// One of the sets of texts that the study compares.

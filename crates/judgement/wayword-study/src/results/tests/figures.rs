@@ -94,7 +94,12 @@ fn walks_are_scored_from_the_start_to_the_goal() {
             &mut data,
             &person,
             item,
-            Some(ParticipantAnswer::Follow { statements: [4, 5, 1], looks, stopped_ms: START_MS + 100_000 }),
+            Some(ParticipantAnswer::Follow {
+                statements: [4, 5, 1],
+                looks,
+                stopped_ms: START_MS + 100_000,
+                window: None,
+            }),
         );
     }
     let results = of(&data);

@@ -197,6 +197,7 @@ fn answer(data: &StudyData, person: &str, item: u32) -> ParticipantAnswer {
             looks: drawn(&["looks", person, &name], 9) as u32,
             stopped_ms: data.participants.iter().find(|one| one.id == person).map_or(0, |one| one.consented_ms)
                 + 300_000,
+            window: None,
         },
         StudyTask::Rate => ParticipantAnswer::Rate { ratings: ["0", "1", "2", "3"].map(of) },
         StudyTask::Pair => {

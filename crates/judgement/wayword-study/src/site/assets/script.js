@@ -206,25 +206,69 @@ function film(section) {
   go(0);
 }
 
-// ---- Walk: the picture is a cylinder, its middle is heading 0. It is the ground of the view and repeats, so that one can turn around and around.
+// ---- Walk: the picture is a cylinder, its middle is heading 0. It is the ground of the view and repeats, so that one can turn around
+// and around. Heights on it are metres for each metre along the floor: the horizon is 0, and the floor 2 m away is -0.75.
+const turnTo = (deg) => ((deg % 360) + 540) % 360 - 180;  // into -180..180
+const SHOWN_HALF = 0.6;  // of these heights, how much the view shows above and below its middle
+let lookAt = -0.2;  // the height in the middle of the view: a little down, to where one goes; it stays from place to place
+
+// The direction of a way in words, as in ways.rs.
+function describeTurn(deg) {
+  const turn = Math.abs(deg);
+  const side = deg < 0 ? 'left' : 'right';
+  if (turn < 15) return 'ahead';
+  if (turn > 155) return 'back';
+  if (turn < 60) return `slightly to the ${side}`;
+  return turn < 120 ? `to the ${side}` : `back, to the ${side}`;
+}
+
+// Gives the ways their words for a walker who looks along a heading, and their order from left to right. No two have the same words.
+function nameWays(ways, heading) {
+  const groups = new Map();
+  for (const one of ways) one.turn = turnTo(one.deg - heading);
+  ways.sort((a, b) => a.turn - b.turn);
+  for (const one of ways) {
+    const words = describeTurn(one.turn) + (one.stairs ? `, ${one.stairs}` : '');
+    groups.set(words, [...(groups.get(words) || []), one]);
+  }
+  const ordinals = ['first', 'second', 'third', 'fourth', 'fifth', 'sixth', 'seventh', 'eighth'];
+  for (const [words, group] of groups) {
+    const [a, b] = group;
+    const inLine = group.length === 2 && Math.abs(a.turn - b.turn) < 8 && a.length !== b.length;
+    group.forEach((one, rank) => {
+      let which = '';
+      if (inLine) which = one.length === Math.min(a.length, b.length) ? ', the near one' : ', the far one';
+      else if (group.length === 2) which = `, the ${['left', 'right'][rank]} one`;
+      else if (group.length === 3) which = `, the ${['left', 'middle', 'right'][rank]} one`;
+      else if (group.length > 3) which = ordinals[rank] ? `, ${ordinals[rank]} from the left` : `, number ${rank + 1} from the left`;
+      one.words = words + which;
+    });
+  }
+}
+
 function walk(section) {
   const img = $('.around', section);
   const view = $('.view', section);
+  const list = $('.ways ul', section);
   const looksKey = 'looks ' + who() + section.dataset.slot;
   const looksField = $('[name=looks]');
   let heading = Number(section.dataset.facing);
   let looks = Number(tab.get(looksKey));
-  const turnTo = (deg) => ((deg % 360) + 540) % 360 - 180;  // into -180..180
 
   const ways = all('.ways [data-deg]', section).map((way) => {
     const go = document.createElement('button');
-    const level = /\b(up|down)\b/.exec(way.dataset.words);
     go.type = 'button';
     go.tabIndex = -1;  // the same way is a button in the list below, for keys and screen readers
     go.className = 'go';
-    go.textContent = `Go ${level ? level[0] + ' ' : ''}${way.dataset.metres} m`;
+    go.textContent = `${way.dataset.stairs ? way.dataset.stairs + ' ' : ''}${way.dataset.metres} m`;
     go.addEventListener('click', () => way.click());
-    return { deg: Number(way.dataset.deg), way, go };
+    const one = {
+      deg: Number(way.dataset.deg), slope: Number(way.dataset.slope), stairs: way.dataset.stairs,
+      length: Number(way.dataset.length), way, go,
+    };
+    way.addEventListener('focus', draw);
+    way.addEventListener('blur', draw);
+    return one;
   });
   const marks = document.createElement('div');
   marks.setAttribute('aria-hidden', 'true');
@@ -234,22 +278,47 @@ function walk(section) {
   // The way that arrow up takes: the nearest to the middle, if it is about in front.
   const ahead = () => ways.filter((one) => Math.abs(turnTo(one.deg - heading)) < 60)
     .sort((a, b) => Math.abs(turnTo(a.deg - heading)) - Math.abs(turnTo(b.deg - heading)))[0];
-  const perDeg = () => view.clientHeight * (img.naturalWidth / img.naturalHeight || 4) / 360;  // pixels
+  const half = () => Math.PI * (img.naturalHeight / img.naturalWidth || 0.17);  // of the whole picture, in heights
+  const shown = () => Math.min(half(), SHOWN_HALF);
+  const perRad = () => view.clientHeight / (2 * shown());  // pixels
+  const perDeg = () => perRad() * Math.PI / 180;
+  const middle = () => Math.max(shown() - half(), Math.min(half() - shown(), lookAt));
 
   function draw() {
-    const middle = view.clientWidth / 2;
-    const next = ahead();
-    const taken = [];
-    view.style.backgroundPositionX = `${middle - (heading + 180) * perDeg()}px`;
-    for (const one of ways) {
-      const x = middle + turnTo(one.deg - heading) * perDeg();
-      const half = one.go.offsetWidth / 2;
-      // Two ways in about one direction stand above each other.
-      const row = taken.filter((other) => Math.abs(other.x - x) < other.half + half + 4).length;
-      taken.push({ x, half });
-      one.go.style.transform = `translate(${x - half}px, ${view.clientHeight * 0.68 - row * 52}px)`;
+    const across = view.clientWidth / 2;
+    const down = view.clientHeight / 2;
+    const focused = ways.find((one) => one.way === document.activeElement);
+    const next = focused || ahead();
+    view.style.backgroundSize = `auto ${2 * half() * perRad()}px`;
+    view.style.backgroundPosition = `${across - (heading + 180) * perDeg()}px ${down - (half() - middle()) * perRad()}px`;
+    const placed = [];
+    // The nearest first: they keep their places, and what would cover them moves up, as if it were farther away.
+    for (const one of [...ways].sort((a, b) => a.slope - b.slope)) {
+      const [width, height] = [one.go.offsetWidth, one.go.offsetHeight];
+      const x = across + turnTo(one.deg - heading) * perDeg();
+      let y = down - (one.slope - middle()) * perRad();
+      y = Math.max(height / 2 + 4, Math.min(view.clientHeight - height / 2 - 4, y));
+      for (const other of placed) {
+        if (Math.abs(other.x - x) < (other.width + width) / 2 && Math.abs(other.y - y) < (other.height + height) / 2 + 2) {
+          y = other.y - (other.height + height) / 2 - 2;
+        }
+      }
+      placed.push({ x, y, width, height });
+      placed.sort((a, b) => b.y - a.y);
+      one.go.style.transform = `translate(${x - width / 2}px, ${y - height / 2}px)`;
       one.go.classList.toggle('next', one === next);
     }
+  }
+  // The names and the order of the list follow where one looks.
+  function rename() {
+    const focused = document.activeElement;
+    nameWays(ways, heading);
+    for (const one of ways) {
+      $('.words', one.way).textContent = one.words;
+      one.way.dataset.words = one.words;
+      list.append(one.way.parentElement);
+    }
+    if (list.contains(focused)) focused.focus({ preventScroll: true });
   }
   function looked() {
     looks += 1;
@@ -266,33 +335,48 @@ function walk(section) {
       if (turning !== to || !view.isConnected) return;
       const part = still.matches ? 1 : Math.min(1, Math.max(0, (now - began) / 180));
       heading = from + (to - from) * part;
-      if (part === 1) turning = null; else requestAnimationFrame(step);
+      if (part === 1) { turning = null; rename(); } else requestAnimationFrame(step);
       draw();
     };
     turning = to;
     step(began);
     const next = ways.find((one) => Math.abs(turnTo(one.deg - to)) < 20);
-    say(`Turned ${by < 0 ? 'left' : 'right'}.${next ? ` In front of you now: ${next.way.textContent}` : ''}`);
+    say(`Turned ${by < 0 ? 'left' : 'right'}.${next ? ` In front of you now: a way of ${next.way.dataset.metres} m.` : ''}`);
+  }
+  function look(up) {
+    if (half() <= shown()) { say('The picture goes no farther up or down.'); return; }
+    looked();
+    const before = middle();
+    lookAt = before + up * 0.25;
+    lookAt = middle();
+    say(lookAt === before ? 'The picture goes no farther.' : `Looking farther ${up > 0 ? 'up' : 'down'}.`);
+    draw();
   }
 
   let held = null;
   view.addEventListener('pointerdown', (event) => {
     if (event.button || event.target.closest('.go')) return;
-    held = { x: event.clientX, heading };
+    held = { x: event.clientX, y: event.clientY, heading, height: middle() };
     turning = null;
     view.setPointerCapture(event.pointerId);
   });
   view.addEventListener('pointermove', (event) => {
     if (!held) return;
     heading = held.heading - (event.clientX - held.x) / perDeg();
+    lookAt = held.height + (event.clientY - held.y) / perRad();
     draw();
   });
-  const drop = () => { if (held && Math.abs(heading - held.heading) > 2) looked(); held = null; };
+  const drop = () => {
+    if (held && (Math.abs(heading - held.heading) > 2 || Math.abs(middle() - held.height) > 0.05)) { looked(); rename(); }
+    lookAt = middle();
+    held = null;
+  };
   for (const end of ['pointerup', 'pointercancel']) view.addEventListener(end, drop);
+  for (const button of all('[data-look]', section)) button.addEventListener('click', () => look(Number(button.dataset.look)));
   for (const button of all('[data-turn]', section)) button.addEventListener('click', () => turn(Number(button.dataset.turn)));
   section.addEventListener('keydown', (event) => {
     if (event.altKey || event.ctrlKey || event.metaKey || event.shiftKey) return;  // alt and left is "back"
-    const act = { ArrowLeft: () => turn(-30), ArrowRight: () => turn(30), ArrowUp: () => {
+    const act = { ArrowLeft: () => turn(-30), ArrowRight: () => turn(30), PageUp: () => look(1), PageDown: () => look(-1), ArrowUp: () => {
       if (event.repeat) return;
       if (ahead()) ahead().way.click(); else say('No way in front of you. Turn left or right.');
     } }[event.key];
@@ -302,7 +386,12 @@ function walk(section) {
   looksField.value = looks;
   for (const one of all('.view, .turns, #keys', section)) one.hidden = false;
   $('.strip', section).hidden = $('.strip-note', section).hidden = true;
-  const loaded = () => { view.style.backgroundImage = `url("${img.src}")`; draw(); };
+  $('.ways-note', section).textContent = 'The directions follow where you look.';
+  const loaded = () => {
+    view.style.backgroundImage = `url("${img.src}")`;
+    for (const button of all('[data-look]', section)) button.hidden = half() <= shown();
+    draw();
+  };
   img.addEventListener('load', loaded);
   insist(img);
   if (img.complete && img.naturalWidth) loaded();
@@ -324,6 +413,9 @@ function start() {
   document.documentElement.style.scrollPaddingTop = '';
   all('.film').forEach(film);
   all('.walk').forEach(walk);
+  // Coarse: the server keeps it to the nearest 50 pixels.
+  const pointer = matchMedia('(pointer: coarse)').matches ? 'touch' : 'mouse';
+  for (const field of all('[name=window]')) field.value = `${innerWidth} ${innerHeight} ${devicePixelRatio} ${pointer}`;
   redraft();
 }
 start();
