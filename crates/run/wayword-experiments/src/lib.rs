@@ -10,7 +10,8 @@
 //! - `similarity/metrics.rs`, `pictures.rs`: `--metrics` and `--clip`; [`by_pictures`]: the pictures and texts that a CLIP scores.
 //!   [`encoder`]: models that compare texts.
 //! - `perceive/detector.rs`: how a detector is measured.
-//! - `study/choose_paths.rs`, `new_study.rs`, `pictures.rs`, `marks.rs`: the paths, texts, pictures and marked words of a study.
+//! - `study/candidates.rs`, `choose_paths.rs`, `corrupted.rs`, `marks.rs`: the paths, texts and marked words of a study; `pictures.rs`,
+//!   `ground_survey.rs`: its pictures, and how well its graphs stand for the ground.
 
 pub mod by_pictures;
 pub mod compare;

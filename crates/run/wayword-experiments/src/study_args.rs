@@ -68,7 +68,8 @@ pub struct StudyNew {
     /// A set of texts: NAME=RUN#STYLE or NAME=FILE. Give the flag several times to compare sets.
     #[arg(long, value_name = "NAME=SET", required = true)]
     pub run: Vec<NamedSet>,
-    /// Controls: original (the texts of --episodes) and other-path (a text of another path in the same scene: what a wrong text reaches).
+    /// Controls: original (the texts of --episodes), other-path (a text of another path in the same scene) and corrupted (the text itself,
+    /// with its sides turned and its landmarks exchanged). The last two show what a wrong text reaches; corrupted needs no second path.
     #[arg(long, value_name = "CONTROLS", value_delimiter = ',')]
     pub include: Vec<StudyControl>,
     /// Mark the words to doubt in the texts of this set or control, with the alternatives, for those who walk by them.
@@ -81,7 +82,7 @@ pub struct StudyNew {
     /// The platform of the paths.
     #[command(flatten)]
     pub platform: AskedPlatform,
-    /// What people do: follow (walk by the text), rate (answer four questions about it) or pair (choose between two).
+    /// What people do: follow (follow the text as an instruction), rate (answer four questions about it) or pair (choose between two).
     #[arg(long, value_name = "MODE")]
     pub mode: StudyMode,
     /// How many paths. Each has one text for every condition; one more path is for practice.
@@ -119,12 +120,14 @@ pub enum StudyControl {
     People,
     /// Those of other paths.
     OtherPath,
+    /// Those of the first run, or of people, with their sides turned and their landmarks exchanged.
+    Corrupted,
 }
 
 /// What people do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum StudyMode {
-    /// Walk by the text.
+    /// Follow it as an instruction.
     Follow,
     /// Answer questions about it.
     Rate,

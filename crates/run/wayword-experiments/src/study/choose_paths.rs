@@ -1,28 +1,31 @@
 //! Chooses the paths of a study, with one text for each condition.
 
+use super::{
+    candidates::{
+        CandidatePath, candidates_file, check_texts, keep_walkable, list_paths, no_text_error, read_candidates,
+        read_run_texts,
+    },
+    corrupted::corrupt_text,
+};
 use crate::{
     demands::{PlatformDemands, SAME_GOAL_M},
-    episodes,
-    similarity::args::TextPairing,
     study_args::{StudyControl, StudyNew},
-    text_sets,
 };
 use rand::{Rng as _, seq::SliceRandom as _};
 use std::{
     collections::{BTreeMap, BTreeSet},
-    path::PathBuf,
     sync::Arc,
 };
 use wayword_core::{Heading, Path, Platform, SceneId, ViewpointId, seeded_rng};
-use wayword_formats::{DatasetFormat, detect_format, jsonl};
 use wayword_metrics::SceneDistances;
 use wayword_navigation::swap::{SwapCandidate, other_path};
-use wayword_run::{count::count_phrase, episode_paths::path_for_episode, error::CommandError, output::CommandOutput};
+use wayword_run::{count::count_phrase, error::CommandError, output::CommandOutput};
 use wayword_study::{ConditionKind, StudyCondition, StudyTask, StudyText};
 
-/// The names of the two control conditions: texts that people wrote, and texts of other paths.
+/// The names of the control conditions: texts that people wrote, texts of other paths, and corrupted texts.
 const PEOPLE_CONDITION: &str = "original";
 const OTHER_PATH_CONDITION: &str = "other-path";
+const CORRUPTED_CONDITION: &str = "corrupted";
 
 /// A path with one text for each condition, in the order of the conditions.
 #[derive(Debug)]
@@ -32,15 +35,6 @@ pub(super) struct StudyWalk {
     pub(super) viewpoints: Vec<ViewpointId>,
     pub(super) start_heading: Heading,
     pub(super) condition_texts: Vec<StudyText>,
-}
-
-/// A path that may become part of the study. It has no texts of the conditions yet.
-struct CandidatePath {
-    id: String,
-    name: String,
-    path: Path,
-    viewpoints: Vec<ViewpointId>,
-    people: Vec<String>,
 }
 
 /// The conditions of a study: one for each `--run` and each control.
@@ -63,9 +57,13 @@ pub(super) fn study_conditions(args: &StudyNew) -> Result<Vec<StudyCondition>, C
         };
         all.push(condition(PEOPLE_CONDITION, ConditionKind::People, file.display().to_string()));
     }
+    // Wrong texts are made from the best ones.
+    let of = if args.include.contains(&StudyControl::People) { PEOPLE_CONDITION } else { &args.run[0].name };
     if args.include.contains(&StudyControl::OtherPath) {
-        let of = if args.include.contains(&StudyControl::People) { PEOPLE_CONDITION } else { &args.run[0].name };
         all.push(condition(OTHER_PATH_CONDITION, ConditionKind::OtherPath, of.to_owned()));
+    }
+    if args.include.contains(&StudyControl::Corrupted) {
+        all.push(condition(CORRUPTED_CONDITION, ConditionKind::Corrupted, of.to_owned()));
     }
     check_doubts(args, &all)?;
     let names: BTreeSet<&str> = all.iter().map(|condition| condition.name.as_str()).collect();
@@ -112,6 +110,10 @@ pub(super) fn choose_walks(
     output: &CommandOutput,
 ) -> Result<Vec<StudyWalk>, CommandError> {
     let demands = PlatformDemands::new(platform);
+    let sets = read_run_texts(conditions)?;
+    let listed = list_paths(&candidates_file(args))?;
+    check_texts(&listed, conditions, &sets)?;
+    output.print_progress_line(format_args!("reading {}", count_phrase(listed.len(), "path")));
     let mut candidates = read_candidates(args, mode, platform)?;
     if mode == StudyTask::Follow {
         let before = candidates.len();
@@ -123,7 +125,6 @@ pub(super) fn choose_walks(
             ));
         }
     }
-    let sets = read_run_texts(conditions)?;
     let mut rng = seeded_rng(args.seed, &["study", "texts"]);
     // If an item has several texts of a condition, one is drawn.
     let mut texts: Vec<BTreeMap<&str, String>> = Vec::new();
@@ -135,12 +136,18 @@ pub(super) fn choose_walks(
             let found = match condition.kind {
                 ConditionKind::Run => sets.get(condition.name.as_str()).and_then(|set| set.get(&item.id)),
                 ConditionKind::People => Some(&item.people),
-                ConditionKind::OtherPath => None,
+                ConditionKind::OtherPath | ConditionKind::Corrupted => None,
             };
             if let Some(found) = found.filter(|found| !found.is_empty()) {
                 let draw = || found[rng.random_range(0..found.len())].clone();
                 let text = of_source.entry(condition.source.as_str()).or_insert_with(draw).clone();
                 of_item.insert(condition.name.as_str(), text);
+            }
+        }
+        for condition in conditions.iter().filter(|condition| condition.kind == ConditionKind::Corrupted) {
+            let source = of_item.get(condition.source.as_str());
+            if let Some(corrupted) = source.and_then(|text| corrupt_text(text, args.seed, &item.id)) {
+                of_item.insert(condition.name.as_str(), corrupted);
             }
         }
         texts.push(of_item);
@@ -174,10 +181,7 @@ pub(super) fn choose_walks(
     let mut seen = BTreeSet::new();
     order.retain(|at| chosen_texts.contains_key(at) && seen.insert(candidates[*at].name.clone()));
     if order.is_empty() {
-        let problem = format!("none of {} has a text of every condition", count_phrase(candidates.len(), "path"));
-        let hint =
-            "items are matched by id: give runs of the same paths; other-path needs a second path in the same scene";
-        return Err(CommandError::usage(problem, hint));
+        return Err(no_text_error(candidates.len(), conditions));
     }
     let mut candidates: Vec<Option<CandidatePath>> = candidates.into_iter().map(Some).collect();
     let walk = |at: usize| {
@@ -186,87 +190,6 @@ pub(super) fn choose_walks(
         Some(StudyWalk { name, path, viewpoints, start_heading, condition_texts: chosen_texts.remove(&at)? })
     };
     Ok(order.into_iter().filter_map(walk).collect())
-}
-
-/// Keeps the paths that can be walked over the viewpoint graph and end far enough from their start. With a nearer goal, a
-/// participant who stops at once would have arrived.
-fn keep_walkable(
-    candidates: Vec<CandidatePath>,
-    platform: &dyn Platform,
-    demands: &PlatformDemands<'_>,
-) -> Result<Vec<CandidatePath>, CommandError> {
-    let mut walkable = Vec::new();
-    for item in candidates {
-        let scene = &item.path.scene;
-        let distances = demands.scene_distances(scene)?;
-        let ends = item.viewpoints.first().zip(item.viewpoints.last());
-        let apart_m = ends.and_then(|(start, goal)| distances.metres_between(start, goal));
-        let graph = platform.graph_for_scene(scene)?;
-        let is_known = item.viewpoints.iter().all(|viewpoint| graph.position_of(viewpoint).is_some());
-        if is_known && apart_m.is_some_and(|apart_m| apart_m >= SAME_GOAL_M) {
-            walkable.push(item);
-        }
-    }
-    Ok(walkable)
-}
-
-/// Reads the texts of each run, by item.
-fn read_run_texts(
-    conditions: &[StudyCondition],
-) -> Result<BTreeMap<&str, BTreeMap<String, Vec<String>>>, CommandError> {
-    let runs = conditions.iter().filter(|condition| condition.kind == ConditionKind::Run);
-    let read = |condition: &'_ StudyCondition| -> Result<_, CommandError> {
-        let set = text_sets::read_text_set(&condition.source, None, TextPairing::Item)?;
-        Ok(set.into_iter().map(|(item, texts)| (item, texts.texts)).collect())
-    };
-    runs.map(|condition| Ok((condition.name.as_str(), read(condition)?))).collect()
-}
-
-/// Reads the paths of the episodes, or, without `--episodes`, of the first run.
-fn read_candidates(
-    args: &StudyNew,
-    mode: StudyTask,
-    platform: &dyn Platform,
-) -> Result<Vec<CandidatePath>, CommandError> {
-    let file: PathBuf = args.episodes.clone().unwrap_or_else(|| text_sets::text_set_file(&args.run[0].source));
-    let is_walked = mode == StudyTask::Follow;
-    if detect_format(&file)? != DatasetFormat::Wayword {
-        let read = if is_walked {
-            episodes::read_episodes(&file, platform)?
-        } else {
-            wayword_formats::read_any_format(&file)?
-        };
-        let to_candidate = |episode: wayword_formats::Episode| {
-            let path = path_for_episode(platform, &episode)?;
-            let name = episodes::episode_path_name(&episode);
-            Ok(CandidatePath {
-                id: episode.id,
-                name,
-                path,
-                viewpoints: episode.viewpoints,
-                people: episode.instructions,
-            })
-        };
-        return read.into_iter().map(to_candidate).collect();
-    }
-    let viewpoints: BTreeMap<String, Vec<ViewpointId>> = if is_walked {
-        episodes::read_episodes(&file, platform)?.into_iter().map(|episode| (episode.id, episode.viewpoints)).collect()
-    } else {
-        BTreeMap::new()
-    };
-    let mut candidates: Vec<CandidatePath> = Vec::new();
-    let mut index: BTreeMap<String, usize> = BTreeMap::new();
-    for record in jsonl::read_records(&file)? {
-        let at = *index.entry(record.path.id.clone()).or_insert_with(|| {
-            let id = record.path.id.clone();
-            let name = episodes::path_name(&record.path.scene, &record.path_id());
-            let viewpoints = viewpoints.get(&id).cloned().unwrap_or_default();
-            candidates.push(CandidatePath { id, name, path: record.path.clone(), viewpoints, people: Vec::new() });
-            candidates.len() - 1
-        });
-        candidates[at].people.push(record.instruction.text);
-    }
-    Ok(candidates)
 }
 
 /// For each path, the index of another one in the same scene with another goal, among those for which `has_text` is true.

@@ -1,6 +1,9 @@
 //! `wayword study`: makes a study from runs, serves it to people, and writes its results.
 
+mod candidates;
 mod choose_paths;
+mod corrupted;
+mod ground_survey;
 mod marks;
 mod messages;
 mod new_study;

@@ -2,6 +2,7 @@
 
 use super::{
     choose_paths::{StudyWalk, choose_walks, study_conditions},
+    ground_survey::{GROUND_FILE, GroundSurvey},
     marks, pictures,
 };
 use crate::study_args::{StudyMode, StudyNew, StudyRecruiter};
@@ -9,13 +10,17 @@ use serde::Serialize;
 use std::{fmt, fs, path::PathBuf};
 use wayword_core::Platform;
 use wayword_report::view;
-use wayword_run::{count::count_phrase, error::CommandError, interrupt, output::CommandOutput, terms};
+use wayword_run::{
+    count::count_phrase, error::CommandError, interrupt, output::CommandOutput, terms, written_files::write_file,
+};
 use wayword_study::{
     CompletionCodes, PageTexts, RecruiterSettings, Study, StudyCondition, StudyDesign, StudyItem, StudyRoute,
     StudySettings, StudyTask, StudyText,
 };
 use wayword_synthesis::style::built_in;
 
+/// The folder of the pictures, in that of the study.
+const PICTURES_FOLDER: &str = "pictures";
 /// Most examples of a style that raters see.
 const MAX_STYLE_EXAMPLES: usize = 3;
 
@@ -30,6 +35,9 @@ struct NewStudySummary {
     answers: u64,
     pictures: usize,
     has_practice: bool,
+    /// What the viewpoint graph is worth, where people walk over it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ground: Option<GroundSurvey>,
 }
 
 impl fmt::Display for NewStudySummary {
@@ -37,6 +45,9 @@ impl fmt::Display for NewStudySummary {
         let (routes, items) = (count_phrase(self.routes, "path"), count_phrase(self.items, "item"));
         writeln!(f, "{}: {routes}, {items}, {} wanted", self.study.display(), count_phrase(self.answers, "answer"))?;
         writeln!(f, "conditions: {}", self.conditions.join(", "))?;
+        if let Some(ground) = &self.ground {
+            writeln!(f, "{ground}")?;
+        }
         if !self.has_practice {
             writeln!(f, "no path was left for practice: give more paths, or fewer --items")?;
         }
@@ -76,8 +87,12 @@ pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), 
         output.say(format_args!("there are only {} with a text of every condition", count_phrase(routes, "path")));
     }
     marks::mark_doubts(&mut walks, &conditions, &*platform, output)?;
-    let folder = args.out.join("pictures");
-    fs::create_dir_all(&folder).map_err(CommandError::io(&folder, "make the folder"))?;
+    let ground = match mode {
+        StudyTask::Follow => Some(GroundSurvey::of_walks(&walks, &*platform, args.seed)?),
+        StudyTask::Rate | StudyTask::Pair => None,
+    };
+    let new_folder = NewFolder::make(&args.out)?;
+    let folder = new_folder.pictures();
     let scenes = match mode {
         StudyTask::Follow => pictures::draw_scenes(&walks, &*platform, &folder, output)?,
         StudyTask::Rate | StudyTask::Pair => Vec::new(),
@@ -103,10 +118,54 @@ pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), 
         answers: wanted as u64 * u64::from(args.per_item),
         pictures,
         has_practice,
+        ground,
     };
+    if let Some(ground) = &summary.ground {
+        let file = args.out.join(GROUND_FILE);
+        let json = serde_json::to_vec_pretty(ground)
+            .map_err(|error| CommandError::usage(format!("{}: {error}", file.display()), "report this fault"))?;
+        write_file(&file, json)?;
+    }
     Study { folder: args.out.clone(), plan, settings, texts, items, routes: study_routes, scenes }.create()?;
+    new_folder.keep();
     output.print_result(&summary, &summary);
     Ok(())
+}
+
+/// The folder of a study in the making. Unless it is kept, dropping it removes what this command made, so that a study that failed
+/// leaves nothing behind. A command that was interrupted keeps its pictures: the same command goes on with them.
+struct NewFolder {
+    folder: PathBuf,
+    /// The outermost folder that did not exist before.
+    made: Option<PathBuf>,
+    is_kept: bool,
+}
+
+impl NewFolder {
+    fn make(out: &std::path::Path) -> Result<Self, CommandError> {
+        let pictures = out.join(PICTURES_FOLDER);
+        let made = pictures.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists()).last();
+        let new = Self { folder: out.to_owned(), made: made.map(std::path::Path::to_owned), is_kept: false };
+        fs::create_dir_all(&pictures).map_err(CommandError::io(&pictures, "make the folder"))?;
+        Ok(new)
+    }
+
+    fn pictures(&self) -> PathBuf {
+        self.folder.join(PICTURES_FOLDER)
+    }
+
+    fn keep(mut self) {
+        self.is_kept = true;
+    }
+}
+
+impl Drop for NewFolder {
+    fn drop(&mut self) {
+        if let Some(made) = self.made.as_ref().filter(|_| !self.is_kept && interrupt::check_interrupt().is_ok()) {
+            // What cannot be removed stays; the error of the command matters more.
+            let _ = fs::remove_dir_all(made);
+        }
+    }
 }
 
 /// Refuses a platform in which participants cannot walk, and pictures that the user may not show to them.
@@ -201,4 +260,22 @@ fn completion_codes(recruiter: StudyRecruiter) -> CompletionCodes {
         StudyRecruiter::Links | StudyRecruiter::Mturk => String::new(),
     };
     CompletionCodes { return_url, ..CompletionCodes::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_that_is_not_kept_goes_with_all_that_was_made() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("deep/study");
+        drop(NewFolder::make(&out).unwrap());
+        assert!(!folder.path().join("deep").exists());
+        NewFolder::make(&out).unwrap().keep();
+        assert!(out.join(PICTURES_FOLDER).is_dir());
+        fs::write(out.join("notes.txt"), "mine").unwrap();
+        drop(NewFolder::make(&out).unwrap());
+        assert!(out.join("notes.txt").exists() && out.join(PICTURES_FOLDER).exists(), "they were there before");
+    }
 }

@@ -6,20 +6,30 @@ use sha2::{Digest as _, Sha256};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path as FilePath,
+    sync::{Arc, Mutex, PoisonError},
+    time::{Duration, Instant},
 };
 use wayword_core::{Frame, Heading, Platform, Pose, SceneId, ViewGaze, ViewpointGraph, ViewpointId, hex_text};
+use wayword_house::{HouseOptions, HousePlatform};
 use wayword_report::view::{
     panorama::draw_panorama,
     path::film_steps::{FilmStep, film_steps},
     picture,
 };
-use wayword_run::{error::CommandError, interrupt, output::CommandOutput, written_files::write_file};
+use wayword_run::{
+    count::count_phrase, error::CommandError, interrupt, output::CommandOutput, output::ProgressBar,
+    written_files::write_file,
+};
 use wayword_study::{FilmPicture, StudyScene, StudyViewpoint};
 
 /// Platforms for which this program draws pictures itself, at any place.
 const DRAWING_PLATFORMS: [&str; 2] = ["house", "habitat"];
-/// Width of a panorama, pixels: a phone shows a third of it, a desk's screen half.
-const PANORAMA_PX: u32 = 2400;
+/// Size of the views that are joined into a panorama of a house, pixels. They are high, so that one sees the floor from 1.4 m on.
+const HOUSE_VIEW_PX: [u32; 2] = [576, 864];
+/// Scenes that are drawn at once. The houses that are ready take memory, and a platform keeps six.
+const SCENES_AT_ONCE: usize = 4;
+/// How often a line tells how far the drawing is, where there is no terminal.
+const TOLD_EVERY: Duration = Duration::from_secs(10);
 /// Most places between two frames of a film, on platforms that can draw there.
 const MAX_FRAMES_BETWEEN: usize = 5;
 /// The number of pictures that a film should have: half a minute, at two for each second.
@@ -56,20 +66,61 @@ pub(super) fn draw_scenes(
         wanted.push((scene.clone(), graph, reached));
     }
     let place_count: usize = wanted.iter().map(|(_, _, reached)| reached.len()).sum();
-    let bar = output.progress_bar(place_count, "panoramas");
-    let draw = |(scene, graph, reached): (SceneId, std::sync::Arc<ViewpointGraph>, BTreeSet<ViewpointId>)| {
+    let progress = DrawingProgress::new(place_count, output);
+    let houses = HousePlatform::new(HouseOptions {
+        width_px: HOUSE_VIEW_PX[0],
+        height_px: HOUSE_VIEW_PX[1],
+        ..HouseOptions::default()
+    });
+    let platform: &dyn Platform = if platform.name() == houses.name() { &houses } else { platform };
+    let draw = |(scene, graph, reached): &(SceneId, Arc<ViewpointGraph>, BTreeSet<ViewpointId>)| {
         let place = |id: &ViewpointId| {
             interrupt::check_interrupt()?;
-            let place = draw_place(&scene, &graph, id, platform, folder, output)?;
-            bar.inc(1);
+            let place = draw_place(scene, graph, id, platform, folder, output)?;
+            progress.count_one();
             Ok((id.clone(), place))
         };
-        let places = reached.par_iter().map(place).collect::<Result<BTreeMap<_, _>, CommandError>>()?;
-        Ok(StudyScene { scene, places })
+        // The first place makes the scene ready to be drawn, which no other thread can do meanwhile.
+        let first = reached.first().map(place).transpose()?;
+        let rest: Vec<&ViewpointId> = reached.iter().skip(1).collect();
+        let rest = rest.into_par_iter().map(place).collect::<Result<Vec<_>, CommandError>>()?;
+        Ok(StudyScene { scene: scene.clone(), places: first.into_iter().chain(rest).collect() })
     };
-    let drawn = wanted.into_iter().map(draw).collect();
-    bar.finish_and_clear();
-    drawn
+    let mut drawn = Vec::with_capacity(wanted.len());
+    for scenes in wanted.chunks(SCENES_AT_ONCE) {
+        drawn.extend(scenes.par_iter().map(draw).collect::<Result<Vec<_>, CommandError>>()?);
+    }
+    Ok(drawn)
+}
+
+/// Tells how far the drawing is: a bar, or a line now and then.
+struct DrawingProgress<'a> {
+    output: &'a CommandOutput,
+    bar: ProgressBar,
+    told: Mutex<Instant>,
+}
+
+impl<'a> DrawingProgress<'a> {
+    fn new(places: usize, output: &'a CommandOutput) -> Self {
+        output.print_progress_line(format_args!("drawing {}", count_phrase(places, "panorama")));
+        Self { output, bar: output.progress_bar(places, "panoramas"), told: Mutex::new(Instant::now()) }
+    }
+
+    fn count_one(&self) {
+        self.bar.inc(1);
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        if told.elapsed() >= TOLD_EVERY {
+            *told = Instant::now();
+            let (drawn, all) = (self.bar.position(), self.bar.length().unwrap_or_default());
+            self.output.print_progress_line(format_args!("{drawn} of {all} panoramas"));
+        }
+    }
+}
+
+impl Drop for DrawingProgress<'_> {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
 }
 
 /// Draws the panorama of one viewpoint, unless an earlier command has drawn it.
@@ -86,11 +137,13 @@ fn draw_place(
     let level = graph.level_of(id);
     let frame = Frame { pose: Pose::looking_level(position, Heading::NORTH), viewpoint: Some(id.clone()), level };
     // The name is a hash of everything that the picture depends on, so that a command with other paths does not take a wrong picture.
-    let panorama = file_name(&["panorama", platform.name(), scene.as_str(), id.as_str(), &format!("{position:?}")]);
+    let size = if platform.name() == "house" { format!("{HOUSE_VIEW_PX:?}") } else { String::new() };
+    let panorama =
+        file_name(&["panorama", platform.name(), scene.as_str(), id.as_str(), &format!("{position:?}"), &size]);
     let file = folder.join(&panorama);
     // A command that was stopped goes on with the pictures that it has.
     if !file.is_file() {
-        let whole = draw_panorama(platform, scene, &frame, Some(PANORAMA_PX), output)?;
+        let whole = draw_panorama(platform, scene, &frame, None, output)?;
         write_file(&file, picture::encode_jpeg(&whole)?)?;
     }
     let neighbours = graph.neighbours_of(id).into_iter().cloned().collect();

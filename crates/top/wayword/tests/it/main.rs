@@ -52,6 +52,7 @@ mod similarity_pictures;
 mod spans;
 mod steps;
 mod study;
+mod study_ground;
 mod study_planning;
 mod turning_worlds;
 mod view;
