@@ -79,7 +79,8 @@ pub fn measure_corruption_findings(flags: CorruptionFindingArgs, output: &Comman
     let file = flags.judging.check.file.clone();
     let key = CorruptionKey::read(&flags.key.unwrap_or_else(|| CorruptionKey::path_for_texts(&file)))?;
     let pairs = read_pairs(&file, &key)?;
-    let (seed, show, is_json) = (flags.judging.seed, flags.judging.check.show, flags.judging.json);
+    let (seed, show, is_json) =
+        (flags.judging.seed, flags.judging.check.show.how_many(usize::MAX, 0)[0], flags.judging.json);
     let texts = PairTexts::from_pairs(&pairs);
     let CheckedTexts { findings, report, .. } = check_in_memory(&texts.all, flags.judging.check, output)?;
     let outcome = |(at, pair): (usize, _)| PairFindings { pair, now: &findings[at], was: &findings[texts.old[at]] };

@@ -18,9 +18,10 @@ use std::{
 use tempfile::TempDir;
 use wayword_core::{DoubtGrade, Heading, SceneId, ViewpointId};
 use wayword_study::{
-    ConditionKind, ConsentLink, ENGLISH_TEXTS, EndQuestion, EndQuestionKind, FilmPicture, ListenOptions, PageTexts, ParticipantAnswer,
-    RecruiterSettings, SiteAddress, SiteSecurity, Study, StudyCondition, StudyDesign, StudyItem, StudyRoute,
-    StudyScene, StudySettings, StudyTask, StudyText, StudyViewpoint, TextMark, WindowSize, preview_study, serve_study,
+    ConditionKind, ConsentLink, ENGLISH_TEXTS, EndQuestion, EndQuestionKind, FilmPicture, ListenOptions, PageTexts,
+    ParticipantAnswer, RecruiterSettings, SiteAddress, SiteSecurity, Study, StudyCondition, StudyDesign, StudyItem,
+    StudyRoute, StudyScene, StudySettings, StudyTask, StudyText, StudyViewpoint, TextMark, WindowSize, preview_study,
+    serve_study,
 };
 
 /// Words that no page may have: the conditions, the scene, the route, the goal.

@@ -22,7 +22,7 @@ use wayword_world::path_over_viewpoints;
 /// # Errors
 /// When the labelled texts cannot be read, the platform lacks a path of theirs, and as `wayword check`.
 pub fn measure_people(flags: JudgingArgs, output: &CommandOutput) -> Result<(), CommandError> {
-    let (show, seed, is_json) = (flags.check.show, flags.seed, flags.json);
+    let (show, seed, is_json) = (flags.check.show.how_many(usize::MAX, 0)[0], flags.seed, flags.json);
     let (texts, CheckedTexts { findings, doubts, report }) = check_labelled_texts(flags, output)?;
     let checked: Vec<LabelledFindings<'_>> =
         texts.iter().zip(&findings).map(|(text, findings)| LabelledFindings { text, findings }).collect();

@@ -17,7 +17,7 @@ use minijinja::{Environment, Error, Value, context, value::Kwargs};
 use wayword_core::{Heading, ViewpointId, doubt::split_at_doubts, hex_text};
 
 /// The templates by their names. They are part of the program.
-const TEMPLATES: [(&str, &str); 14] = [
+const TEMPLATES: [(&str, &str); 15] = [
     ("base.html", include_str!("pages/base.html")),
     ("parts.html", include_str!("pages/parts.html")),
     ("consent.html", include_str!("pages/consent.html")),

@@ -113,7 +113,6 @@ pub(super) fn choose_walks(
     let sets = read_run_texts(conditions)?;
     let listed = list_paths(&candidates_file(args))?;
     check_texts(&listed, conditions, &sets)?;
-    output.print_progress_line(format_args!("reading {}", count_phrase(listed.len(), "path")));
     let mut candidates = read_candidates(args, mode, platform)?;
     if mode == StudyTask::Follow {
         let before = candidates.len();

@@ -6,8 +6,7 @@ use sha2::{Digest as _, Sha256};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path as FilePath,
-    sync::{Arc, Mutex, PoisonError},
-    time::{Duration, Instant},
+    sync::Arc,
 };
 use wayword_core::{Frame, Heading, Platform, Pose, SceneId, ViewGaze, ViewpointGraph, ViewpointId, hex_text};
 use wayword_house::{HouseOptions, HousePlatform};
@@ -16,10 +15,7 @@ use wayword_report::view::{
     path::film_steps::{FilmStep, film_steps},
     picture,
 };
-use wayword_run::{
-    count::count_phrase, error::CommandError, interrupt, output::CommandOutput, output::ProgressBar,
-    written_files::write_file,
-};
+use wayword_run::{error::CommandError, interrupt, output::CommandOutput, written_files::write_file};
 use wayword_study::{FilmPicture, StudyScene, StudyViewpoint};
 
 /// Platforms for which this program draws pictures itself, at any place.
@@ -28,8 +24,6 @@ const DRAWING_PLATFORMS: [&str; 2] = ["house", "habitat"];
 const HOUSE_VIEW_PX: [u32; 2] = [576, 864];
 /// Scenes that are drawn at once. The houses that are ready take memory, and a platform keeps six.
 const SCENES_AT_ONCE: usize = 4;
-/// How often a line tells how far the drawing is, where there is no terminal.
-const TOLD_EVERY: Duration = Duration::from_secs(10);
 /// Most places between two frames of a film, on platforms that can draw there.
 const MAX_FRAMES_BETWEEN: usize = 5;
 /// The number of pictures that a film should have: half a minute, at two for each second.
@@ -66,7 +60,7 @@ pub(super) fn draw_scenes(
         wanted.push((scene.clone(), graph, reached));
     }
     let place_count: usize = wanted.iter().map(|(_, _, reached)| reached.len()).sum();
-    let progress = DrawingProgress::new(place_count, output);
+    let progress = output.progress_bar(place_count, "panoramas");
     let houses = HousePlatform::new(HouseOptions {
         width_px: HOUSE_VIEW_PX[0],
         height_px: HOUSE_VIEW_PX[1],
@@ -77,7 +71,7 @@ pub(super) fn draw_scenes(
         let place = |id: &ViewpointId| {
             interrupt::check_interrupt()?;
             let place = draw_place(scene, graph, id, platform, folder, output)?;
-            progress.count_one();
+            progress.inc(1);
             Ok((id.clone(), place))
         };
         // The first place makes the scene ready to be drawn, which no other thread can do meanwhile.
@@ -90,37 +84,8 @@ pub(super) fn draw_scenes(
     for scenes in wanted.chunks(SCENES_AT_ONCE) {
         drawn.extend(scenes.par_iter().map(draw).collect::<Result<Vec<_>, CommandError>>()?);
     }
+    progress.finish_and_clear();
     Ok(drawn)
-}
-
-/// Tells how far the drawing is: a bar, or a line now and then.
-struct DrawingProgress<'a> {
-    output: &'a CommandOutput,
-    bar: ProgressBar,
-    told: Mutex<Instant>,
-}
-
-impl<'a> DrawingProgress<'a> {
-    fn new(places: usize, output: &'a CommandOutput) -> Self {
-        output.print_progress_line(format_args!("drawing {}", count_phrase(places, "panorama")));
-        Self { output, bar: output.progress_bar(places, "panoramas"), told: Mutex::new(Instant::now()) }
-    }
-
-    fn count_one(&self) {
-        self.bar.inc(1);
-        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        if told.elapsed() >= TOLD_EVERY {
-            *told = Instant::now();
-            let (drawn, all) = (self.bar.position(), self.bar.length().unwrap_or_default());
-            self.output.print_progress_line(format_args!("{drawn} of {all} panoramas"));
-        }
-    }
-}
-
-impl Drop for DrawingProgress<'_> {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
-    }
 }
 
 /// Draws the panorama of one viewpoint, unless an earlier command has drawn it.

@@ -247,6 +247,7 @@ mod tests {
     fn again(verdict: Verdict, findings: Vec<CheckFinding>, doubts: Vec<TextDoubt>) -> CheckedText {
         CheckedText {
             path: "a".into(),
+            name: "a".into(),
             text: String::new(),
             verdict,
             world: "closed",

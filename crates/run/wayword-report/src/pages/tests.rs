@@ -395,6 +395,7 @@ fn a_text_that_fails_when_it_is_checked_again_comes_first_with_the_reason() {
     let run = long_run(4, &[3], &[]);
     let checked = CheckedText {
         path: "item-2".into(),
+        name: "a".into(),
         text: String::new(),
         verdict: Verdict::Fail,
         world: "closed",

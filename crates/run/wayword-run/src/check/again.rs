@@ -3,7 +3,7 @@
 
 use super::{
     CheckOptions, CheckedText,
-    path_texts::{FileText, StyleReference},
+    path_texts::{FileText, StyleReference, name_of_record},
     run_texts::{RunPathKey, RunText, check_texts_of_run, match_walks},
     styles::CheckStyles,
 };
@@ -106,7 +106,9 @@ fn read_written(run: &FilePath, changed: &mut BTreeSet<usize>) -> Result<Vec<Run
         let style = StyleReference { name: style, hash: provenance.style_hash.clone() };
         let key = RunPathKey::Id(path.id.clone());
         let origin = Some((platform, provenance));
-        let text = FileText { at: line.number(), path: path.id, words: text, tag: None, style: Some(style), origin };
+        let name = name_of_record(&path.id, &style.name);
+        let text =
+            FileText { at: line.number(), path: path.id, name, words: text, tag: None, style: Some(style), origin };
         texts.push(RunText { text, path: key });
         Ok(())
     })?;

@@ -126,7 +126,7 @@ pub enum ShownTexts {
 impl ShownTexts {
     /// How many of the texts that failed and of those that are unverified are shown.
     #[must_use]
-    pub(super) fn how_many(self, failed: usize, unverified: usize) -> [usize; 2] {
+    pub fn how_many(self, failed: usize, unverified: usize) -> [usize; 2] {
         match self {
             Self::Most(most) => [failed.min(most), unverified.min(most.saturating_sub(failed))],
             Self::Failed => [failed, 0],

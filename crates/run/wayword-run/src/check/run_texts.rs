@@ -17,7 +17,7 @@ use crate::{
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::Path as FilePath};
 use wayword_checks::{CheckSubject, Evidence, TurnJudge, WorldReach, check_own_text};
-use wayword_core::{CheckFinding, ObjectId, Path, SceneId, ViewpointId};
+use wayword_core::{ObjectId, Path, SceneId, ViewpointId};
 use wayword_formats::{DatasetFormat, jsonl, submission::instr_id};
 use wayword_synthesis::walk::ObservedWalk;
 
