@@ -177,7 +177,7 @@ fn rows_for_item(
             unverified: suspicion.map_or(0, |suspicion| suspicion.unverified),
             usd: usd.or(item.walk.used.map(|used| used.usd)).filter(|usd| *usd > 0.0),
             said: marked_words(text, &signs),
-            signs: signs.into_iter().filter(|sign| !sign.words.is_empty()).map(cut_sign).collect(),
+            signs: signs.iter().filter(|sign| !sign.words.is_empty()).map(SuspicionSign::cut_to_row).collect(),
             picture: picture.clone(),
         }
     };
@@ -203,6 +203,12 @@ fn rows_for_item(
     }
     rows.sort_by(|a, b| a.style.cmp(&b.style));
     rows
+}
+
+impl SuspicionSign {
+    fn cut_to_row(&self) -> Self {
+        Self { words: cut_text(&self.words, MAX_SIGN_CHARS), ..self.clone() }
+    }
 }
 
 /// The state of a text, and all kinds that it belongs to; `None` for an item without a text.
@@ -244,10 +250,6 @@ fn marked_words(text: &str, signs: &[SuspicionSign]) -> Vec<(String, bool)> {
         }
     }
     words
-}
-
-fn cut_sign(sign: SuspicionSign) -> SuspicionSign {
-    SuspicionSign { words: cut_text(&sign.words, MAX_SIGN_CHARS), ..sign }
 }
 
 fn cut_text(text: &str, most_chars: usize) -> String {

@@ -21,6 +21,9 @@ use wayword_core::{ObjectId, Path, SceneId, ViewpointId};
 use wayword_formats::{DatasetFormat, jsonl, submission::instr_id};
 use wayword_synthesis::walk::ObservedWalk;
 
+/// A walk of a run, with the texts about it.
+pub(super) type WalkTexts = (ObservedWalk, Vec<FileText>);
+
 /// A text, and how its path is found in the run.
 pub(super) struct RunText {
     pub(super) text: FileText,
@@ -64,7 +67,7 @@ pub(super) fn check_file(
 /// Checks texts about walks of a run against the run's evidence.
 pub(super) fn check_texts_of_run(
     run: &FilePath,
-    walks: Vec<(ObservedWalk, Vec<FileText>)>,
+    walks: Vec<WalkTexts>,
     (settings, styles): (&RunSettings, &CheckStyles),
     how: CheckOptions<'_>,
     output: &CommandOutput,
@@ -75,9 +78,7 @@ pub(super) fn check_texts_of_run(
     if source.as_deref().is_some_and(|source| source.starts_with("labels")) && !is_program {
         match platforms::open_platform(settings) {
             Ok(platform) => {
-                let seen = |(walk, _): &(ObservedWalk, Vec<FileText>)| {
-                    Some((walk.path.id.clone(), RunCaptions::of_walk(walk)?))
-                };
+                let seen = |(walk, _): &WalkTexts| Some((walk.path.id.clone(), RunCaptions::of_walk(walk)?));
                 let captions = match source.as_deref() {
                     Some("labels") => BTreeMap::new(),
                     _ => walks.iter().filter_map(seen).collect(),
@@ -98,10 +99,7 @@ pub(super) fn check_texts_of_run(
 }
 
 /// The walks of a run that texts are about, each with its texts; and the texts whose path the run does not have.
-pub(super) fn match_walks(
-    texts: Vec<RunText>,
-    run: &FilePath,
-) -> Result<(Vec<(ObservedWalk, Vec<FileText>)>, Vec<RunText>), CommandError> {
+pub(super) fn match_walks(texts: Vec<RunText>, run: &FilePath) -> Result<(Vec<WalkTexts>, Vec<RunText>), CommandError> {
     let mut wanted: Vec<Option<RunText>> = texts.into_iter().map(Some).collect();
     let mut walks = Vec::new();
     lines::each_line(&run.join(file::WALKS), |line| {
@@ -118,12 +116,12 @@ pub(super) fn match_walks(
 
 /// Checks texts against the captions of their walks.
 fn check_by_captions(
-    walks: &[(ObservedWalk, Vec<FileText>)],
+    walks: &[WalkTexts],
     styles: &CheckStyles,
     how: CheckOptions<'_>,
     captions_were_evidence: bool,
 ) -> Vec<CheckedWalk> {
-    let check_walk = |(walk, texts): &(ObservedWalk, Vec<FileText>)| {
+    let check_walk = |(walk, texts): &WalkTexts| {
         let evidence = walk.evidence().unwrap_or_else(|| Evidence::for_path_alone(&walk.path));
         let check_text = |text: &FileText| {
             let check_style = styles.style_or_any(text);

@@ -10,6 +10,7 @@ use std::path::PathBuf;
 #[command(after_long_help = "\
 Examples:
   wayword generate --paths 20 --out runs/houses
+  wayword generate --paths 500 --houses 500 --out runs/500      (each path in a house of its own)
   wayword generate --platform matterport --data DATA --paths 200 --hops 4..7 --metres 5..20 --seed 1 --out runs/random
   wayword generate --platform matterport --data DATA --episodes REVERIE_val_seen.json --style reverie --style r2r --out runs/val_seen
   wayword generate --platform habitat --data SCENES --connectivity GRAPHS --paths 200 --out runs/scans

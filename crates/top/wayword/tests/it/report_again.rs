@@ -29,7 +29,7 @@ fn an_edited_text_is_checked_again_and_comes_first() {
     assert!(!first_row(&building).contains("changed after the run"));
 
     // A thing that is nowhere, in a text that is too short for the places of its old words.
-    let mut edited = written.clone();
+    let mut edited = written;
     edited[17]["text"] = "Pass the grand piano.".into();
     write_lines(&building, &edited);
     let ran = building.wayword(&["report", "--run", "run", "--json"]);
