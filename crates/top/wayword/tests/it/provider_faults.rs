@@ -53,7 +53,7 @@ impl StubbornService {
         let questions = self.questions.load(Ordering::SeqCst);
         let place = ["doctor", "--platform", "matterport", "--data", "data"];
         let doctor = building.wayword(&[&place[..], &models].concat());
-        (ran.code, ran.err, doctor.out, questions)
+        (ran.code, ran.out + &ran.err, doctor.out, questions)
     }
 }
 
