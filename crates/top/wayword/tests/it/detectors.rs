@@ -461,7 +461,7 @@ fn a_check_refuses_what_does_not_fit_its_detector() {
     let glip = glip();
     for (detector, args, told) in [
         (&owl, ["--memory-gib", "0.1"], "GiB are left"),
-        (&owl, ["--memory-gib", "0"], "--memory-gib is out of range"),
+        (&owl, ["--memory-gib", "0"], "--memory-gib 0 is out of range"),
         (&glip, ["--trust", "0123"], "not 0123, which was given"),
     ] {
         let ran = check(&building, &file, detector, &args);

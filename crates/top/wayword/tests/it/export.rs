@@ -231,7 +231,11 @@ fn bad_combinations_are_refused_with_what_to_do() {
         ),
         (&["--run", "run", "--style", "r2r", "--format", "duet"], "--tokenizer is missing", "models fetch --tokenizer"),
         (&["--run", "run", "--style", "poem", "--format", "r2r"], "no instruction of style poem", "r2r, reverie"),
-        (&["--run", "nowhere", "--style", "r2r", "--format", "r2r"], "nowhere", "instructions.jsonl"),
+        (
+            &["--run", "nowhere", "--style", "r2r", "--format", "r2r"],
+            "--run nowhere: there is no such folder",
+            "--out folder",
+        ),
     ];
     for (arguments, problem, hint) in cases {
         let ran = building.wayword(&[&["export", "--out", "out"], arguments].concat());

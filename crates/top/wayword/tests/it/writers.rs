@@ -149,7 +149,7 @@ fn each_path_gets_as_many_different_texts_as_asked_for() {
         let texts: usize = episodes.iter().map(|episode| episode.instructions.len()).sum();
         assert!(texts == 12 && episodes.len() <= 4, "{format}: {texts} texts of {} items", episodes.len());
     }
-    assert!(building.generate("more", &["--per-path", "10"]).refused().contains("--per-path is not from 1 to 9"));
+    assert!(building.generate("more", &["--per-path", "10"]).refused().contains("--per-path 10 is not from 1 to 9"));
     assert_eq!(building.wayword(&["report", "--run", "run"]).code, Some(0));
 }
 

@@ -302,7 +302,9 @@ fn never_passed_note(comparison: &AgentComparison) -> Option<String> {
     };
     let sets = || comparison.sets.iter().map(|set| set.name.as_str());
     let never: Vec<String> = sets().filter(|name| passes(name) == Some(false)).map(printable_name).collect();
-    let is_told = comparison.about.grounder.starts_with("labels") && sets().any(|name| passes(name) == Some(true));
+    let labels_decide =
+        comparison.about.grounder.starts_with("labels") && comparison.about.rule == TrajectorySuccessRule::Visible;
+    let is_told = labels_decide && sets().any(|name| passes(name) == Some(true));
     (is_told && !never.is_empty()).then(|| {
         format!(
             "OSR equals SR for {}: these texts name the target by its label, and the labels score the views, so an agent stops wherever the target is in sight and never walks past it.",

@@ -373,3 +373,19 @@ fn every_format_shows_effort_and_problems_of_walks_by_a_language_model() {
     }
     assert!(!markdown_tables(&super::tests::comparison()).contains("language model"));
 }
+
+#[test]
+fn sets_whose_target_no_agent_walks_past_are_named() {
+    let told = |comparison: &AgentComparison| {
+        super::notes::all_notes(comparison).into_iter().find(|note| note.starts_with("OSR equals SR for "))
+    };
+    let mut found = comparison();
+    assert_eq!(told(&found), None);
+    for row in found.rows.iter_mut().filter(|row| row.set.as_deref() == Some("central")) {
+        let success = row.figures[&TrajectoryMetric::SuccessRate];
+        row.figures.insert(TrajectoryMetric::OracleSuccessRate, success);
+    }
+    assert!(told(&found).is_some_and(|note| note.starts_with("OSR equals SR for central: ")));
+    found.about.grounder = "hf/openai/clip-vit-base-patch32".into();
+    assert_eq!(told(&found), None);
+}
