@@ -8,12 +8,14 @@
 //!
 //! # Where things are
 //! - `study/plan.rs`, `settings.rs`, `data.rs`: the fixed part of a study, the settings of `study.toml`, and the answers of people.
+//! - `study/texts.toml`, `page_texts.rs`: the words of the pages, and their translations.
+//! - `study/end_question.rs`, `exclusion.rs`: the researcher's own questions, and the rules that leave out answers.
 //! - `wording`: the questions and scales.
 //! - `store/assign.rs`, `stage.rs`: who gets which item, and what comes next. `store/schema.sql`: the tables.
 //! - `store/people.rs`, `recruits.rs`: consent, links, withdrawal, forgetting; the recruiter's list.
 //! - `site/pages/`, `site/assets/`: the pages; `site/pages.rs`: what they are given.
 //! - `site/routes.rs`, `request_guard.rs`, `listen.rs`, `tls.rs`: addresses, headers and pace, connections.
-//! - `results/`: tables, plots and files. Their statistics are in `wayword-metrics`.
+//! - `results/`: tables, plots and files, and the outlook of a planned study. Their statistics are in `wayword-metrics`.
 
 mod commands;
 pub mod results;
