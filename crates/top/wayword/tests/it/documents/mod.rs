@@ -5,6 +5,7 @@
 
 #[cfg(feature = "full")]
 mod reader_folder;
+mod readme_example;
 
 use clap::{CommandFactory, Parser};
 use std::{collections::BTreeSet, path::Path};
