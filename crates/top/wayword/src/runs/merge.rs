@@ -158,7 +158,7 @@ fn merge_data(folder: &Path, chunks: &[PathBuf]) -> Result<(), CommandError> {
     if all.is_empty() {
         return Ok(());
     }
-    write_file(&folder.join(file::DATA), &serde_json::to_string_pretty(&all).unwrap_or_default())
+    write_file(&folder.join(file::DATA), serde_json::to_string_pretty(&all).unwrap_or_default())
 }
 
 /// Puts the pictures of all chunks into one folder: as hard links where the disk allows that, else as copies. Calls
