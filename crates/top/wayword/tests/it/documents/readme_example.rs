@@ -5,7 +5,7 @@ use std::{fs, path::Path};
 
 /// The commands of the README's top, as they stand there.
 const COMMANDS: [&str; 2] = [
-    "wayword demo --seed 5",
+    "wayword demo --seed 12",
     "wayword view path --episodes wayword-demo/instructions.jsonl --width 400 --out walk.jpg",
 ];
 
