@@ -39,6 +39,7 @@ pub enum StudyCommand {
     /// Show how many people the study needs, and which differences it would find.
     Plan(StudyPlan),
     /// Write the words of all pages in English, as a file to translate.
+    #[command(after_long_help = "Examples:\n  wayword study texts > de.toml")]
     Texts,
     /// Show how far it is.
     Status(StudyStatus),
