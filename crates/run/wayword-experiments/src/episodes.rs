@@ -189,7 +189,6 @@ mod tests {
         // More houses take longer: HOUSES=24 made the figures of the documents.
         let houses = std::env::var("HOUSES").ok().and_then(|houses| houses.parse().ok()).unwrap_or(4);
         let survey = survey_walks(&platform, &house_routes(&platform, 300..300 + houses), 1).unwrap();
-        println!("{survey:#?}");
         assert_eq!(survey.edge_steps, survey.route_steps);
         assert!(500 * survey.zero_edges <= survey.edges, "{survey:?}");
         assert!(100 * survey.near_goal_arrived >= 90 * survey.near_goal, "{survey:?}");

@@ -41,7 +41,7 @@ pub struct CommandProgress {
 pub(crate) struct LineWords {
     /// What the bar counts, as in "items"; a whole phrase where it counts nothing.
     pub(crate) what: &'static str,
-    /// Whether the bar's message already says how long the rest takes.
+    /// Whether the bar's message already has the time that the rest takes.
     pub(crate) message_has_time: bool,
 }
 
@@ -232,7 +232,7 @@ mod tests {
             assert!(waits.iter().all(|wait| *wait <= Duration::from_secs(60)), "{waits:?}");
             assert!(waits[29] >= Duration::from_secs(50), "and not often in the end");
         }
-        // Counted work prints first, and a watch says nothing beside it.
+        // Counted work prints first, and a watch prints nothing beside it.
         assert!(LinePace::COUNTED.first < LinePace::SILENT.first && LinePace::COUNTED.most < LinePace::SILENT.most);
     }
 

@@ -196,7 +196,7 @@ impl CommandOutput {
         self.with_lines(bar, LineWords { what, message_has_time: false })
     }
 
-    /// The progress over items that are slow because of calls to models: the message counts the calls and says how long they
+    /// The progress over items that are slow because of calls to models: the message counts the calls and estimates how long they
     /// still take, the prefix counts the finished texts.
     #[must_use]
     pub fn call_progress_bar(&self, total: usize) -> CommandProgress {

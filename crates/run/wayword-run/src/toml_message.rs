@@ -1,4 +1,4 @@
-//! Says what the TOML parser says in words of the user: with the name that was meant, and without the names of Rust's types.
+//! Puts the errors of the TOML parser into words of the user: with the name that was meant, and without the names of Rust's types.
 
 use crate::similar::did_you_mean;
 

@@ -29,6 +29,7 @@ mod light;
 pub mod model;
 mod names;
 mod objects;
+mod open_line;
 mod outlook;
 mod platform;
 mod prepared_house;

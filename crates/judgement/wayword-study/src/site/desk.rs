@@ -33,7 +33,7 @@ impl From<&StudyError> for DeskError {
     }
 }
 
-/// Sends the reply to the request. The argument says whether the transaction is on disk.
+/// Sends the reply to the request. The argument is whether the transaction is on disk.
 type ReplyDelivery = Box<dyn FnOnce(Result<(), DeskError>) + Send>;
 /// The database work of one request. It returns whether its changes are kept, and how its reply is sent.
 type DeskJob = Box<dyn FnOnce(&StudyTransaction<'_>) -> (bool, ReplyDelivery) + Send>;

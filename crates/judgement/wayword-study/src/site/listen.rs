@@ -93,7 +93,7 @@ enum SiteAudience {
 const PREVIEW_ANSWERS: u32 = 100_000;
 
 /// Serves a preview of a study until `should_stop` returns true: each visit of `/preview` walks through the study as a new participant.
-/// Nothing is stored, and every page says so. A server for participants may run beside it.
+/// Nothing is stored, and every page has a note about it. A server for participants may run beside it.
 ///
 /// # Errors
 /// When the settings forbid it, the address cannot be had, or a file cannot be used.

@@ -123,7 +123,7 @@ impl StudyPage {
             who => page_context.who,
             error => page_context.error.map(|key| study.texts.text("error", key)),
             given => page_context.given,
-            // Instructions are in English unless study.toml says otherwise, whatever the language of the pages.
+            // Instructions are in English unless study.toml names another language, whatever the language of the pages.
             text_lang => match settings.text_language.as_str() {
                 "" => (study.texts.language != "en").then_some("en"),
                 tag => Some(tag),

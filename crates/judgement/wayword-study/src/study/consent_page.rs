@@ -1,4 +1,4 @@
-//! What the consent page says besides its paragraphs: the approval of an ethics committee, and links.
+//! What the consent page has besides its paragraphs: the approval of an ethics committee, and links.
 
 use serde::{Deserialize, Serialize};
 

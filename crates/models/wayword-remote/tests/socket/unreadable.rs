@@ -1,4 +1,4 @@
-//! Complete answers that cannot be read: each call is bought at most twice, and the message says what came.
+//! Complete answers that cannot be read: each call is bought at most twice, and the message names what came.
 
 use crate::{
     asked, model, run,

@@ -4,10 +4,10 @@ use super::habitat_scenes::HabitatSceneSource;
 use crate::export::args::ExportFormat;
 use serde_json::{Value, json};
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, btree_map::Entry},
     path::{Path, PathBuf},
 };
-use wayword_core::ObjectId;
+use wayword_core::{ObjectId, SceneId};
 use wayword_formats::{
     DatasetFormat, Episode, jsonl,
     jsonl::InstructionRecord,
@@ -66,7 +66,9 @@ pub fn write_items(
         DatasetFormat::R2r => r2r::write_r2r_file(file, &episodes)?,
         DatasetFormat::Reverie => reverie::write_reverie_file(file, &gather_reverie_items(episodes))?,
         DatasetFormat::Rxr => rxr::write_rxr_file(file, &episodes)?,
-        DatasetFormat::Vlnce => vlnce::write_vlnce_file(file, &VlnceDataset::from_episodes(episodes))?,
+        DatasetFormat::Vlnce => {
+            vlnce::write_vlnce_file(file, &VlnceDataset::from_episodes(gather_path_items(episodes)))?
+        }
         DatasetFormat::Wayword => jsonl::write_records(file, records)?,
     }
     if bears_provenance(format) {
@@ -136,6 +138,22 @@ fn gather_reverie_items(episodes: Vec<Episode>) -> Vec<Episode> {
         *others += 1;
         starts.insert(start, items.len());
         items.push(episode);
+    }
+    items
+}
+
+/// VLN-CE names an episode by its item and the number of the text, so the texts of one path become one item.
+fn gather_path_items(episodes: Vec<Episode>) -> Vec<Episode> {
+    let mut items: Vec<Episode> = Vec::new();
+    let mut places: BTreeMap<(String, SceneId), usize> = BTreeMap::new();
+    for episode in episodes {
+        match places.entry((episode.id.clone(), episode.scene.clone())) {
+            Entry::Occupied(place) => join_episodes(&mut items[*place.get()], episode),
+            Entry::Vacant(place) => {
+                place.insert(items.len());
+                items.push(episode);
+            }
+        }
     }
     items
 }

@@ -74,8 +74,11 @@ pub fn check_run_again(run: &FilePath, output: &CommandOutput) -> Result<Checked
     let settings = read_run_settings(run)?;
     let styles = CheckStyles::for_run(None, &settings)?;
     let mut again = CheckedAgain::default();
-    let (walks, _) = match_walks(read_written(run, &mut again.changed)?, run)?;
-    let how = CheckOptions { doubts: true, doubts_in_closed_world: true, ..CheckOptions::default() };
+    let WrittenTexts { texts, changed, unhashed } = read_written(run)?;
+    let (walks, _) = match_walks(texts, run)?;
+    let maybe_changed: BTreeSet<usize> = changed.union(&unhashed).copied().collect();
+    again.changed = changed;
+    let how = CheckOptions { doubts: true, maybe_changed: Some(&maybe_changed), ..CheckOptions::default() };
     for (source, texts) in check_texts_of_run(run, walks, (&settings, &styles), how, output)? {
         if !again.checked_against.iter().any(|other| other == source) {
             again.checked_against.push(source.to_owned());
@@ -90,18 +93,27 @@ pub fn check_run_again(run: &FilePath, output: &CommandOutput) -> Result<Checked
 /// # Errors
 /// When a line cannot be read, or is not of its kind.
 pub fn find_changed_texts(run: &FilePath) -> Result<CheckedAgain, CommandError> {
-    let mut again = CheckedAgain::default();
-    read_written(run, &mut again.changed)?;
-    Ok(again)
+    Ok(CheckedAgain { changed: read_written(run)?.changed, ..CheckedAgain::default() })
 }
 
-/// The accepted texts of a run. The place of each is the number of its line; those of texts that were changed are added to `changed`.
-fn read_written(run: &FilePath, changed: &mut BTreeSet<usize>) -> Result<Vec<RunText>, CommandError> {
-    let mut texts = Vec::new();
+/// The accepted texts of a run. The place of each is the number of its line, from 1.
+#[derive(Default)]
+struct WrittenTexts {
+    texts: Vec<RunText>,
+    /// The lines whose text is not the one that the run wrote.
+    changed: BTreeSet<usize>,
+    /// The lines that do not tell, as those of older versions.
+    unhashed: BTreeSet<usize>,
+}
+
+fn read_written(run: &FilePath) -> Result<WrittenTexts, CommandError> {
+    let mut written = WrittenTexts::default();
     lines::each_line(&run.join(file::INSTRUCTIONS), |line| {
         let WrittenLine { platform, path, text, style, provenance, text_hash } = line.parse()?;
-        if text_hash.is_some_and(|hash| hash != hash_of_text(&text)) {
-            changed.insert(line.number());
+        match text_hash {
+            None => _ = written.unhashed.insert(line.number()),
+            Some(hash) if hash != hash_of_text(&text) => _ = written.changed.insert(line.number()),
+            Some(_) => {}
         }
         let style = StyleReference { name: style, hash: provenance.style_hash.clone() };
         let key = RunPathKey::Id(path.id.clone());
@@ -109,8 +121,8 @@ fn read_written(run: &FilePath, changed: &mut BTreeSet<usize>) -> Result<Vec<Run
         let name = name_of_record(&path.id, &style.name);
         let text =
             FileText { at: line.number(), path: path.id, name, words: text, tag: None, style: Some(style), origin };
-        texts.push(RunText { text, path: key });
+        written.texts.push(RunText { text, path: key });
         Ok(())
     })?;
-    Ok(texts)
+    Ok(written)
 }

@@ -27,7 +27,10 @@ use path_texts::{FileText, PathTexts, read_path_texts};
 use rayon::prelude::*;
 use report::CheckReportText;
 use run_texts::RunCaptions;
-use std::{collections::BTreeMap, path::Path as FilePath};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path as FilePath,
+};
 use styles::CheckStyles;
 use wayword_checks::{
     CheckSubject, CheckWorld, Evidence, EvidenceSource, PathSurroundings, Testimony, TurnJudge, WalkMemory, WorldReach,
@@ -64,7 +67,7 @@ pub fn check_texts(args: &Args, output: &CommandOutput) -> Result<CheckReport, C
         reject_ambiguous: args.reject_ambiguous,
         calibration: args.calibration.as_deref(),
         doubts: args.doubts,
-        doubts_in_closed_world: false,
+        maybe_changed: None,
         captions: None,
     };
     if let Some(run) = &args.run {
@@ -93,8 +96,9 @@ pub struct CheckOptions<'a> {
     pub calibration: Option<&'a FilePath>,
     /// Whether to report the words that a reader should doubt.
     pub doubts: bool,
-    /// Whether the follower looks for words to doubt in a closed world, too, where the checks have decided about each.
-    pub doubts_in_closed_world: bool,
+    /// The places of a run's texts that somebody may have changed. In these the follower looks for words to doubt in a closed world,
+    /// too. In the others the checks have decided about each word.
+    pub maybe_changed: Option<&'a BTreeSet<usize>>,
     /// A run with captions that are evidence: beside the labels of the platform, or alone where it has none.
     pub captions: Option<&'a FilePath>,
 }
@@ -302,7 +306,8 @@ impl<'a> TextChecker<'a> {
             }
             if how.doubts {
                 let words = (text.words.as_str(), text.tag.as_deref());
-                let tries_changes = how.doubts_in_closed_world || checked.world == CheckWorld::Open;
+                let is_changed = how.maybe_changed.is_some_and(|changed| changed.contains(&text.at));
+                let tries_changes = is_changed || checked.world == CheckWorld::Open;
                 let found = find_doubts(followed.as_ref(), words, (&checked, tries_changes), ambiguity.as_ref());
                 shown.doubted = Some(found);
             }

@@ -385,7 +385,7 @@ fn resolve_evidence(writing: &Writing, roles: &RunRoles) -> Result<EvidenceSourc
 }
 
 /// Refuses a path that a run folder cannot keep: settings are UTF-8 text, and a file's name need not be. An address must not hold a
-/// secret, as [`refuse_credentials`] says.
+/// secret, as in [`refuse_credentials`].
 pub fn refuse_unnameable(flag: &str, path: Option<&Path>) -> Result<(), CommandError> {
     match path {
         Some(path) if path.to_str().is_none() => Err(CommandError::usage(

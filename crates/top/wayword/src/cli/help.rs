@@ -83,7 +83,7 @@ const SHORTEST: usize = 20;
 /// Most characters of a default that a short description repeats.
 const SHORT_DEFAULT: usize = 24;
 
-/// Puts the flags of a command and of its subcommands under their headings, and shortens what `-h` says of each.
+/// Puts the flags of a command and of its subcommands under their headings, and shortens the help of each for `-h`.
 pub(super) fn arrange_help(command: Command) -> Command {
     let command = command.mut_subcommands(arrange_help).mut_args(with_short_help);
     if command.get_arguments().count() < FEWEST_WITH_HEADINGS {

@@ -1,4 +1,4 @@
-//! Reads the command line, and says more of what is wrong in it than clap does.
+//! Reads the command line, and explains its errors further than clap does.
 
 use super::WaywordCli;
 use clap::{
@@ -46,7 +46,7 @@ fn wanted_number(error: &Error) -> Option<String> {
             _ => "give a whole number in digits, as in 1000".to_owned(),
         });
     }
-    // What clap says of a range ends in Rust's own notation.
+    // Clap's words about a range end in Rust's own notation.
     let words = source.to_string();
     let (least, most) = words.split_once(" is not in ")?.1.split_once("..=")?;
     let is_open = most.parse::<u32>().is_ok_and(|most| most == u32::MAX);
@@ -91,7 +91,7 @@ fn with_words(error: &Error, more: &str) -> Error {
     let text = error.render().to_string();
     let text = text.strip_prefix("error: ").unwrap_or(&text);
     let (first, rest) = text.split_once('\n').unwrap_or((text, ""));
-    // What Rust says of a number adds nothing.
+    // Rust's words about a number add nothing.
     let first = match std::error::Error::source(error) {
         Some(source) => first.strip_suffix(&format!(": {source}")).unwrap_or(first),
         None => first,

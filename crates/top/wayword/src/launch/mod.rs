@@ -88,7 +88,7 @@ fn launch_kubernetes(args: &LaunchKubernetes, output: &CommandOutput) -> Result<
 /// Warns if the run has fewer chunks than workers, as far as this machine can know.
 fn warn_of_idle_workers(arguments: &[String], workers: u32, output: &CommandOutput) -> Result<(), CommandError> {
     let words = ["wayword"].into_iter().chain(arguments.iter().map(String::as_str));
-    // What is wrong with the command, the worker itself says.
+    // The worker itself reports errors of the command.
     let Ok(WaywordCli { command: WaywordCommand::Generate(args), .. }) = WaywordCli::try_parse_from(words) else {
         return Ok(());
     };

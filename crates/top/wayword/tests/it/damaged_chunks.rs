@@ -1,5 +1,5 @@
 //! Chunks of a run that were damaged after they were finished: each is named, nothing is merged, and they can be made again.
-//! Also what workers are told beforehand, and what a run says at its end.
+//! Also the warnings of workers beforehand, and the last lines of a run.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
@@ -235,7 +235,7 @@ fn a_run_that_ends_with_loss_says_so_in_its_last_line() {
     assert_eq!(ran.code, Some(3), "{ran:?}");
     let last = ran.out.trim_end().lines().last().unwrap();
     assert!(last.starts_with("exit code 3: ") && last.contains("run/rejected.jsonl"), "{last}");
-    // A torn line is what a kill leaves; an exporter says how to mend it.
+    // A torn line is what a kill leaves; an exporter explains how to mend it.
     let good = ["--episodes", EPISODES, "--style", "r2r"];
     assert_eq!(building.generate("good", &good).code, Some(0));
     let texts = building.path("good/instructions.jsonl");

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-use crate::common::{Building, files};
+use crate::common::{Building, EPISODES, files};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{DVec3, Frame, Heading, Path, PathMotion, Pose, ViewpointId};
@@ -134,6 +134,20 @@ fn runs_merge_and_no_scene_is_in_both_splits() {
             .scene
     };
     assert!((1..8).map(val_of).collect::<BTreeSet<_>>().len() == 2, "the seed decides");
+}
+
+#[test]
+fn vlnce_numbers_the_texts_of_one_path() {
+    let building = Building::new();
+    let ran = building.generate("run", &["--episodes", EPISODES, "--style", "r2r", "--per-path", "2"]);
+    assert!([Some(0), Some(3)].contains(&ran.code), "{ran:?}");
+    let ran = building.wayword(&["export", "--run", "run", "--format", "vlnce", "--out", "two.json"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let file: Value = serde_json::from_slice(&std::fs::read(building.path("two.json")).unwrap()).unwrap();
+    let ids: Vec<&str> =
+        file["episodes"].as_array().unwrap().iter().map(|e| e["episode_id"].as_str().unwrap()).collect();
+    let both = |id: &&&str| id.strip_suffix("_0").is_some_and(|name| ids.contains(&format!("{name}_1").as_str()));
+    assert!(ids.len() > 2 && ids.iter().filter(both).count() > 0, "{ids:?}");
 }
 
 #[test]

@@ -180,7 +180,8 @@ fn a_file_beyond_the_size_limit_is_an_error_of_its_write() {
     let mut shell = Command::new("sh");
     shell.arg("-c").arg(format!("ulimit -f 1; exec '{}' {args}", env!("CARGO_BIN_EXE_wayword")));
     let ran = run(shell.current_dir(building.path("")));
-    assert!(ran.refused().contains("large.json: cannot write it"), "{ran:?}");
+    assert_eq!(ran.code, Some(7), "{ran:?}");
+    assert!(ran.err.contains("large.json: cannot write it"), "{ran:?}");
     assert!(!building.path("large.json").exists());
 }
 

@@ -1,4 +1,4 @@
-//! Mistakes on the command line: the error says what is wrong, where, and what to do.
+//! Mistakes on the command line: the error names what is wrong, where, and what to do.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -42,8 +42,8 @@ fn another_thing_than_a_run_is_told_by_its_name() {
                 &["walks.jsonl of a run", "texts are in instructions.jsonl"],
             ),
             (&["runs", "status", "run"], &["one machine makes this run", "it has no chunks"]),
-            (&["generate", "--paths", "1", "--out", EPISODES], &["it is a file", "give a name that is not taken"]),
-            (&["demo", "--out", EPISODES], &["it is a file", "give a name that is not taken"]),
+            (&["generate", "--paths", "1", "--out", EPISODES], &["cannot make the folder", "a file has this name"]),
+            (&["demo", "--out", EPISODES], &["cannot make the folder", "a file has this name"]),
         ],
     );
 }

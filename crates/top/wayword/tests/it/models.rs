@@ -372,7 +372,6 @@ fn refused_model_settings_leave_no_folder_and_no_plan() {
     stage.building.write("own/questions.j2", "Ask.");
     for (args, told) in [
         (["--replay", "nowhere.jsonl"], "nowhere.jsonl"),
-        (["--record", "nowhere/calls.jsonl"], "--record"),
         (["--prompts", "own"], "questions"),
         (["--llm", "nobody/words"], "nobody"),
     ] {

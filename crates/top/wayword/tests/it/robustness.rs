@@ -129,7 +129,7 @@ fn sets_of_a_comparison_are_compared_with_each_other() {
     assert!(found["agents"].as_array().unwrap().len() > 1 && table["rows"].is_array(), "{found}");
     assert_eq!(found["rankings"][0]["one"], "original");
     let none = building.wayword(&["robustness", "--compared", "run"]);
-    assert!(none.refused().contains("reads wayword-comparison/1"), "{none:?}");
+    assert!(none.refused().contains("has to be of `wayword compare`"), "{none:?}");
     fs::remove_file(building.path("walked/followed.jsonl")).unwrap();
     let none = building.wayword(&["robustness", "--compared", "walked"]);
     assert!(none.refused().contains("followed.jsonl"), "{none:?}");

@@ -39,7 +39,7 @@ pub(super) struct DatasetInfo {
     #[serde(default)]
     pub(super) video_path: Option<String>,
     pub(super) features: BTreeMap<String, DatasetFeature>,
-    /// How many episodes and rows it says that there are.
+    /// Its totals of episodes and rows.
     #[serde(default)]
     total_episodes: Option<u64>,
     #[serde(default)]

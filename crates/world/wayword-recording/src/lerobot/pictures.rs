@@ -105,7 +105,7 @@ impl VideoStretch {
         Ok(stretch)
     }
 
-    /// Width and height of the video's pictures, pixels, as the file says.
+    /// Width and height of the video's pictures, pixels, from the file's header.
     pub(super) fn size_px(&self) -> (u32, u32) {
         self.film.size_px()
     }

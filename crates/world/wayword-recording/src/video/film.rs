@@ -52,7 +52,7 @@ impl Mp4Film {
         &self.remarks
     }
 
-    /// Width and height of the coded pictures, pixels, as the file says.
+    /// Width and height of the coded pictures, pixels, from the file's header.
     #[cfg(feature = "lerobot")]
     pub(crate) fn size_px(&self) -> (u32, u32) {
         self.movie.size_px

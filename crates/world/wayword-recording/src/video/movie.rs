@@ -39,9 +39,9 @@ pub(super) struct Mp4Movie {
     pub(super) shown: Vec<ShownPicture>,
     /// Whether a fragmented file breaks off, so that later pictures are missing.
     pub(super) breaks_off: bool,
-    /// How long the file says that the movie is, seconds; `None` if a fragmented file does not say it.
+    /// The movie's duration from the file's header, seconds; `None` if a fragmented file has none.
     pub(super) announced_s: Option<f64>,
-    /// Width and height of the coded pictures, pixels, as the file says.
+    /// Width and height of the coded pictures, pixels, from the file's header.
     pub(super) size_px: (u32, u32),
 }
 

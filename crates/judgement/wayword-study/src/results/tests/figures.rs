@@ -156,7 +156,7 @@ fn strengths_that_cannot_be_computed_have_a_reason() {
     assert!(files[1].1.contains(why.as_str()), "{why}");
 }
 
-/// One participant, or one route, gives figures without intervals, as docs/STUDY.md says.
+/// One participant, or one route, gives figures without intervals, as in docs/STUDY.md.
 #[test]
 fn one_participant_or_one_route_has_no_interval() {
     for mode in [StudyTask::Follow, StudyTask::Rate, StudyTask::Pair] {

@@ -129,7 +129,7 @@ fn found_by_results(data: &StudyData, outlook: &StudyOutlook, assumed: &AssumedA
     (0..studies).filter(is_found).count() as f64 / studies as f64
 }
 
-/// The plan says of a study what `results` finds in studies that are drawn from its assumptions.
+/// The plan's power is that which `results` finds in studies that are drawn from its assumptions.
 #[test]
 fn results_find_what_the_plan_says() {
     const STUDIES: usize = 200;

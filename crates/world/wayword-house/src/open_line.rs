@@ -1,0 +1,40 @@
+//! Whether anything as high as the eyes stands on a straight line over a floor: a wall, or the leaf of an open door.
+
+use super::{
+    model::{HALF_WALL_CM, House, STOREY_CM, WallOpening},
+    rect::RectCm,
+};
+use wayword_core::DVec3;
+
+/// Distance between two tested points of a line, metres.
+const SAMPLE_M: f64 = 0.04;
+
+/// The areas of a storey over which one sees, and the leaves of its open doors.
+pub(super) struct OpenFloor {
+    open: Vec<RectCm>,
+    leaves: Vec<RectCm>,
+}
+
+impl OpenFloor {
+    /// The storey with this number, 0 at the ground. A number that no room has gives an empty one.
+    pub(super) fn for_storey(house: &House, storey: usize) -> Self {
+        let here = |opening: &&WallOpening| {
+            usize::try_from(opening.base_cm / STOREY_CM) == Ok(storey) && opening.is_passable()
+        };
+        let rooms = house.rooms.iter().filter(|room| room.floor as usize == storey).map(|room| room.inner_area());
+        let passages = house.openings.iter().filter(here).map(|opening| opening.span.thickened_by(HALF_WALL_CM));
+        Self {
+            open: rooms.chain(passages).collect(),
+            leaves: house.openings.iter().filter(here).flat_map(|opening| opening.open_leaf(&house.rooms)).collect(),
+        }
+    }
+
+    /// Whether a straight line between two places, in metres, meets no wall and no open leaf.
+    pub(super) fn is_clear(&self, from: DVec3, to: DVec3) -> bool {
+        let samples = (from.distance(to) / SAMPLE_M).ceil().max(1.0) as usize;
+        (0..=samples).map(|at| from.lerp(to, at as f64 / samples as f64)).all(|place| {
+            let holds = |area: &RectCm| area.holds_m(place.x, place.y);
+            self.open.iter().any(holds) && !self.leaves.iter().any(holds)
+        })
+    }
+}
