@@ -74,8 +74,18 @@ const fn heading(title: &'static str, is_brief: bool, flags: &'static [&'static 
 const FEWEST_WITH_HEADINGS: usize = 12;
 
 /// Flags that `-h` leaves out although it lists others of their heading: few need them.
-const SELDOM_USED: [&str; 8] =
-    ["calibration", "detector-figures", "finish", "island", "picture-px", "prompts", "proposals", "write-sees"];
+const SELDOM_USED: [&str; 10] = [
+    "calibration",
+    "detector-figures",
+    "evidence",
+    "finish",
+    "island",
+    "no-route",
+    "picture-px",
+    "prompts",
+    "proposals",
+    "write-sees",
+];
 
 /// Fewest characters of a short description; a mark before them does not end it.
 const SHORTEST: usize = 20;
