@@ -1,6 +1,6 @@
 //! Writes files that a user names, and refuses names that cannot take what a command writes before it begins.
 
-use crate::error::CommandError;
+use crate::{error::CommandError, run_folder};
 use std::{
     fs,
     io::{self, ErrorKind},
@@ -22,6 +22,33 @@ pub fn write_file(out: &Path, bytes: impl AsRef<[u8]>) -> Result<(), CommandErro
 /// When the name leads to a folder, a socket or a block device.
 pub fn find_output_place(out: &Path) -> Result<OutputPlace, CommandError> {
     OutputPlace::for_name(out).map_err(CommandError::io(out, "write"))
+}
+
+/// Refuses an output that would take the place of something that the command reads: one of these files, or a file of a run in one of
+/// these folders. The pages of a report are no file of its run. `flag` names the output, as in `--out`.
+///
+/// # Errors
+/// When it would.
+pub fn refuse_over_input<'a>(
+    flag: &str,
+    out: &Path,
+    inputs: impl IntoIterator<Item = &'a Path>,
+) -> Result<(), CommandError> {
+    // A file that does not exist yet is no input.
+    let Ok(out_is) = fs::canonicalize(out) else { return Ok(()) };
+    let is_read = |input: &Path| {
+        let own_file = |name: &str| fs::canonicalize(input.join(name)).is_ok_and(|own| own == out_is);
+        fs::canonicalize(input).is_ok_and(|input| input == out_is)
+            || (input.is_dir() && run_folder::file::KEPT.into_iter().any(own_file))
+    };
+    match inputs.into_iter().find(|input| is_read(input)) {
+        Some(input) => {
+            let problem =
+                format!("{flag} {} would overwrite what this command reads of {}", out.display(), input.display());
+            Err(CommandError::usage(problem, "give another name"))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Refuses a name that cannot be a folder, before a command begins that writes one.
@@ -51,6 +78,22 @@ pub fn expect_output_folder(folder: &Path) -> Result<(), CommandError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_output_over_an_input_is_refused() {
+        let around = tempfile::tempdir().unwrap();
+        let at = |name: &str| around.path().join(name);
+        for name in ["walks.jsonl", "report.html", "texts.json"] {
+            fs::write(at(name), "").unwrap();
+        }
+        let refused =
+            |out: &str, inputs: &[&Path]| refuse_over_input("--out", &at(out), inputs.iter().copied()).is_err();
+        let (run, texts) = (around.path(), at("texts.json"));
+        assert!(
+            refused("walks.jsonl", &[run]) && refused("texts.json", &[&texts]) && refused("./texts.json", &[&texts])
+        );
+        assert!(!refused("report.html", &[run]) && !refused("texts.json", &[run]) && !refused("new.json", &[&texts]));
+    }
 
     #[cfg(unix)]
     #[test]

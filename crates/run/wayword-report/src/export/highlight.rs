@@ -20,7 +20,7 @@ use wayword_run::{
     output::CommandOutput,
     run_folder::{file, read_run_settings},
     settings::{AskedPlatform, AskedSettings},
-    written_files::find_output_place,
+    written_files::{find_output_place, refuse_over_input},
 };
 
 /// The written files, with how much in them is doubted. Printed at the end.
@@ -66,8 +66,11 @@ impl fmt::Display for WrittenHighlights {
 
 pub(super) fn write_highlights(args: &ExportArgs, name: &Path, output: &CommandOutput) -> Result<Exit, CommandError> {
     refuse_no_file(name)?;
-    let highlights = find_highlights(args, output)?;
     let [page, file] = ["html", "json"].map(|end| file_with_ending(name, end));
+    for written in [&page, &file] {
+        refuse_over_input("--highlight", written, args.texts.iter().chain(&args.run).map(PathBuf::as_path))?;
+    }
+    let highlights = find_highlights(args, output)?;
     replace_file(&file, output, || write_json(&file, &highlights))?;
     replace_file(&page, output, || write_page(&page, &highlights))?;
     let summary = &highlights.summary;

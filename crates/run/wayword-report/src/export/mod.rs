@@ -44,7 +44,7 @@ use wayword_run::{
     run_folder::{expect_texts, file, refuse_torn_line},
     settings::AskedPlatform,
     terms,
-    written_files::{expect_output_folder, find_output_place},
+    written_files::{expect_output_folder, find_output_place, refuse_over_input},
 };
 
 /// Most scenes for which the screen lists what the user has to do.
@@ -82,6 +82,7 @@ pub fn run_export(args: &ExportArgs, output: &CommandOutput) -> Result<Exit, Com
     }
     let (format, out) = check_dataset_args(args)?;
     refuse_what_does_not_fit(args, format)?;
+    refuse_over_input("--out", out, args.run.iter().map(PathBuf::as_path))?;
     let output = &output_beside(format, out, output)?;
     let mut records = read_records(&args.run, args.style.as_deref())?;
     refuse_several_styles(format, &records)?;

@@ -92,6 +92,8 @@ pub mod file {
     pub const LOCK: &str = "run.lock";
     /// Names the process at work in the folder, on network file systems, where locks are not reliable.
     pub const OWNER: &str = "run.owner";
+    /// The files without which a run is not whole.
+    pub const KEPT: [&str; 9] = [CONFIG, WALKS, INSTRUCTIONS, REJECTED, ERRORS, ID, DATA, LOCK, OWNER];
 }
 
 impl RunFolder {

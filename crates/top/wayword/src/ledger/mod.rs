@@ -12,7 +12,7 @@ use wayword_run::{
     error::{CommandError, Exit},
     output::CommandOutput,
     settings::Service,
-    written_files::find_output_place,
+    written_files::{find_output_place, refuse_over_input},
 };
 
 const SECONDS_PER_DAY: u64 = 86_400;
@@ -37,6 +37,7 @@ pub(crate) fn run_ledger(args: &Args, output: &CommandOutput) -> Result<Exit, Co
             output.print_result(&costs, &costs);
         }
         LedgerCommand::Export { filter, out } => {
+            refuse_over_input("--out", out, [path.as_path()])?;
             let output = &output.beside_data(&find_output_place(out)?);
             let failed = || CommandError::io(out, "write");
             let mut lines = OutputFile::begin(out).map_err(failed())?;

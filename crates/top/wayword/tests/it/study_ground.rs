@@ -14,9 +14,10 @@ fn wayword(folder: &Path, args: &[&str]) -> Ran {
 /// A run of one path in each of these houses.
 fn run_in_houses(houses: &[&str]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    for house in houses {
-        let out = format!("run-{house}");
-        let args = ["generate", "--paths", "1", "--scan", house, "--style", "r2r", "--seed", "3", "--out", &out];
+    for (seed, house) in (3..).zip(houses) {
+        // The seed is a part of a path's name.
+        let (out, seed) = (format!("run-{house}"), format!("{seed}"));
+        let args = ["generate", "--paths", "1", "--scan", house, "--style", "r2r", "--seed", &seed, "--out", &out];
         assert_eq!(wayword(folder.path(), &args).code, Some(0));
     }
     let texts =

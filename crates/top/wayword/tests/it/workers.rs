@@ -92,7 +92,7 @@ fn plan_estimates_the_run_and_refuses_a_worker_with_other_settings() {
     assert!(report.refused().contains("wayword runs merge"), "{report:?}");
     let export = ["export", "--run", "big", "--format", "r2r", "--style", "r2r", "--out", "x.json"];
     assert!(building.wayword(&export).refused().contains("wayword runs merge"));
-    assert!(building.wayword(&["runs", "status", "nowhere"]).refused().contains("no plan"));
+    assert!(building.wayword(&["runs", "status", "nowhere"]).refused().contains("no such folder"));
 }
 
 #[cfg(not(feature = "cloud"))]

@@ -232,7 +232,8 @@ fn a_path_of_twelve_views_takes_three_rounds_of_calls_and_five_with_questions() 
         let further = stage.provider.log().answered - asked as u64 - 1;
         assert!(further == 0 || perception == "single", "{perception}: {further} further calls");
         let rounds = stage.provider.log().rounds;
-        assert!(rounds <= most + further, "{perception}: {rounds} rounds, {asked} questions");
+        // The first call of a model goes ahead alone, so that a fault of the service costs one call.
+        assert!(rounds <= 1 + most + further, "{perception}: {rounds} rounds, {asked} questions");
     }
 }
 
