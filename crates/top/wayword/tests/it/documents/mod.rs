@@ -23,7 +23,7 @@ const NEEDS: [(&str, &str); 8] = [
     ("hf/", "weights from the hub"),
     ("wayword_db", "PostgreSQL"),
     ("s3://", "a bucket"),
-    ("similarity runs/", "the weights of a sentence encoder"),
+    ("similarity runs/val_seen#reverie", "the weights of a sentence encoder"),
     ("--data NAME", "a recording of the reader's own"),
 ];
 
