@@ -7,7 +7,7 @@ use std::{
 
 /// Most links that are followed from one name, as on Linux.
 const MAX_LINKS: usize = 40;
-/// The folders whose entries are the open files of this process, by their numbers.
+/// The folders that list the open files of this process, by their numbers.
 const DESCRIPTOR_FOLDERS: [&str; 3] = ["/dev/fd", "/proc/self/fd", "/proc/thread-self/fd"];
 
 /// Where the bytes for a name go. Nothing but a file is ever replaced.

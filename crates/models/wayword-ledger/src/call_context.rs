@@ -40,7 +40,7 @@ struct AccountCounts {
 pub struct AccountTotals {
     /// Answers.
     pub answers: u64,
-    /// Those of them whose price is not known.
+    /// Those of them with an unknown price.
     pub unpriced: u64,
     /// Tokens that were sent for them.
     pub tokens_in: u64,

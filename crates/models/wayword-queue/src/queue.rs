@@ -207,7 +207,7 @@ impl ChunkQueue {
         Ok(())
     }
 
-    /// Frees the chunks of workers whose processes ran on this machine and have ended.
+    /// Frees the chunks of workers that ran on this machine and have ended.
     fn free_ended_workers(&self) -> Result<(), QueueError> {
         let sql = "SELECT worker FROM wayword_queue.workers WHERE run = $1";
         let workers: Vec<String> = self.pool.with_connection("ask for the workers", |connection| {

@@ -24,7 +24,7 @@ pub(crate) const CERTIFICATES_VARIABLE: &str = "SSL_CERT_FILE";
 /// Largest file of certificates that is read, bytes. The public ones take 0.3 MB.
 const MAX_CERTIFICATE_BYTES: u64 = 16 << 20;
 
-/// The authorities whose certificates are trusted: those of the file in `SSL_CERT_FILE`, or else the public ones.
+/// The authorities that are trusted: those of the file in `SSL_CERT_FILE`, or else the public ones.
 ///
 /// # Errors
 /// When the file cannot be read, or has no certificate.

@@ -51,7 +51,7 @@ impl CommandProgress {
         Self { bar, _lines: None }
     }
 
-    /// A progress whose lines go to `print`. Where no thread can be started there are no lines.
+    /// A progress that gives its lines to `print`. Where no thread can be started there are no lines.
     pub(crate) fn with_lines(
         bar: ProgressBar,
         words: LineWords,

@@ -121,7 +121,7 @@ impl CommandOutput {
         Self { listener: Some(listener), ..Self::new(true, false) }
     }
 
-    /// The same output for a command whose data goes to `place`: where that is standard output, nothing else is printed there.
+    /// The same output for a command that writes its data to `place`: where that is standard output, nothing else is printed there.
     #[must_use]
     pub fn beside_data(&self, place: &OutputPlace) -> Self {
         Self { carries_data: self.carries_data || *place == OutputPlace::StandardOutput, ..self.clone() }

@@ -43,7 +43,7 @@ pub(crate) enum OwnFormatError {
     OfCommand {
         /// The command that wrote it.
         by: &'static str,
-        /// The command whose files are read here.
+        /// The command that made the files which are read here.
         wanted: &'static str,
     },
     /// The file has another format than the one that is read.
@@ -171,8 +171,8 @@ mod tests {
             "{told}"
         );
         let other = figures(&with_header::<RunSettings>(BODY)).unwrap_err();
-        assert!(matches!(&other, OwnFormatError::Other { .. }), "another kind of file: {other}");
-        assert!(other.hint_or("").contains("use the version that wrote it"));
+        assert!(matches!(&other, OwnFormatError::OfCommand { .. }), "another kind of file: {other}");
+        assert!(other.hint_or("").contains("give another file or folder"), "{}", other.hint_or(""));
     }
 
     #[test]

@@ -1,10 +1,10 @@
 //! Writes files that a user names, and refuses names that cannot take what a command writes before it begins.
 
-use crate::{error::CommandError, run_folder};
+use crate::error::CommandError;
 use std::{
     fs,
     io::{self, ErrorKind},
-    path::Path,
+    path::{Path, PathBuf},
 };
 use wayword_formats::{OutputFile, OutputPlace};
 
@@ -24,28 +24,21 @@ pub fn find_output_place(out: &Path) -> Result<OutputPlace, CommandError> {
     OutputPlace::for_name(out).map_err(CommandError::io(out, "write"))
 }
 
-/// Refuses an output that would take the place of something that the command reads: one of these files, or a file of a run in one of
-/// these folders. The pages of a report are no file of its run. `flag` names the output, as in `--out`.
+/// Refuses an output that would take the place of a file that the command reads. `flag` names the output, as in `--out`.
 ///
 /// # Errors
 /// When it would.
-pub fn refuse_over_input<'a>(
+pub fn refuse_over_input(
     flag: &str,
     out: &Path,
-    inputs: impl IntoIterator<Item = &'a Path>,
+    inputs: impl IntoIterator<Item = PathBuf>,
 ) -> Result<(), CommandError> {
     // A file that does not exist yet is no input.
     let Ok(out_is) = fs::canonicalize(out) else { return Ok(()) };
-    let is_read = |input: &Path| {
-        let own_file = |name: &str| fs::canonicalize(input.join(name)).is_ok_and(|own| own == out_is);
-        fs::canonicalize(input).is_ok_and(|input| input == out_is)
-            || (input.is_dir() && run_folder::file::KEPT.into_iter().any(own_file))
-    };
-    match inputs.into_iter().find(|input| is_read(input)) {
+    match inputs.into_iter().find(|input| fs::canonicalize(input).is_ok_and(|input| input == out_is)) {
         Some(input) => {
-            let problem =
-                format!("{flag} {} would overwrite what this command reads of {}", out.display(), input.display());
-            Err(CommandError::usage(problem, "give another name"))
+            let problem = format!("{flag} would overwrite {}, which this command reads", input.display());
+            Err(CommandError::usage(problem, format!("give {flag} another file name")))
         }
         None => Ok(()),
     }
@@ -83,16 +76,11 @@ mod tests {
     fn an_output_over_an_input_is_refused() {
         let around = tempfile::tempdir().unwrap();
         let at = |name: &str| around.path().join(name);
-        for name in ["walks.jsonl", "report.html", "texts.json"] {
-            fs::write(at(name), "").unwrap();
-        }
-        let refused =
-            |out: &str, inputs: &[&Path]| refuse_over_input("--out", &at(out), inputs.iter().copied()).is_err();
-        let (run, texts) = (around.path(), at("texts.json"));
-        assert!(
-            refused("walks.jsonl", &[run]) && refused("texts.json", &[&texts]) && refused("./texts.json", &[&texts])
-        );
-        assert!(!refused("report.html", &[run]) && !refused("texts.json", &[run]) && !refused("new.json", &[&texts]));
+        fs::write(at("texts.json"), "").unwrap();
+        fs::write(at("page.html"), "").unwrap();
+        let refused = |out: &str| refuse_over_input("--out", &at(out), [at("texts.json"), at("gone")]).is_err();
+        assert!(refused("texts.json") && refused("./texts.json"));
+        assert!(!refused("page.html") && !refused("gone") && !refused("new.json"));
     }
 
     #[cfg(unix)]

@@ -10,7 +10,7 @@ use wayword_run::{
     check::{CheckedAgain, check_run_again, find_changed_texts},
     error::{CommandError, Exit},
     output::CommandOutput,
-    run_folder::{expect_run, file, is_comparison},
+    run_folder::{expect_run, file, files_of_run, is_comparison},
     written_files::{find_output_place, refuse_over_input},
 };
 
@@ -50,7 +50,7 @@ const MAX_REPORT_WALKS: usize = 100;
 pub(crate) fn run_report(args: &ReportArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     expect_run(&args.run)?;
     let out = args.out.clone().unwrap_or_else(|| args.run.join(file::REPORT));
-    refuse_over_input("--out", &out, [args.run.as_path()])?;
+    refuse_over_input("--out", &out, files_of_run(&args.run))?;
     let place = find_output_place(&out)?;
     let output = &output.beside_data(&place);
     if is_comparison(&args.run) {

@@ -1,18 +1,20 @@
-//! Whether anything as high as the eyes stands on a straight line over a floor: a wall, or the leaf of an open door.
+//! Whether anything as high as the eyes stands on a straight line over a floor: a wall, a wardrobe, or the leaf of an open door.
 
 use super::{
-    model::{HALF_WALL_CM, House, STOREY_CM, WallOpening},
+    model::{FurniturePiece, HALF_WALL_CM, House, STOREY_CM, WallOpening},
     rect::RectCm,
 };
 use wayword_core::DVec3;
 
+/// Height of the eyes over the floor, centimetres.
+const EYE_CM: i32 = 150;
 /// Distance between two tested points of a line, metres.
 const SAMPLE_M: f64 = 0.04;
 
-/// The areas of a storey over which one sees, and the leaves of its open doors.
+/// The areas of a storey over which one sees, and what stands in them higher than the eyes.
 pub(super) struct OpenFloor {
     open: Vec<RectCm>,
-    leaves: Vec<RectCm>,
+    tall: Vec<RectCm>,
 }
 
 impl OpenFloor {
@@ -23,18 +25,24 @@ impl OpenFloor {
         };
         let rooms = house.rooms.iter().filter(|room| room.floor as usize == storey).map(|room| room.inner_area());
         let passages = house.openings.iter().filter(here).map(|opening| opening.span.thickened_by(HALF_WALL_CM));
-        Self {
-            open: rooms.chain(passages).collect(),
-            leaves: house.openings.iter().filter(here).flat_map(|opening| opening.open_leaf(&house.rooms)).collect(),
-        }
+        let leaves = house.openings.iter().filter(here).flat_map(|opening| opening.open_leaf(&house.rooms));
+        let is_tall = |piece: &&FurniturePiece| {
+            let base = storey as i32 * STOREY_CM;
+            house.rooms.get(piece.room).is_some_and(|room| room.floor as usize == storey)
+                && piece.base_cm < base + EYE_CM
+                && piece.base_cm + piece.height_cm > base + EYE_CM
+                && !piece.kind.is_slim_on_wall()
+        };
+        let tall = house.furniture.iter().filter(is_tall).map(|piece| piece.footprint);
+        Self { open: rooms.chain(passages).collect(), tall: leaves.chain(tall).collect() }
     }
 
-    /// Whether a straight line between two places, in metres, meets no wall and no open leaf.
+    /// Whether a straight line between two places, in metres, meets no wall and nothing tall.
     pub(super) fn is_clear(&self, from: DVec3, to: DVec3) -> bool {
         let samples = (from.distance(to) / SAMPLE_M).ceil().max(1.0) as usize;
         (0..=samples).map(|at| from.lerp(to, at as f64 / samples as f64)).all(|place| {
             let holds = |area: &RectCm| area.holds_m(place.x, place.y);
-            self.open.iter().any(holds) && !self.leaves.iter().any(holds)
+            self.open.iter().any(holds) && !self.tall.iter().any(holds)
         })
     }
 }

@@ -58,7 +58,9 @@ pub(super) fn true_strengths(sd: f64) -> Vec<f64> {
             let expected =
                 CHOICES_PER_ORDERED_PAIR * mean_over_normal(better, sd * SQRT_2, |better| choice_chances(better)[at]);
             for _ in 0..expected.round() as usize {
-                choices.push(SystemComparison { person: choices.len(), item: 0, first, second, preference });
+                // Each choice is another person's about another item: one item alone would give no strengths.
+                let number = choices.len();
+                choices.push(SystemComparison { person: number, item: number, first, second, preference });
             }
         }
     }

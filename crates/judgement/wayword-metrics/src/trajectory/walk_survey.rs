@@ -14,7 +14,7 @@ const CLOSE_M: f64 = 1.2;
 const ZERO_WAY_M: f64 = 0.5;
 /// Random walks for each route.
 const WALKS_PER_ROUTE: usize = 100;
-/// Viewpoints of each scene whose distances to the goal are compared, for each route.
+/// Viewpoints of each scene for which distances to the goal are compared, for each route.
 const COMPARED_PER_ROUTE: usize = 20;
 
 /// A route over the viewpoint graph of a scene, from start to goal.

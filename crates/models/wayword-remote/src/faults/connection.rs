@@ -87,7 +87,7 @@ pub(crate) fn ends_in_handshake(error: &ureq::Error) -> bool {
 }
 
 /// Why a certificate or the scheme of an address can't be right, and what to do; `None` for other errors. By the words of the TLS
-/// library, whose types the HTTP library keeps to itself.
+/// library; the HTTP library does not give its types.
 fn certificate_problem(words: &str, context: FaultContext<'_>) -> Option<(String, String)> {
     let says = |phrase: &str| words.contains(phrase);
     if says("InvalidContentType") {

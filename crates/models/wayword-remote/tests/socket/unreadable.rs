@@ -7,7 +7,7 @@ use crate::{
 use std::{io::Write, net::TcpStream, thread, time::Duration};
 use wayword_core::{ChatMessage, Image, LanguageModel, ModelError};
 
-/// Writes a complete response whose body is any bytes.
+/// Writes a complete response with any bytes as its body.
 fn reply_bytes(stream: &mut TcpStream, headers: &str, body: &[u8]) -> bool {
     let head = format!("HTTP/1.1 200 OK\r\n{headers}content-length: {}\r\n\r\n", body.len());
     stream.write_all(&[head.as_bytes(), body].concat()).is_ok()

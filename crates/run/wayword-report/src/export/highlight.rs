@@ -18,7 +18,7 @@ use wayword_run::{
     count::count_phrase,
     error::{CommandError, Exit},
     output::CommandOutput,
-    run_folder::{file, read_run_settings},
+    run_folder::{file, files_of_run, read_run_settings},
     settings::{AskedPlatform, AskedSettings},
     written_files::{find_output_place, refuse_over_input},
 };
@@ -68,7 +68,8 @@ pub(super) fn write_highlights(args: &ExportArgs, name: &Path, output: &CommandO
     refuse_no_file(name)?;
     let [page, file] = ["html", "json"].map(|end| file_with_ending(name, end));
     for written in [&page, &file] {
-        refuse_over_input("--highlight", written, args.texts.iter().chain(&args.run).map(PathBuf::as_path))?;
+        let read = args.texts.iter().cloned().chain(args.run.iter().flat_map(|run| files_of_run(run)));
+        refuse_over_input("--highlight", written, read)?;
     }
     let highlights = find_highlights(args, output)?;
     replace_file(&file, output, || write_json(&file, &highlights))?;

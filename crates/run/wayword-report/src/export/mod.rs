@@ -41,7 +41,7 @@ use wayword_run::{
     count::count_phrase,
     error::{CommandError, Exit},
     output::CommandOutput,
-    run_folder::{expect_texts, file, refuse_torn_line},
+    run_folder::{expect_texts, file, files_of_run, refuse_torn_line},
     settings::AskedPlatform,
     terms,
     written_files::{expect_output_folder, find_output_place, refuse_over_input},
@@ -82,7 +82,7 @@ pub fn run_export(args: &ExportArgs, output: &CommandOutput) -> Result<Exit, Com
     }
     let (format, out) = check_dataset_args(args)?;
     refuse_what_does_not_fit(args, format)?;
-    refuse_over_input("--out", out, args.run.iter().map(PathBuf::as_path))?;
+    refuse_over_input("--out", out, args.run.iter().flat_map(|run| files_of_run(run)))?;
     let output = &output_beside(format, out, output)?;
     let mut records = read_records(&args.run, args.style.as_deref())?;
     refuse_several_styles(format, &records)?;

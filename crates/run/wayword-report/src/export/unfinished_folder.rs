@@ -11,7 +11,7 @@ use wayword_run::error::CommandError;
 /// The hidden folder, until all is complete.
 const UNFINISHED: &str = ".unfinished";
 
-/// A folder whose contents are being made.
+/// A folder with contents that are being made.
 pub(super) struct UnfinishedFolder {
     folder: PathBuf,
     unfinished: PathBuf,

@@ -27,7 +27,7 @@ pub struct CheckedAgain {
     pub texts: BTreeMap<usize, CheckedText>,
     /// What the texts were checked against.
     pub checked_against: Vec<String>,
-    /// The lines whose text is not the one that the run wrote. Records of older versions do not tell.
+    /// The lines with another text than the one that the run wrote. Records of older versions do not tell.
     pub changed: BTreeSet<usize>,
 }
 
@@ -100,7 +100,7 @@ pub fn find_changed_texts(run: &FilePath) -> Result<CheckedAgain, CommandError> 
 #[derive(Default)]
 struct WrittenTexts {
     texts: Vec<RunText>,
-    /// The lines whose text is not the one that the run wrote.
+    /// The lines with another text than the one that the run wrote.
     changed: BTreeSet<usize>,
     /// The lines that do not tell, as those of older versions.
     unhashed: BTreeSet<usize>,

@@ -20,7 +20,7 @@ pub struct RunSummary {
     pub run: String,
     /// Items of the run.
     pub items: usize,
-    /// Items whose texts are in the folder, accepted or rejected.
+    /// Items with texts in the folder, accepted or rejected.
     pub made: usize,
     /// Instructions that passed every check.
     pub passed: usize,

@@ -60,7 +60,7 @@ fn check_lines(
     })
 }
 
-/// Refuses a run whose last instruction was only half written, for readers that do not pass over it.
+/// Refuses a run with a last instruction that was only half written, for readers that do not pass over it.
 ///
 /// # Errors
 /// When it was, or the file cannot be read.

@@ -92,8 +92,12 @@ pub mod file {
     pub const LOCK: &str = "run.lock";
     /// Names the process at work in the folder, on network file systems, where locks are not reliable.
     pub const OWNER: &str = "run.owner";
-    /// The files without which a run is not whole.
-    pub const KEPT: [&str; 9] = [CONFIG, WALKS, INSTRUCTIONS, REJECTED, ERRORS, ID, DATA, LOCK, OWNER];
+}
+
+/// The files of a run, pages and pictures left out: without them it is not whole.
+pub fn files_of_run(folder: &Path) -> impl Iterator<Item = PathBuf> + '_ {
+    use file::{CONFIG, DATA, ERRORS, ID, INSTRUCTIONS, LOCK, OWNER, REJECTED, WALKS};
+    [CONFIG, WALKS, INSTRUCTIONS, REJECTED, ERRORS, ID, DATA, LOCK, OWNER].into_iter().map(|name| folder.join(name))
 }
 
 impl RunFolder {

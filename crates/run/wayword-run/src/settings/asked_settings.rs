@@ -96,7 +96,7 @@ walks:
         /// Number of random paths. [default: 10, if no episodes are given]
         #[arg(long, value_name = "N")]
         pub paths: Option<usize>,
-        /// Random paths through this many generated houses, whose seeds begin at --seed: with as many houses as paths each path lies in a
+        /// Random paths through this many generated houses, with seeds from --seed on: with as many houses as paths each path lies in a
         /// house of its own. For platform house. [default: 20 houses, from seed 0 on]
         #[arg(long, value_name = "N")]
         pub houses: Option<usize>,

@@ -56,7 +56,7 @@ pub struct RunSettings {
     /// Numbers of random paths that earlier commands asked for, ascending: later paths come after theirs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub raised_from: Vec<usize>,
-    /// Number of generated houses that random paths lie in, whose seeds begin at `seed`; the platform's own choice if `None`.
+    /// Number of generated houses that random paths lie in, with seeds from `seed` on; the platform's own choice if `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub houses: Option<usize>,
     /// Scenes to use; none means all.

@@ -37,7 +37,7 @@ pub(crate) fn run_ledger(args: &Args, output: &CommandOutput) -> Result<Exit, Co
             output.print_result(&costs, &costs);
         }
         LedgerCommand::Export { filter, out } => {
-            refuse_over_input("--out", out, [path.as_path()])?;
+            refuse_over_input("--out", out, [path.clone()])?;
             let output = &output.beside_data(&find_output_place(out)?);
             let failed = || CommandError::io(out, "write");
             let mut lines = OutputFile::begin(out).map_err(failed())?;

@@ -27,7 +27,7 @@ pub enum RunsCommand {
     Status(RunsStatus),
     /// Put the chunks together, to the files that one machine would have made.
     Merge(RunsMerge),
-    /// Open chunks again that have failures or were given up for a reason, or whose files are damaged.
+    /// Open chunks again that have failures, damaged files, or were given up for a reason.
     Retry(RunsRetry),
     /// Make the tables of the queue and the ledger in a database, or print the statements that do so.
     Database(RunsDatabase),

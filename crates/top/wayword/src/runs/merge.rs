@@ -36,7 +36,7 @@ struct MergeSummary {
     written: usize,
     rejected: usize,
     failed: usize,
-    /// Chunks whose marks hold no hashes, because an older version finished them.
+    /// Chunks with marks without hashes, because an older version finished them.
     #[serde(skip_serializing_if = "is_zero")]
     without_hashes: usize,
 }

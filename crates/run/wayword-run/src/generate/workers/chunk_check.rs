@@ -48,7 +48,7 @@ pub struct CheckedChunks {
     pub done: Vec<ChunkRecord>,
     /// What is wrong with them.
     pub damaged: Vec<ChunkDamage>,
-    /// Chunks whose marks hold no hashes, because an older version finished them. Of these an edited word is not found.
+    /// Chunks with marks without hashes, because an older version finished them. Of these an edited word is not found.
     pub without_hashes: Vec<usize>,
 }
 
@@ -154,7 +154,7 @@ impl<'a> ChunkChecker<'a> {
         Ok(())
     }
 
-    /// Checks a chunk whose mark holds no hashes: the number of lines of each file, and that each line is of an item of this chunk.
+    /// Checks a chunk that has a mark without hashes: the number of lines of each file, and that each line is of an item of this chunk.
     fn check_counts(
         &self,
         number: usize,
