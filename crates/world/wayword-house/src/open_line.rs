@@ -8,6 +8,8 @@ use wayword_core::DVec3;
 
 /// Height of the eyes over the floor, centimetres.
 const EYE_CM: i32 = 150;
+/// Room for the frames of doors and the edges of furniture on both sides of a line, metres.
+const CLEARANCE_M: f64 = 0.05;
 /// Distance between two tested points of a line, metres.
 const SAMPLE_M: f64 = 0.04;
 
@@ -37,8 +39,14 @@ impl OpenFloor {
         Self { open: rooms.chain(passages).collect(), tall: leaves.chain(tall).collect() }
     }
 
-    /// Whether a straight line between two places, in metres, meets no wall and nothing tall.
+    /// Whether a straight line between two places, in metres, keeps clear of walls and of what is tall.
     pub(super) fn is_clear(&self, from: DVec3, to: DVec3) -> bool {
+        let way = to - from;
+        let beside = DVec3::new(-way.y, way.x, 0.0).normalize_or_zero() * CLEARANCE_M;
+        [DVec3::ZERO, beside, -beside].into_iter().all(|off| self.is_clear_line(from + off, to + off))
+    }
+
+    fn is_clear_line(&self, from: DVec3, to: DVec3) -> bool {
         let samples = (from.distance(to) / SAMPLE_M).ceil().max(1.0) as usize;
         (0..=samples).map(|at| from.lerp(to, at as f64 / samples as f64)).all(|place| {
             let holds = |area: &RectCm| area.holds_m(place.x, place.y);

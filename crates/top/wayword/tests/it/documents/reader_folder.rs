@@ -76,6 +76,8 @@ impl ReaderFolder {
         let provider = Rc::new(ScriptedProvider::start(models::cast_as(["qwen3", "llava", "gpt-4.1-mini"])).unwrap());
         let reader = Self { folder, provider, extent };
         reader.prepare(&["view", "path", "--scan", "house2-3", "--width", "160", "--out", "walk.mp4"]);
+        let words = run(command(&["study", "texts"]).current_dir(reader.path()));
+        fs::write(reader.path().join("de.toml"), words.out).unwrap();
         if extent == RunExtent::Whole {
             reader.write_episodes();
         }
