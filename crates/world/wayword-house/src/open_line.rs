@@ -9,7 +9,7 @@ use wayword_core::DVec3;
 /// Height of the eyes over the floor, centimetres.
 const EYE_CM: i32 = 150;
 /// Room for the frames of doors and the edges of furniture on both sides of a line, metres.
-const CLEARANCE_M: f64 = 0.05;
+const CLEARANCE_M: f64 = 0.03;
 /// Distance between two tested points of a line, metres.
 const SAMPLE_M: f64 = 0.04;
 

@@ -67,7 +67,7 @@ pub fn write_items(
         DatasetFormat::Reverie => reverie::write_reverie_file(file, &gather_reverie_items(episodes))?,
         DatasetFormat::Rxr => rxr::write_rxr_file(file, &episodes)?,
         DatasetFormat::Vlnce => {
-            vlnce::write_vlnce_file(file, &VlnceDataset::from_episodes(gather_path_items(episodes)))?
+            vlnce::write_vlnce_file(file, &VlnceDataset::from_episodes(gather_path_items(episodes)))?;
         }
         DatasetFormat::Wayword => jsonl::write_records(file, records)?,
     }

@@ -76,7 +76,7 @@ fn evenly_spaced(steps: Vec<FilmStep>, most: usize) -> Vec<FilmStep> {
     if most > last {
         return steps;
     }
-    let chosen: Vec<usize> = (0..most).map(|at| if gaps == 0 { last } else { at * last / gaps }).collect();
+    let chosen: Vec<usize> = (0..most).map(|at| (at * last).checked_div(gaps).unwrap_or(last)).collect();
     steps.into_iter().enumerate().filter(|(at, _)| chosen.contains(at)).map(|(_, step)| step).collect()
 }
 

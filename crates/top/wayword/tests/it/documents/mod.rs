@@ -2,6 +2,7 @@
 //! that needs only this program.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "how long each command took")]
 
 #[cfg(feature = "full")]
 mod reader_folder;
