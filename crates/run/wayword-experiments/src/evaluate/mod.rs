@@ -11,7 +11,7 @@ use crate::{
 };
 use figures::{SubmissionReport, SubmissionResampling};
 use refusal::{SubmissionRefusal, wrong_file_error};
-use std::{collections::BTreeSet, fs, path::Path};
+use std::{collections::BTreeSet, path::Path};
 use wayword_core::{Platform, PlatformError, graph::GraphError};
 use wayword_formats::{
     DatasetFormat, Episode, detect_format,
@@ -23,7 +23,7 @@ use wayword_run::{
     error::{CommandError, Exit},
     output::CommandOutput,
     platforms,
-    written_files::{find_output_place, write_file},
+    written_files::{find_output_place, refuse_over_input, write_file},
 };
 
 /// How much of the episodes a submission was scored on.
@@ -44,7 +44,9 @@ struct SubmissionCoverage {
 /// # Errors
 /// When an input cannot be read, the submission has problems or no trajectory, a rule cannot be applied, or `--per-item` names an input.
 pub fn run_evaluate(args: &Args, output: &CommandOutput) -> Result<Exit, CommandError> {
-    refuse_to_overwrite(args)?;
+    if let Some(per_item) = &args.per_item {
+        refuse_over_input("--per-item", per_item, [args.submission.clone(), args.episodes.clone()])?;
+    }
     let place = args.per_item.as_deref().map(find_output_place).transpose()?;
     let output = &place.map_or_else(|| output.clone(), |place| output.beside_data(&place));
     refuse_swapped(args)?;
@@ -125,21 +127,6 @@ fn refuse_swapped(args: &Args) -> Result<(), CommandError> {
     let (submission, episodes) = (args.submission.display(), args.episodes.display());
     let problem = format!("{submission} holds episodes, and --episodes {episodes} does not: they seem to be swapped");
     Err(CommandError::usage(problem, format!("write `wayword evaluate {episodes} --episodes {submission}`")))
-}
-
-/// Refuses a `--per-item` file that is one of the inputs, under whatever name.
-fn refuse_to_overwrite(args: &Args) -> Result<(), CommandError> {
-    let Some(Ok(per_item)) = args.per_item.as_ref().map(fs::canonicalize) else {
-        // A file that does not exist yet is no input.
-        return Ok(());
-    };
-    for input in [&args.submission, &args.episodes] {
-        if fs::canonicalize(input).is_ok_and(|input| input == per_item) {
-            let problem = format!("--per-item would overwrite {}, which this command reads", input.display());
-            return Err(CommandError::usage(problem, "give --per-item another file name"));
-        }
-    }
-    Ok(())
 }
 
 /// The rules of success that are asked for and can be applied.
