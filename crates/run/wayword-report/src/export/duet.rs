@@ -13,6 +13,7 @@ use wayword_formats::{DatasetFormat, jsonl::InstructionRecord};
 use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// The models with the tokenizers that these agents use.
+#[cfg(feature = "local")]
 const BERT_MODEL: &str = "hf/google-bert/bert-base-uncased";
 const XLM_ROBERTA: &str = "hf/FacebookAI/xlm-roberta-base";
 
