@@ -1,17 +1,16 @@
-//! Whether anything as high as the eyes stands on a straight line over a floor: a wall, a wardrobe, or the leaf of an open door.
+//! Whether anything as high as the eyes stands on a straight line over a floor: a wall, a wardrobe, or the frame and the leaf of an open door.
 
 use super::{
     model::{FurniturePiece, HALF_WALL_CM, House, STOREY_CM, WallOpening},
     rect::RectCm,
+    structure::post_footprints,
 };
 use wayword_core::DVec3;
 
 /// Height of the eyes over the floor, centimetres.
 const EYE_CM: i32 = 150;
-/// Room for the frames of doors and the edges of furniture on both sides of a line, metres.
-const CLEARANCE_M: f64 = 0.03;
 /// Distance between two tested points of a line, metres.
-const SAMPLE_M: f64 = 0.04;
+const SAMPLE_M: f64 = 0.02;
 
 /// The areas of a storey over which one sees, and what stands in them higher than the eyes.
 pub(super) struct OpenFloor {
@@ -33,20 +32,14 @@ impl OpenFloor {
             house.rooms.get(piece.room).is_some_and(|room| room.floor as usize == storey)
                 && piece.base_cm < base + EYE_CM
                 && piece.base_cm + piece.height_cm > base + EYE_CM
-                && !piece.kind.is_slim_on_wall()
         };
         let tall = house.furniture.iter().filter(is_tall).map(|piece| piece.footprint);
-        Self { open: rooms.chain(passages).collect(), tall: leaves.chain(tall).collect() }
+        let posts = house.openings.iter().filter(here).flat_map(post_footprints);
+        Self { open: rooms.chain(passages).collect(), tall: leaves.chain(posts).chain(tall).collect() }
     }
 
-    /// Whether a straight line between two places, in metres, keeps clear of walls and of what is tall.
+    /// Whether a straight line between two places, in metres, meets no wall and nothing tall.
     pub(super) fn is_clear(&self, from: DVec3, to: DVec3) -> bool {
-        let way = to - from;
-        let beside = DVec3::new(-way.y, way.x, 0.0).normalize_or_zero() * CLEARANCE_M;
-        [DVec3::ZERO, beside, -beside].into_iter().all(|off| self.is_clear_line(from + off, to + off))
-    }
-
-    fn is_clear_line(&self, from: DVec3, to: DVec3) -> bool {
         let samples = (from.distance(to) / SAMPLE_M).ceil().max(1.0) as usize;
         (0..=samples).map(|at| from.lerp(to, at as f64 / samples as f64)).all(|place| {
             let holds = |area: &RectCm| area.holds_m(place.x, place.y);

@@ -4,12 +4,15 @@ use super::super::{
     colour::Colour,
     leaf::OpenLeaf,
     model::{DoorLeaf, HALF_WALL_CM, House, LEAF_CM, WallOpening},
-    rect::{SpanCm, WallSide},
+    rect::{RectCm, SpanCm, WallSide},
     shapes::HouseShape,
     surface::HouseSurface,
 };
 use super::wall_box;
 use glam::Vec3;
+
+/// From the middle of a wall to the face of a door's frame, centimetres.
+const FRAME_DEPTH_CM: i32 = HALF_WALL_CM + 2;
 
 fn add_box(shape: &mut HouseShape, surface: HouseSurface, [x, y, z]: [[f32; 2]; 3]) {
     shape.add_block(surface, x, y, z);
@@ -29,16 +32,27 @@ pub(in super::super) fn build_opening(house: &House, opening: &WallOpening) -> H
     shape
 }
 
+/// From where to where the two posts of an opening's frame reach along the wall, centimetres.
+fn post_spans(span: &SpanCm) -> [[i32; 2]; 2] {
+    [[span.from - 6, span.from + 1], [span.to - 1, span.to + 6]]
+}
+
+/// The floor under the posts of an opening's frame.
+pub(in super::super) fn post_footprints(opening: &WallOpening) -> [RectCm; 2] {
+    post_spans(&opening.span).map(|[from, to]| SpanCm { from, to, ..opening.span }.thickened_by(FRAME_DEPTH_CM))
+}
+
 /// The white frame around an opening: two posts and a lintel.
 fn add_frame(shape: &mut HouseShape, opening: &WallOpening) {
     let white = HouseSurface::from_rgb([242, 241, 238]);
     let SpanCm { from, to, .. } = opening.span;
     let (base, top) = (opening.base_cm, opening.base_cm + opening.height_cm);
-    let deep = [-HALF_WALL_CM - 2, HALF_WALL_CM + 2];
+    let deep = [-FRAME_DEPTH_CM, FRAME_DEPTH_CM];
     let wall = if opening.span.along_x { WallSide::North } else { WallSide::West };
     let mut bar = |along, z| add_box(shape, white, wall_box(&opening.span, wall, along, deep, z));
-    bar([from - 6, from + 1], [base, top + 6]);
-    bar([to - 1, to + 6], [base, top + 6]);
+    for post in post_spans(&opening.span) {
+        bar(post, [base, top + 6]);
+    }
     bar([from, to], [top - 1, top + 6]);
 }
 

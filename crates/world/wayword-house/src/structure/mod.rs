@@ -5,7 +5,7 @@ mod shell;
 mod stairs;
 mod windows;
 
-pub(super) use doors::build_opening;
+pub(super) use doors::{build_opening, post_footprints};
 pub(super) use shell::{build_ceiling, build_floor, build_walls};
 pub(super) use stairs::{build_railing, build_steps};
 pub(super) use windows::build_window;
