@@ -422,7 +422,7 @@ def _path(value: Mapping[str, Any]) -> Path:
 def _frame(value: Mapping[str, Any], has_pose: bool) -> Frame:
     # Older versions wrote zeros where there is no pose.
     unknown = {"position": [math.nan] * 3, "heading": math.nan, "elevation_rad": math.nan}
-    pose = value["pose"] if has_pose else unknown
+    pose: Mapping[str, Any] = value["pose"] if has_pose else unknown
     x, y, z = pose["position"]
     return Frame(
         position=(x, y, z),
