@@ -1,12 +1,15 @@
 //! Writes files that a user names, and refuses names that cannot take what a command writes before it begins.
 
-use crate::error::CommandError;
+use crate::{count::count_phrase, error::CommandError};
 use std::{
     fs,
     io::{self, ErrorKind},
     path::{Path, PathBuf},
 };
 use wayword_formats::{OutputFile, OutputPlace};
+
+/// Endings of files that users put into the folder of an output themselves: logs, settings, ledgers.
+const BESIDE_OUTPUTS: [&str; 7] = [".log", ".out", ".err", ".toml", ".db", ".db-wal", ".db-shm"];
 
 /// Writes a complete file, or through a pipe or a device: see [`OutputFile`].
 ///
@@ -68,6 +71,34 @@ pub fn expect_output_folder(folder: &Path) -> Result<(), CommandError> {
     }
 }
 
+/// As [`expect_output_folder`], and refuses a folder in which other files stand than those that `is_own` accepts by their names:
+/// the command's files would be mixed with the user's. Hidden files, logs, settings and ledgers may stand there.
+///
+/// # Errors
+/// As [`expect_output_folder`], when there are other files, or the folder cannot be read.
+pub fn expect_own_folder(folder: &Path, is_own: impl Fn(&str) -> bool) -> Result<(), CommandError> {
+    expect_output_folder(folder)?;
+    let mut foreign = Vec::new();
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+        entries => entries.map_err(CommandError::io(folder, "look into"))?,
+    };
+    for entry in entries {
+        let name = entry.map_err(CommandError::io(folder, "look into"))?.file_name().to_string_lossy().into_owned();
+        let stands_beside = name.starts_with('.') || BESIDE_OUTPUTS.iter().any(|end| name.ends_with(end));
+        if !stands_beside && !is_own(&name) {
+            foreign.push(name);
+        }
+    }
+    let Some(first) = foreign.iter().min() else { return Ok(()) };
+    let problem = format!(
+        "--out {}: the folder holds {} that this command did not write, such as {first}",
+        folder.display(),
+        count_phrase(foreign.len(), "file")
+    );
+    Err(CommandError::usage(problem, "give an empty folder, or the name of a new one"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -81,6 +112,24 @@ mod tests {
         let refused = |out: &str| refuse_over_input("--out", &at(out), [at("texts.json"), at("gone")]).is_err();
         assert!(refused("texts.json") && refused("./texts.json"));
         assert!(!refused("page.html") && !refused("gone") && !refused("new.json"));
+    }
+
+    #[test]
+    fn folder_with_files_of_the_user_is_refused() {
+        let around = tempfile::tempdir().unwrap();
+        let folder = around.path().join("recording");
+        let expect = || expect_own_folder(&folder, |name| name == "run.lock").map_err(|error| error.to_string());
+        expect().unwrap();
+        fs::create_dir(&folder).unwrap();
+        for beside in ["run.lock", "worker-3.log", "styles.toml", ".hidden"] {
+            fs::write(folder.join(beside), "").unwrap();
+        }
+        expect().unwrap();
+        for picture in ["000001.jpg", "000000.jpg"] {
+            fs::write(folder.join(picture), "").unwrap();
+        }
+        let refused = expect().unwrap_err();
+        assert!(refused.contains("holds 2 files that this command did not write, such as 000000.jpg"), "{refused}");
     }
 
     #[cfg(unix)]

@@ -12,9 +12,8 @@ use wayword_run::{
     count::count_phrase,
     error::{CommandError, Exit},
     output::CommandOutput,
-    run_folder::{WalkRecord, file, read_lines},
+    run_folder::{WalkRecord, expect_run_place, file, read_lines},
     settings::{AskedSettings, Draw, Walks},
-    written_files::expect_output_folder,
 };
 
 /// `wayword demo`.
@@ -38,7 +37,7 @@ pub(crate) fn run_demo(args: &DemoArgs, output: &CommandOutput) -> Result<Exit, 
         draw: Draw { seed: Some(args.seed), ..Draw::default() },
         ..AskedSettings::default()
     };
-    expect_output_folder(&args.out)?;
+    expect_run_place(&args.out)?;
     output.say(format_args!("generating {} and a path through it ...", scene_name(args.seed)));
     let summary = generate_into(&args.out, &asked.into_job()?, output)?;
     if let Some(reason) = &summary.stopped {

@@ -43,7 +43,6 @@ use wayword_run::{
     run_folder::Journal,
     settings::RolePlayer,
     settings_file,
-    written_files::expect_output_folder,
 };
 
 pub(crate) use outputs::followed_set;
@@ -113,7 +112,7 @@ pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit
     let grounders = ComparisonGrounders::open(&config, output)?;
     // A folder that exists is locked now. A new one is made after the models are loaded, so that a model that does not fit into
     // the memory leaves no folder.
-    expect_output_folder(&args.out)?;
+    run_folder::expect_run_place(&args.out)?;
     let old_folder_lock = run_folder::is_begun(&args.out).then(|| begin_folder(&args.out, &config)).transpose()?;
     let id = run_folder::run_id_or_fresh(&args.out, "compare")?;
     let calls = models.open_calls(&id, output)?;

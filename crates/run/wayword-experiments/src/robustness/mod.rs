@@ -47,7 +47,7 @@ use wayword_run::{
     settings::{AskedSettings, RolePlayer, RunJob, RunSettings},
     settings_file,
     team::RoleTeam,
-    written_files::{expect_output_folder, write_file},
+    written_files::write_file,
 };
 use write_texts::{ArmContext, ArmTextWriter};
 
@@ -211,7 +211,7 @@ fn sort_changes(changes: Vec<Change>, setting: &ChangeSetting<'_>) -> (Vec<Chang
 
 /// Makes or continues the folder, and locks it against other processes.
 fn begin_folder(args: &RobustnessArgs, base: &BaseRun, out: &FilePath) -> Result<run_folder::FolderLock, CommandError> {
-    expect_output_folder(out)?;
+    run_folder::expect_run_place(out)?;
     let folder = &base.folder;
     let kept = RobustnessSettings {
         run: folder.canonicalize().map_err(CommandError::io(folder, "find"))?,

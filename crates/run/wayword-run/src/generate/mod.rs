@@ -21,7 +21,7 @@ use crate::{
     output::CommandOutput,
     plan::RunPlan,
     platforms::has_hops,
-    run_folder::{RunFolder, WorldData, continued_settings, is_begun, keep_id, run_id_or_fresh},
+    run_folder::{RunFolder, WorldData, continued_settings, expect_run_place, is_begun, keep_id, run_id_or_fresh},
     settings::{Perception, RunJob, RunSettings, TargetMode},
     settings_file, stores,
     styles::MeasuredStyle,
@@ -72,14 +72,13 @@ fn make_run(
     if args.workers.is_asked() {
         return workers::run_worker(out, job, &args.workers, worker, output);
     }
-    expect_output_folder(out)?;
     // A run of one machine appends lines to files, which object stores cannot do.
     stores::refuse_address(
         out,
         "a run of one machine cannot lie in an object store",
         "give --queue or --shard 0/1, whose chunks are sent when they are finished; or name a folder",
     )?;
-    expect_output_folder(out)?;
+    expect_run_place(out)?;
     if wayword_queue::ChunkPlan::find_plan(out)?.is_some() && !is_begun(out) {
         return Err(CommandError::usage(
             format!("{} holds a run that workers make", out.display()),
@@ -148,6 +147,7 @@ fn warn_of_styles(settings: &RunSettings, styles: &[MeasuredStyle], output: &Com
 /// When the settings, the platform, the styles, the folder or the ledger are wrong. An item that fails is a line of
 /// `errors.jsonl`, and the next command tries it again.
 pub fn generate_into(folder: &Path, job: &RunJob, output: &CommandOutput) -> Result<RunSummary, CommandError> {
+    expect_run_place(folder)?;
     warn_of_no_effect(&job.settings, output);
     let continued = is_begun(folder).then(|| continued_settings(folder, &job.settings)).transpose()?;
     // An unreadable recording is reported before models that cannot be called, because the user would start these in vain.
@@ -157,7 +157,6 @@ pub fn generate_into(folder: &Path, job: &RunJob, output: &CommandOutput) -> Res
     let (plan, settings) = &prepared.plan_with_settings(output)?;
     warn_of_styles(settings, &plan.styles, output);
     // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.
-    expect_output_folder(folder)?;
     let begun = is_begun(folder).then(|| RunFolder::open(folder, settings)).transpose()?;
     let id = run_id_or_fresh(folder, "run")?;
     watch::record_run_id(&id);

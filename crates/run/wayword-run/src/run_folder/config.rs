@@ -42,11 +42,13 @@ pub(super) fn keep_settings(folder: &Path, settings: &RunSettings) -> Result<(),
         return keep_config(folder, settings);
     }
     let before: RunSettings = read_config(folder)?;
-    if settings.paths < before.paths {
-        return Err(fewer_paths(folder, &before, settings)?);
-    }
     if before.raised_to(settings) != *settings {
-        return Err(other_settings(folder, &before, settings));
+        let as_many = RunSettings { paths: settings.paths, ..before.clone() };
+        let has_fewer_alone = settings.paths < before.paths && as_many.raised_to(settings) == *settings;
+        return Err(match has_fewer_alone {
+            true => fewer_paths(folder, &before, settings)?,
+            false => other_settings(folder, &before, settings),
+        });
     }
     if before == *settings { Ok(()) } else { write_config(&path, settings) }
 }

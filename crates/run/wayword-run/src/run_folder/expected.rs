@@ -1,7 +1,11 @@
 //! Refuses what is given as a run folder and is none, with the folder that the user may mean.
 
-use super::{file, is_begun, refuse_other_format, refuse_unmerged};
-use crate::{error::CommandError, settings::RunSettings};
+use super::{file, files_of_run, is_begun, refuse_other_format, refuse_unmerged};
+use crate::{
+    error::CommandError,
+    settings::RunSettings,
+    written_files::{expect_output_folder, expect_own_folder},
+};
 use std::{fs, path::Path};
 
 /// Most runs below a folder that an error names.
@@ -38,6 +42,18 @@ fn runs_within(folder: &Path) -> Vec<String> {
     let mut runs: Vec<_> = entries.map(|entry| entry.path()).filter(|path| is_begun(path)).collect();
     runs.sort();
     runs.iter().take(MAX_NAMED_ITEMS).map(|run| run.display().to_string()).collect()
+}
+
+/// Refuses a name that cannot be the folder of a new run or of one that goes on: see [`expect_own_folder`].
+///
+/// # Errors
+/// As [`expect_own_folder`].
+pub fn expect_run_place(folder: &Path) -> Result<(), CommandError> {
+    if is_begun(folder) {
+        return expect_output_folder(folder);
+    }
+    let of_run = |name: &str| files_of_run(Path::new("")).any(|file| file == Path::new(name));
+    expect_own_folder(folder, |name| of_run(name) || [wayword_queue::PLAN, "chunks"].contains(&name))
 }
 
 /// Refuses what is not the folder of a run with texts, and names the one that the user may mean. A folder with the texts alone is

@@ -37,7 +37,7 @@ use config::keep_settings;
 pub use config::{config_text, is_comparison, keep_config, read_config, refuse_other_format, refuse_unmerged};
 pub use config::{continued_settings, is_begun, read_run_settings};
 pub use cost::{ItemCalls, TextCost};
-pub use expected::{expect_run, expect_texts};
+pub use expected::{expect_run, expect_run_place, expect_texts};
 pub use folder_lock::{FolderLock, lock_folder};
 pub use journal::{Journal, read_lines};
 pub use line_check::{refuse_edited_lines, refuse_repeated_lines, refuse_torn_line};

@@ -306,6 +306,12 @@ impl AskedSettings {
                 "for more texts make several runs, each with its own --seed",
             ));
         }
+        if writing.questions == Some(0) {
+            return Err(CommandError::usage(
+                "--questions 0 asks nothing after the opening question",
+                "give 1 or more, or --perception single, which asks one question for each view",
+            ));
+        }
         if let Some(questions) = writing.questions.filter(|questions| *questions > MAX_QUESTIONS) {
             return Err(CommandError::usage(
                 format!("--questions {questions} is more than {MAX_QUESTIONS}"),
@@ -531,7 +537,12 @@ mod tests {
             }
             .resolve()
         };
-        assert!(asked(MAX_QUESTIONS).is_ok() && asked(MAX_QUESTIONS + 1).is_err() && asked(usize::MAX).is_err());
+        assert!(
+            asked(MAX_QUESTIONS).is_ok()
+                && asked(0).is_err()
+                && asked(MAX_QUESTIONS + 1).is_err()
+                && asked(usize::MAX).is_err()
+        );
     }
 
     #[test]

@@ -48,7 +48,7 @@ impl RunPlace {
     pub fn fetch_run(named: &Path, to: &Path, output: &CommandOutput) -> Result<(), CommandError> {
         let Some(address) = store_address(named) else {
             return Err(CommandError::usage(
-                "--to is for a run in an object store",
+                "--out is for a run in an object store",
                 "leave it out: a run in a folder is merged there",
             ));
         };

@@ -1,6 +1,6 @@
 //! The episodes of a set of houses: VLN-CE's files, with the actions of each, and habitat-lab's configuration.
 
-use super::{SCENE_SET, WrittenEpisodes};
+use super::{CONFIG_FILE, EPISODES_FOLDER, RUN_FOLDER, SCENE_SET, WrittenEpisodes};
 use crate::house::args::HouseArgs;
 use std::{collections::BTreeMap, fs, path::Path};
 use wayword_core::{DVec3, Heading};
@@ -26,16 +26,10 @@ use wayword_run::{
 
 /// The name of the split that all episodes are in.
 const EPISODE_SPLIT: &str = "train";
-/// The folder of the episodes, within that of the set.
-const EPISODES_FOLDER: &str = "episodes";
-/// The folder of the run that writes the instructions, within that of the set.
-const RUN_FOLDER: &str = "run";
 /// How far a step may end off the walk, metres.
 const TOLERANCE_M: f64 = 0.25;
 /// Width and height of the pictures that agents see, pixels.
 const PICTURE_PX: [u32; 2] = [224, 224];
-/// The file with habitat-lab's configuration, within the folder of the set.
-const CONFIG_FILE: &str = "vln.yaml";
 
 /// Instructions for random paths through the houses, by labels and rules: a run in the folder `run`. A summary is printed if
 /// items are lost.

@@ -19,11 +19,17 @@ use wayword_run::{
     interrupt,
     output::CommandOutput,
     run_folder::{expect_texts, file, lock_folder},
-    written_files::{expect_output_folder, write_file},
+    written_files::{expect_own_folder, write_file},
 };
 
 /// The file that lists the scenes, which Habitat takes as its scene dataset.
 const SCENE_SET: &str = "houses.scene_dataset_config.json";
+/// The folder of the episodes, within that of the set.
+const EPISODES_FOLDER: &str = "episodes";
+/// The folder of the run that writes the instructions, within that of the set.
+const RUN_FOLDER: &str = "run";
+/// The file with habitat-lab's configuration, within the folder of the set.
+const CONFIG_FILE: &str = "vln.yaml";
 
 /// Most houses of one set. A larger number is refused.
 const MAX_HOUSES: u64 = 100_000;
@@ -61,7 +67,10 @@ pub(crate) fn run_house(args: &HouseArgs, output: &CommandOutput) -> Result<Exit
         Some(records) => record_seeds(records)?,
         None => house_seeds(args)?,
     };
-    expect_output_folder(&args.out)?;
+    if args.paths == 0 && args.run.is_none() && args.style.is_some() {
+        return Err(CommandError::usage("--style has no effect with --paths 0", "leave it out, or ask for a path"));
+    }
+    expect_own_folder(&args.out, is_file_of_set)?;
     fs::create_dir_all(&args.out).map_err(CommandError::io(&args.out, "make the folder"))?;
     let _held = lock_folder(&args.out)?;
     // Texts are made before houses, so that a run that cannot continue ends the command early.
@@ -89,6 +98,12 @@ pub(crate) fn run_house(args: &HouseArgs, output: &CommandOutput) -> Result<Exit
     let written = WrittenHouses { houses, scene_set, episodes };
     output.print_result(&written, summary_text(&written, &args.out));
     Ok(if has_loss { Exit::WithLoss } else { exit })
+}
+
+/// Whether a file's name is one of those in the folder of a set.
+fn is_file_of_set(name: &str) -> bool {
+    let others = [SCENE_SET, RUN_FOLDER, EPISODES_FOLDER, CONFIG_FILE, file::LOCK, file::OWNER];
+    seed_of(name).is_some() || others.contains(&name)
 }
 
 /// The seeds that the user asks for.

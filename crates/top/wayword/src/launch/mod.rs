@@ -2,13 +2,13 @@
 
 pub(crate) mod args;
 use crate::{
-    cli::{WaywordCli, WaywordCommand},
+    cli::{WaywordCli, WaywordCommand, parse_arguments},
     launch::args::{LaunchArgs, LaunchCommand, LaunchKubernetes, LaunchSlurm},
 };
-use clap::Parser;
 use serde_json::json;
 use std::{
     borrow::Cow,
+    ffi::OsString,
     fs,
     io::Write,
     process::{Command, Stdio},
@@ -20,8 +20,9 @@ use wayword_queue::launch::{
 };
 use wayword_run::{
     error::{CommandError, Exit},
-    generate::ChunkedItems,
+    generate::{ChunkedItems, args::GenerateArgs},
     output::{CommandOutput, mask_credentials},
+    settings_file::read_settings,
 };
 
 pub(crate) fn run_launch(args: &LaunchArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
@@ -32,8 +33,8 @@ pub(crate) fn run_launch(args: &LaunchArgs, output: &CommandOutput) -> Result<Ex
 }
 
 fn launch_slurm(args: &LaunchSlurm, output: &CommandOutput) -> Result<Exit, CommandError> {
-    let worker = make_worker(&args.program, &args.arguments, args.workers)?;
     warn_of_idle_workers(&args.arguments, args.workers, output)?;
+    let worker = make_worker(&args.program, &args.arguments, args.workers)?;
     let text = write_script(&SlurmJob {
         name: args.name.clone(),
         gpus: args.gpus,
@@ -85,27 +86,57 @@ fn launch_kubernetes(args: &LaunchKubernetes, output: &CommandOutput) -> Result<
     Ok(Exit::Done)
 }
 
+/// The command of the workers as they will read it. Refuses one that would end each of them at once.
+///
+/// # Errors
+/// When it is not `generate`, its flags are wrong or do not fit together, or it names a part itself.
+fn parse_worker_command(arguments: &[String]) -> Result<GenerateArgs, CommandError> {
+    if arguments.first().map(String::as_str) != Some("generate") {
+        let (problem, hint) = match arguments.first().map(String::as_str) {
+            Some("wayword") => {
+                ("the workers' command begins with wayword", "leave that word out, as in -- generate --out DIR")
+            }
+            _ => ("only `generate` has workers", "write it after two hyphens, as in -- generate --out DIR"),
+        };
+        return Err(CommandError::usage(problem, hint));
+    }
+    let words = ["wayword"].into_iter().chain(arguments.iter().map(String::as_str)).map(OsString::from).collect();
+    let args = match parse_arguments(words) {
+        Ok(WaywordCli { command: WaywordCommand::Generate(args), .. }) => args,
+        Ok(_) => {
+            return Err(CommandError::usage("only `generate` has workers", "write it first after the two hyphens"));
+        }
+        Err(error) => {
+            let text = error.render().to_string();
+            let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
+            let tip = text.lines().find_map(|line| line.trim_start().strip_prefix("tip: "));
+            let hint = tip.unwrap_or("`wayword generate --help` lists its flags");
+            return Err(CommandError::usage(format!("the workers' command: {first}"), hint));
+        }
+    };
+    if args.workers.shard.is_some() || args.workers.plan || args.dry_run {
+        return Err(CommandError::usage(
+            "the workers' command has --shard, --plan or --dry-run, so that no worker would make its own part",
+            "leave it out: each worker gets its part by its number",
+        ));
+    }
+    // A settings file may lie where only the workers can read it.
+    if let Ok(file) = read_settings(args.config.as_deref()) {
+        args.asked.clone().or_file(file).resolve()?;
+    }
+    Ok(*args)
+}
+
 /// Warns if the run has fewer chunks than workers, as far as this machine can know.
 fn warn_of_idle_workers(arguments: &[String], workers: u32, output: &CommandOutput) -> Result<(), CommandError> {
-    let words = ["wayword"].into_iter().chain(arguments.iter().map(String::as_str));
-    // The worker itself reports errors of the command.
-    let Ok(WaywordCli { command: WaywordCommand::Generate(args), .. }) = WaywordCli::try_parse_from(words) else {
-        return Ok(());
-    };
-    let items = ChunkedItems::of_command(&args)?;
+    let items = ChunkedItems::of_command(&parse_worker_command(arguments)?)?;
     let warning = items.and_then(|items| items.idle_warning(usize::try_from(workers).unwrap_or(usize::MAX)));
     warning.iter().for_each(|warning| output.say(warning));
     Ok(())
 }
 
-/// The command of each worker. Refuses anything but `generate` with a folder.
+/// The command of each worker. Refuses one without a folder, and one that shows a secret.
 fn make_worker(program: &str, arguments: &[String], workers: u32) -> Result<LaunchWorker, CommandError> {
-    if arguments.first().map(String::as_str) != Some("generate") {
-        return Err(CommandError::usage(
-            "only `generate` has workers",
-            "write it after two hyphens, as in -- generate --out DIR",
-        ));
-    }
     let has = |flag: &str| arguments.iter().any(|typed| typed == flag || typed.starts_with(&format!("{flag}=")));
     if !has("--out") && !has("--config") {
         return Err(CommandError::usage(

@@ -8,11 +8,12 @@ mod prometheus;
 mod retry;
 mod status;
 
-use crate::runs::args::{RunsArgs, RunsCommand, RunsMerge, RunsRetry, RunsStatus};
+use crate::runs::args::{RunsArgs, RunsCommand, RunsMerge, RunsQueue, RunsRetry, RunsStatus};
 use std::path::Path;
 use wayword_queue::ChunkPlan;
 use wayword_run::{
     error::{CommandError, Exit},
+    generate::ChunkHandout,
     output::CommandOutput,
     run_folder::is_begun,
 };
@@ -29,6 +30,11 @@ pub(crate) fn run_runs(args: &RunsArgs, output: &CommandOutput) -> Result<Exit, 
         | RunsCommand::Retry(RunsRetry { run, .. }) => refuse_single_run(run)?,
         RunsCommand::Database(_) => {}
     }
+    if let RunsCommand::Status(RunsStatus { run, database, .. }) | RunsCommand::Retry(RunsRetry { run, database, .. }) =
+        &args.command
+    {
+        refuse_needless_queue(run, database)?;
+    }
     match &args.command {
         RunsCommand::Status(args) => status::run_status(args, |status| match args.prometheus {
             true => output.print_result(status, prometheus::prometheus_text(status)),
@@ -40,10 +46,27 @@ pub(crate) fn run_runs(args: &RunsArgs, output: &CommandOutput) -> Result<Exit, 
     }
 }
 
+/// Refuses the name of a queue for a run in a folder, whose workers keep it there.
+fn refuse_needless_queue(run: &Path, asked: &RunsQueue) -> Result<(), CommandError> {
+    let Some(queue) = asked.queue.as_ref().filter(|_| !is_address(run)) else { return Ok(()) };
+    if ChunkHandout::from_folder(run)? == Some(ChunkHandout::Queue(queue.clone())) {
+        return Ok(());
+    }
+    Err(CommandError::usage(
+        "--queue names the queue of a run in an object store",
+        "leave it out: a run in a folder names its own",
+    ))
+}
+
+/// Whether a run is named by its address in an object store.
+fn is_address(run: &Path) -> bool {
+    run.to_string_lossy().contains("://")
+}
+
 /// Refuses a folder that is not there, and a run that one machine made or makes: it has no chunks.
 fn refuse_single_run(run: &Path) -> Result<(), CommandError> {
     // An address in an object store is no folder of this machine.
-    if !run.exists() && !run.to_string_lossy().contains("://") {
+    if !run.exists() && !is_address(run) {
         return Err(CommandError::usage(
             format!("{}: there is no such folder", run.display()),
             "give the --out folder of the run",

@@ -122,6 +122,43 @@ fn settings_without_effect_are_named() {
 }
 
 #[test]
+fn folder_with_files_of_the_user_takes_no_output() {
+    let building = Building::new();
+    fs::create_dir(building.path("recording")).unwrap();
+    building.write("recording/000000.jpg", "a picture");
+    let words: &[&str] = &["--out recording: the folder holds 1 file", "such as 000000.jpg", "an empty folder"];
+    let commands: [&[&str]; 4] =
+        [&["generate", "--paths", "1"], &["generate", "--paths", "1", "--shard", "0/1"], &["demo"], &["house"]];
+    for command in commands {
+        refuse_all(&building, &[(&[command, &["--out", "recording"]].concat(), words)]);
+    }
+    assert_eq!(fs::read_dir(building.path("recording")).unwrap().count(), 1, "something was written");
+    building.run_over_episodes("run");
+    refuse_all(&building, &[(&["house", "--out", "run"], &["--out run: the folder holds"])]);
+    let demo = building.wayword(&["demo", "--out", "run"]).err;
+    assert!(demo.contains("platform (\"matterport\" before, \"house\" now)"), "{demo}");
+}
+
+#[test]
+fn command_of_workers_is_read_before_it_is_handed_to_them() {
+    let building = Building::new();
+    let launch = ["launch", "slurm", "--workers", "4", "--time", "1:00:00", "--"];
+    let cases: [(&[&str], &[&str]); 5] = [
+        (&["generate", "--path", "10", "--out", "x"], &["unexpected argument '--path' found", "'--paths'"]),
+        (&["generate", "--paths", "1e3", "--out", "x"], &["invalid value '1e3'", "a whole number"]),
+        (
+            &["generate", "--paths", "9", "--episodes", "e", "--out", "x"],
+            &["--episodes and --paths cannot be combined"],
+        ),
+        (&["generate", "--paths", "9", "--shard", "0/4", "--out", "x"], &["has --shard", "leave it out"]),
+        (&["wayword", "generate", "--out", "x"], &["begins with wayword", "leave that word out"]),
+    ];
+    for (command, words) in cases {
+        refuse_all(&building, &[(&[&launch[..], command].concat(), words)]);
+    }
+}
+
+#[test]
 fn only_style_of_a_run_needs_no_flag_and_several_are_named() {
     let building = Building::new();
     let export = |run, more: &[&str]| {

@@ -33,6 +33,9 @@ pub(super) fn write_path(args: &ViewPath, output: &CommandOutput) -> Result<Writ
     let platform = open_platform(&args.platform)?;
     let path = walk::choose_path(&args.walk, &args.platform, &*platform)?;
     let mut steps = film_steps::film_steps(&path, args.smooth.unwrap_or(0))?;
+    if place.is_strip() && args.fps.is_some() {
+        return Err(CommandError::usage("--fps is for a film", "end --out in .gif or .mp4, or leave --fps out"));
+    }
     match (place.is_strip(), args.pictures) {
         (true, asked) => steps = evenly_spaced(steps, asked.map_or(STRIP_PICTURES, usize::from)),
         (false, Some(_)) => {

@@ -6,14 +6,14 @@ use crate::{
     item::RunItem,
     own_format,
     plan::RunPlan,
-    run_folder::{config_text, fresh_id, is_begun, scene_hashes, setting_differences},
+    run_folder::{config_text, expect_run_place, fresh_id, is_begun, scene_hashes, setting_differences},
     settings::RunSettings,
 };
 use std::{collections::BTreeSet, fs, path::Path};
 
 /// Refuses a folder that holds a run of one machine.
 pub(super) fn refuse_other_folder(out: &Path) -> Result<(), CommandError> {
-    crate::written_files::expect_output_folder(out)?;
+    expect_run_place(out)?;
     if is_begun(out) && wayword_queue::ChunkPlan::find_plan(out)?.is_none() {
         return Err(CommandError::usage(
             format!("{} holds a run that one machine makes", out.display()),
