@@ -167,7 +167,7 @@ impl fmt::Display for SubmissionReport {
         if let Some(set) = &self.followed {
             writeln!(
                 f,
-                "these walks follow the set {set}, and no text of {}: the figures are of that set, scored on the paths of these episodes",
+                "these walks follow the texts of the set {set}: the figures are theirs, on the paths of {}",
                 self.episodes
             )?;
         }

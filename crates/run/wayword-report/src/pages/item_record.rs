@@ -18,6 +18,8 @@ pub(super) struct AcceptedText {
     /// The number of its line in the file of instructions, from 1.
     pub(super) line: usize,
     pub(super) instruction: Instruction,
+    /// Its number among the texts of its path and style, from 0.
+    pub(super) number: usize,
     /// What it cost; `None` where no model took part.
     pub(super) cost: Option<TextCost>,
 }

@@ -104,9 +104,11 @@ struct InstructionHeader {
 
 /// The field of an instruction's line with its cost.
 #[derive(Deserialize)]
-struct TextCostLine {
+struct TextDetailLine {
     #[serde(default)]
     cost: Option<TextCost>,
+    #[serde(default)]
+    number: usize,
 }
 
 impl<'a> ReportRecords<'a> {
@@ -219,8 +221,8 @@ impl<'a> ReportRecords<'a> {
             if let Some(item) =
                 self.item_by_id(&places, &named.path.id).filter(|_| take_bytes(&mut left_bytes, line.byte_count()))
             {
-                let TextCostLine { cost } = line.parse()?;
-                item.accepted.push(AcceptedText { line: line.number(), instruction: line.parse()?, cost });
+                let TextDetailLine { cost, number } = line.parse()?;
+                item.accepted.push(AcceptedText { line: line.number(), instruction: line.parse()?, number, cost });
             }
             Ok(())
         })?;

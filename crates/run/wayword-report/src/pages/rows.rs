@@ -11,7 +11,7 @@ use super::{
 use serde::Serialize;
 use std::{cmp::Reverse, collections::BTreeSet};
 use wayword_core::{CheckFinding, CheckKind, Verdict};
-use wayword_run::run_folder::FailedItem;
+use wayword_run::run_folder::{FailedItem, text_label};
 
 /// Most characters of a text in a row. The rest is cut off; the section of the path shows the whole text.
 const MAX_ROW_CHARS: usize = 700;
@@ -72,6 +72,8 @@ struct TextRow {
     id: String,
     scene: Option<String>,
     style: String,
+    /// The style, with the number of the text if the path has several of that style.
+    label: String,
     /// The index of the scene among those that can be chosen, and that of the style; `None` if there is no choice.
     scene_at: Option<usize>,
     style_at: Option<usize>,
@@ -137,6 +139,7 @@ fn failed_row(failed: &FailedItem) -> TextRow {
         id: failed.item.clone(),
         scene: None,
         style: String::new(),
+        label: String::new(),
         scene_at: None,
         style_at: None,
         place: usize::MAX,
@@ -159,7 +162,7 @@ fn rows_for_item(
     let path = &item.walk.path;
     let picture = item.walk.has_pictures.then(|| pictures.take_small(&path.id, path.frames.len().saturating_sub(1)));
     let picture = picture.flatten();
-    let row = |style: &str, text: &str, suspicion: Option<TextSuspicion>, usd: Option<f64>| {
+    let row = |style: &str, number: usize, text: &str, suspicion: Option<TextSuspicion>, usd: Option<f64>| {
         let (state, kinds) = kinds_of(suspicion.as_ref());
         let signs = suspicion.as_ref().map(|suspicion| suspicion.signs.clone()).unwrap_or_default();
         TextRow {
@@ -170,6 +173,7 @@ fn rows_for_item(
             id: path.id.clone(),
             scene: Some(path.scene.to_string()),
             style: style.to_owned(),
+            label: text_label(style, number),
             scene_at: None,
             style_at: None,
             place: item.place,
@@ -186,12 +190,13 @@ fn rows_for_item(
         let judged = (stored.text.as_str(), stored.verdict, &stored.findings[..]);
         let second = records.again.of_line(text.line);
         let suspicion = TextSuspicion::of_accepted(judged, stored.ambiguity.as_ref(), second);
-        row(&stored.style, &stored.text, Some(suspicion), text.cost.and_then(|cost| cost.cost_usd))
+        row(&stored.style, text.number, &stored.text, Some(suspicion), text.cost.and_then(|cost| cost.cost_usd))
     });
     let rejected = item.rejected.iter().map(|rejected| {
         let text = rejected.last.as_ref().map_or("", |last| last.text.as_str());
         row(
             &rejected.style,
+            rejected.number,
             text,
             Some(TextSuspicion::of_rejected(rejected)),
             rejected.cost.and_then(|cost| cost.cost_usd),
@@ -199,9 +204,9 @@ fn rows_for_item(
     });
     let mut rows: Vec<TextRow> = accepted.chain(rejected).collect();
     if rows.is_empty() {
-        rows.push(row("", "", None, None));
+        rows.push(row("", 0, "", None, None));
     }
-    rows.sort_by(|a, b| a.style.cmp(&b.style));
+    rows.sort_by(|a, b| a.label.cmp(&b.label));
     rows
 }
 

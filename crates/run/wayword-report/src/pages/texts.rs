@@ -12,7 +12,10 @@ use serde::Serialize;
 use wayword_core::{
     CheckFinding, Instruction, InstructionPart, MentionKind, TextDoubt, TextMention, Verdict, WrittenDraft,
 };
-use wayword_run::check::{CheckedAgain, SecondCheck};
+use wayword_run::{
+    check::{CheckedAgain, SecondCheck},
+    run_folder::text_label,
+};
 
 /// Most findings of an instruction that are shown.
 const MAX_SHOWN_FINDINGS: usize = 100;
@@ -26,7 +29,8 @@ const MAX_SHOWN_PARTS: usize = 100;
 /// An instruction.
 #[derive(Debug, Serialize)]
 pub(super) struct TextView {
-    style: String,
+    /// Its style, with its number if the path has several of that style.
+    label: String,
     state: TextState,
     /// Why it was rejected.
     reason: Option<String>,
@@ -125,7 +129,7 @@ struct FindingView {
 pub(super) fn text_views(record: &ItemRecord, again: &CheckedAgain, places: LinkTargets<'_>) -> Vec<TextView> {
     let accepted = record.accepted.iter().map(|text| accepted_view(text, again.of_line(text.line), places));
     let rejected = record.rejected.iter().map(|rejected| TextView {
-        style: rejected.style.clone(),
+        label: text_label(&rejected.style, rejected.number),
         state: TextState::Rejected,
         reason: Some(rejected.reason.clone()),
         segments: rejected.last.as_ref().map(|last| segment_views(last, places)).unwrap_or_default(),
@@ -143,7 +147,7 @@ pub(super) fn text_views(record: &ItemRecord, again: &CheckedAgain, places: Link
         refined: Vec::new(),
     });
     let mut texts: Vec<TextView> = accepted.chain(rejected).collect();
-    texts.sort_by(|a, b| a.style.cmp(&b.style));
+    texts.sort_by(|a, b| a.label.cmp(&b.label));
     number_parts(&mut texts);
     texts
 }
@@ -170,7 +174,7 @@ fn accepted_view(text: &AcceptedText, second: SecondCheck<'_>, places: LinkTarge
         reason: doubt.reason.clone(),
     };
     TextView {
-        style: shown.style.clone(),
+        label: text_label(&shown.style, text.number),
         state: suspicion.state,
         reason: None,
         segments: segment_views(&shown, places),

@@ -57,6 +57,8 @@ struct WrittenLine {
     style: String,
     provenance: TextProvenance,
     #[serde(default)]
+    number: usize,
+    #[serde(default)]
     text_hash: Option<String>,
 }
 
@@ -109,7 +111,7 @@ struct WrittenTexts {
 fn read_written(run: &FilePath) -> Result<WrittenTexts, CommandError> {
     let mut written = WrittenTexts::default();
     lines::each_line(&run.join(file::INSTRUCTIONS), |line| {
-        let WrittenLine { platform, path, text, style, provenance, text_hash } = line.parse()?;
+        let WrittenLine { platform, path, text, style, provenance, number, text_hash } = line.parse()?;
         match text_hash {
             None => _ = written.unhashed.insert(line.number()),
             Some(hash) if hash != hash_of_text(&text) => _ = written.changed.insert(line.number()),
@@ -118,7 +120,7 @@ fn read_written(run: &FilePath) -> Result<WrittenTexts, CommandError> {
         let style = StyleReference { name: style, hash: provenance.style_hash.clone() };
         let key = RunPathKey::Id(path.id.clone());
         let origin = Some((platform, provenance));
-        let name = name_of_record(&path.id, &style.name);
+        let name = name_of_record(&path.id, &style.name, number);
         let text =
             FileText { at: line.number(), path: path.id, name, words: text, tag: None, style: Some(style), origin };
         written.texts.push(RunText { text, path: key });

@@ -4,6 +4,7 @@ use crate::{
     count::count_phrase,
     episode_paths::{path_for_episode, unusable_path},
     error::CommandError,
+    run_folder::{number_of_text, text_label},
 };
 use std::{collections::BTreeMap, path::Path as FilePath};
 use wayword_core::{Path, Platform, PlatformError, SceneId, TextProvenance, ViewpointId};
@@ -45,9 +46,9 @@ impl FileText {
     }
 }
 
-/// The name of a record's text: a path has one in each style.
-pub(super) fn name_of_record(path: &str, style: &str) -> String {
-    format!("{path} ({style})")
+/// The name of a text of a run, by its path, its style and its number among those of both, from 0.
+pub(super) fn name_of_record(path: &str, style: &str, number: usize) -> String {
+    format!("{path} ({})", text_label(style, number))
 }
 
 /// A style, as a record names it.
@@ -60,7 +61,9 @@ pub(crate) struct StyleReference {
 pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Result<Vec<PathTexts>, CommandError> {
     let mut walks = PathTextIndex::default();
     if wayword_formats::detect_format(file)? == DatasetFormat::Wayword {
-        for InstructionRecord { path, instruction, platform: made_on, .. } in jsonl::read_records(file)? {
+        for record in jsonl::read_records(file)? {
+            let number = number_of_text(&record);
+            let InstructionRecord { path, instruction, platform: made_on, .. } = record;
             let id = path.id.clone();
             if made_on != platform.name() {
                 refuse_other_platform(file, (made_on.as_str(), &path.scene), platform)?;
@@ -69,7 +72,7 @@ pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
             let text = FileText {
                 at: 0,
                 path: path.id.clone(),
-                name: name_of_record(&path.id, &instruction.style),
+                name: name_of_record(&path.id, &instruction.style, number),
                 words: instruction.text,
                 tag: None,
                 style: Some(StyleReference {

@@ -11,7 +11,7 @@ use crate::{
     error::CommandError,
     output::CommandOutput,
     platforms,
-    run_folder::{WalkRecord, expect_run, file, lines, read_run_settings},
+    run_folder::{WalkRecord, expect_run, file, lines, number_of_text, read_run_settings},
     settings::RunSettings,
 };
 use serde::Deserialize;
@@ -202,12 +202,12 @@ impl RunPathKey {
 fn read_texts(file: &FilePath) -> Result<Vec<RunText>, CommandError> {
     let mut all = Vec::new();
     if wayword_formats::detect_format(file)? == DatasetFormat::Wayword {
-        for (at, jsonl::InstructionRecord { path, instruction, platform, .. }) in
-            jsonl::read_records(file)?.into_iter().enumerate()
-        {
+        for (at, record) in jsonl::read_records(file)?.into_iter().enumerate() {
+            let number = number_of_text(&record);
+            let jsonl::InstructionRecord { path, instruction, platform, .. } = record;
             let style = StyleReference { name: instruction.style, hash: instruction.provenance.style_hash.clone() };
             let (words, made) = (instruction.text, Some((platform, instruction.provenance)));
-            let name = name_of_record(&path.id, &style.name);
+            let name = name_of_record(&path.id, &style.name, number);
             let text = FileText { at, path: path.id.clone(), name, words, tag: None, style: Some(style), origin: made };
             all.push(RunText { text, path: RunPathKey::Id(path.id) });
         }

@@ -98,17 +98,30 @@ pub fn text_name(style: &str, number: usize) -> String {
     if number == 0 { style.to_owned() } else { format!("{style}\u{1f}{number}") }
 }
 
+/// As people read it: the style of a text, and from the second text of a path and style on its number.
+#[must_use]
+pub fn text_label(style: &str, number: usize) -> String {
+    if number == 0 { style.to_owned() } else { format!("{style}, text {}", number + 1) }
+}
+
 /// The field of a record that has the number of its text.
 const NUMBER_FIELD: &str = "number";
+
+/// The number of a record's text among those of its path and style, from 0.
+#[must_use]
+pub fn number_of_text(record: &InstructionRecord) -> usize {
+    let number = record.extra.get(NUMBER_FIELD).and_then(Value::as_u64);
+    number.and_then(|number| usize::try_from(number).ok()).unwrap_or(0)
+}
 
 /// Identifies the text of a record within its item, as a part of file names: its style, and its number where the style has
 /// several.
 #[must_use]
 pub fn text_file_name(record: &InstructionRecord) -> String {
     let style = &record.instruction.style;
-    match record.extra.get(NUMBER_FIELD).and_then(Value::as_u64) {
-        Some(number) if number > 0 => format!("{style}-{number}"),
-        _ => style.clone(),
+    match number_of_text(record) {
+        0 => style.clone(),
+        number => format!("{style}-{number}"),
     }
 }
 

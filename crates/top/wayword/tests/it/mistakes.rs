@@ -215,6 +215,8 @@ fn walks_by_a_generated_set_are_not_taken_for_those_by_the_dataset() {
         let args = [&["evaluate", &submission, "--episodes", EPISODES, "--partial"], &WORLD[..]].concat();
         building.wayword(&args).out
     };
-    assert!(evaluate("ours").contains("these walks follow the set ours (run#reverie), and no text of"));
+    assert!(evaluate("ours").contains(
+        "these walks follow the texts of the set ours (run#reverie): the figures are theirs, on the paths of"
+    ));
     assert!(!evaluate("original").contains("these walks follow"));
 }
