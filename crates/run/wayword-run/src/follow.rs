@@ -374,6 +374,9 @@ fn unknown_route(why: &str) -> CheckFinding {
     CheckFinding { check: CheckKind::Route, verdict: Verdict::Unverified, reason, span: None }
 }
 
+/// Why the texts of a run without labels are not followed: the survey of their scene would be made of labels.
+pub(crate) const WITHOUT_LABELS: &str = "the texts are not checked against labels";
+
 impl FollowerFindings {
     /// The result for a text that cannot be followed, for this reason.
     pub(crate) fn not_followed(why: &'static str) -> Self {

@@ -3,7 +3,7 @@
 use crate::{
     advice::writing_advice,
     error::CommandError,
-    follow::{FollowedPath, FollowerFindings, KnownScenes, ambiguity_rejection},
+    follow::{FollowedPath, FollowerFindings, KnownScenes, WITHOUT_LABELS, ambiguity_rejection},
     item::RunItem,
     lookout::DetectorLookout,
     parallel::make_in_parallel,
@@ -280,7 +280,7 @@ impl TextFollower for PathFollower<'_> {
     fn follow(&self, text: &str, checked: &mut TextFindings) -> TextAmbiguity {
         let findings = match &self.followed {
             Ok(followed) if self.knows_scene => followed.judge_route(text),
-            Ok(_) => FollowerFindings::not_followed("the texts are not checked against labels"),
+            Ok(_) => FollowerFindings::not_followed(WITHOUT_LABELS),
             Err(why) => FollowerFindings::not_followed(why),
         };
         findings.add_to(checked);

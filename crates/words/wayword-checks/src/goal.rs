@@ -50,10 +50,14 @@ fn end_places(reading: &TextReading) -> [Option<(usize, &PlaceMention)>; 2] {
         _ => None,
     };
     let stop = events.iter().rposition(|event| event.what == EventContent::Stop);
-    let at_stop = stop.and_then(|stop| {
-        let clause = events[stop].clause;
-        (stop + 1..events.len()).filter(|at| events[*at].clause == clause).find_map(place)
-    });
+    let in_stop = || {
+        let after = stop.map_or(events.len(), |stop| stop + 1);
+        (after..events.len()).filter(|at| Some(events[*at].clause) == stop.map(|stop| events[stop].clause))
+    };
+    let at_stop = in_stop().find_map(place);
+    // "Wait in the bathroom" says itself that it is not in the room before it.
+    let is_within = |(_, place): (usize, &PlaceMention)| is_room_alone(place) && place.link == PlaceLink::Within;
+    let names_room = in_stop().filter_map(place).any(is_within);
     let goes_on = |event: &TextEvent| match &event.what {
         EventContent::Turn(_) | EventContent::Climb(_) | EventContent::Onward => true,
         EventContent::Place(place) => place.going.is_some(),
@@ -61,9 +65,14 @@ fn end_places(reading: &TextReading) -> [Option<(usize, &PlaceMention)>; 2] {
     };
     let sent_to = (0..events.len()).rev().filter_map(place).find(|(_, place)| place.link == PlaceLink::Goal);
     let sent_to = sent_to.filter(|(at, place)| {
-        !events[at + 1..].iter().any(goes_on) && (stop.is_none() || place.is_room && !place.is_thing)
+        !events[at + 1..].iter().any(goes_on) && (stop.is_none() || is_room_alone(place) && !names_room)
     });
     [at_stop, sent_to]
+}
+
+/// Whether a name means a room and no thing.
+fn is_room_alone(place: &PlaceMention) -> bool {
+    place.is_room && !place.is_thing
 }
 
 /// The mistake in the last room of a text. `near`: the frames at the end of the path.

@@ -9,6 +9,7 @@ use super::{
 use crate::{
     check::args::AskedWorld,
     error::CommandError,
+    follow::{FollowerFindings, WITHOUT_LABELS},
     output::CommandOutput,
     platforms,
     run_folder::{WalkRecord, expect_run, file, lines, number_of_text, read_run_settings},
@@ -16,7 +17,7 @@ use crate::{
 };
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::Path as FilePath};
-use wayword_checks::{CheckSubject, Evidence, TurnJudge, WorldReach, check_own_text};
+use wayword_checks::{CheckSubject, Evidence, WalkMemory, WorldReach, check_own_text};
 use wayword_core::{ObjectId, Path, SceneId, ViewpointId};
 use wayword_formats::{DatasetFormat, jsonl, submission::instr_id};
 use wayword_synthesis::walk::ObservedWalk;
@@ -123,6 +124,8 @@ fn check_by_captions(
 ) -> Vec<CheckedWalk> {
     let check_walk = |(walk, texts): &WalkTexts| {
         let evidence = walk.evidence().unwrap_or_else(|| Evidence::for_path_alone(&walk.path));
+        let memory = WalkMemory::from_path(&evidence, &walk.path);
+        let follower = FollowerFindings::not_followed(WITHOUT_LABELS);
         let check_text = |text: &FileText| {
             let check_style = styles.style_or_any(text);
             let target = walk.path.target.as_ref();
@@ -133,13 +136,16 @@ fn check_by_captions(
                 AskedWorld::Auto => captions_were_evidence,
             };
             let subject = if is_closed {
-                CheckSubject::closed_world(&evidence, &check_style.style, target)
+                CheckSubject::closed_world(&evidence, &check_style.style, target).with_memory(&memory)
             } else {
                 CheckSubject::open_world(&evidence, &check_style.style, WorldReach::default())
             };
-            let turns = TurnJudge::NotJudged("without the platform the text is not followed");
-            let subject = CheckSubject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&check_style.copies) };
-            let checked = check_own_text(&text.words, subject);
+            let subject = subject.with_copies(&check_style.copies);
+            let subject = CheckSubject { tag: text.tag.as_deref(), turns: follower.turns, ..subject };
+            let mut checked = check_own_text(&text.words, subject);
+            if !how.without_route {
+                follower.add_to(&mut checked);
+            }
             (text.at, CheckedText::from_text(text, &checked), checked.findings)
         };
         (evidence.source_name(), texts.iter().map(check_text).collect())

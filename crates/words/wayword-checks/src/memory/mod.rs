@@ -57,6 +57,23 @@ pub struct WalkMemory {
     knows_doors: bool,
 }
 
+/// Frames lie close together if their mean distance is at most this, metres.
+pub(crate) const MAX_DENSE_HOP_M: f64 = 1.3;
+
+/// The mean distance of the frames of a walk, metres; `None` where the motion is unknown.
+pub(crate) fn mean_hop_m(evidence: &Evidence) -> Option<f64> {
+    let hops = evidence.moves.iter().map(|step| step.distance_m);
+    (!evidence.moves.is_empty()).then(|| hops.sum::<f64>() / evidence.moves.len() as f64)
+}
+
+/// Whether a walk goes from viewpoint to viewpoint of a graph. The pictures of a recording have names like viewpoints, but lie as close
+/// together as the recording asks for, and witnesses tell what they show.
+fn is_on_graph(evidence: &Evidence, path: &Path) -> bool {
+    let is_wide = || mean_hop_m(evidence).is_none_or(|hop_m| hop_m > MAX_DENSE_HOP_M);
+    let has_viewpoints = path.frames.iter().all(|frame| frame.viewpoint.is_some());
+    has_viewpoints && (evidence.source == EvidenceSource::Labels || is_wide())
+}
+
 impl WalkMemory {
     /// The memory of a path, made from its evidence.
     #[must_use]
@@ -73,7 +90,7 @@ impl WalkMemory {
         let doors = openings::hops_to_doors(&things, &eyes);
         stays_and_bends::turn_before_rooms(&mut stays, &bends, |hop| doors.contains(&hop));
         let openings = openings::find_openings(&stays, evidence);
-        let is_on_graph = path.frames.iter().all(|frame| frame.viewpoint.is_some());
+        let is_on_graph = is_on_graph(evidence, path);
         let shows_door = |thing: &RememberedThing| thing.position.is_some() && is_any_door(&thing.name);
         let knows_doors = evidence.source == EvidenceSource::Labels && !is_on_graph && things.iter().any(shows_door);
         let mut memory = Self {

@@ -55,6 +55,9 @@ fn the_last_room_is_that_of_the_last_frame() {
     has_no_mistake(CheckKind::Landmarks, "Stop in the bedroom.", &path);
     let reason = "the path does not end in \"hallway\"";
     finds(CheckKind::Landmarks, Verdict::Fail, "hallway", reason, "Stop in the hallway.", &path);
+    // The stop may name another room than the sentence before it.
+    has_no_mistake(CheckKind::Landmarks, "Walk into the hallway. Wait in the bedroom.", &path);
+    finds(CheckKind::Landmarks, Verdict::Fail, "hallway", reason, "Walk into the hallway. Wait there.", &path);
     // A room that is only next to the place of the stop need not be the last one.
     has_no_mistake(CheckKind::Landmarks, "Stop next to the hallway.", &path);
     // People confuse some rooms, as a hallway and an entryway.

@@ -14,6 +14,11 @@ use wayword_language::{
 /// A walker "by the sofa" is at most this far from it, metres.
 pub(super) const NEAR_M: f64 = 3.0;
 
+/// A bend that straightens the way turns by less than this, degrees.
+const STRAIGHTENING_DEG: f64 = 60.0;
+/// It comes after less than this way behind the bend that it takes back, metres.
+const STRAIGHTENING_M: f64 = 2.5;
+
 /// The facts of a walk.
 pub(super) struct WalkFacts<'a> {
     pub(super) evidence: &'a Evidence,
@@ -58,9 +63,20 @@ impl<'a> WalkFacts<'a> {
         widest_to(side, self.bends_on(stretch))
     }
 
-    /// Whether a walker has to be told of a bend.
+    /// Whether a walker has to be told of a bend: it is wide enough, and does not only straighten the way after the bend before it, as
+    /// behind a door that one goes through aslant.
     pub(super) fn is_decision(&self, bend: &WalkBend) -> bool {
-        bend.turn_rad.to_degrees().abs() >= motion::TOLD_DEG
+        bend.turn_rad.to_degrees().abs() >= motion::TOLD_DEG && !self.straightens(bend)
+    }
+
+    /// Whether a bend takes back the bend just before it.
+    fn straightens(&self, bend: &WalkBend) -> bool {
+        let bends = &self.memory.bends;
+        let at = bends.iter().position(|other| other == bend).filter(|at| *at > 0);
+        let Some(before) = at.and_then(|at| bends.get(at - 1)) else { return false };
+        let net_deg = (before.turn_rad + bend.turn_rad).to_degrees().abs();
+        let is_small = bend.turn_rad.to_degrees().abs() < STRAIGHTENING_DEG;
+        is_small && net_deg < motion::SLIGHT_DEG && self.length_m([before.last, bend.first]) < STRAIGHTENING_M
     }
 
     /// The flights of stairs whose middle lies on a stretch.

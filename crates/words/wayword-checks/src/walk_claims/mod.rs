@@ -31,7 +31,7 @@ mod untold;
 
 use crate::{
     Evidence, WalkMemory,
-    memory::{StairFlight, WalkBend},
+    memory::{MAX_DENSE_HOP_M, StairFlight, WalkBend, mean_hop_m},
     new_finding, pass_finding,
 };
 use claims::{ClaimedFact, StepClaim, claims_by_step, effective_stops};
@@ -50,8 +50,6 @@ use wayword_language::reading::{
 
 /// Largest product of the number of steps and the square of the number of frames: the search compares so many stretches.
 const MAX_STRETCHES: usize = 1_000_000;
-/// Walks with longer hops are not divided, metres.
-const MAX_MEAN_HOP_M: f64 = 1.3;
 
 /// The findings about a text on its walk.
 pub(super) struct WalkFindings {
@@ -94,8 +92,7 @@ impl<'a> DividedWalk<'a> {
     ) -> Option<Self> {
         let work = steps.len() * evidence.frames.len() * evidence.frames.len();
         let facts = WalkFacts::new(evidence, memory);
-        let mean_hop_m = facts.length_m([0, facts.last_frame()]) / evidence.moves.len().max(1) as f64;
-        let is_coarse = memory.is_on_graph() || mean_hop_m > MAX_MEAN_HOP_M;
+        let is_coarse = memory.is_on_graph() || mean_hop_m(evidence).is_some_and(|hop_m| hop_m > MAX_DENSE_HOP_M);
         if evidence.moves.is_empty() || steps.is_empty() || work > MAX_STRETCHES || is_coarse {
             return None;
         }

@@ -1,12 +1,13 @@
 //! Texts about one walk through an invented flat: each kind of claim where it holds, at another stretch, and left out.
 
+use super::facts::WalkFacts;
 use crate::{
     CheckSubject, EndSurroundings, Evidence, EvidenceSource, FrameEvidence, SeenThing, TextFindings, WalkMemory,
     align_with_walk, check_own_text, check_text,
 };
 use wayword_core::{
-    CheckKind, DVec3, Heading, InstructionStyle, ObjectId, Path, PathMotion, SceneId, StyleConstraints, Verdict,
-    path::PathStop,
+    CheckKind, DVec3, Heading, InstructionStyle, ObjectId, Path, PathMotion, SceneId, Side, StyleConstraints, Verdict,
+    ViewpointId, path::PathStop,
 };
 
 /// The walk: up a hallway, right through a door into a bedroom, left at its far wall, and on to the window.
@@ -443,4 +444,36 @@ fn a_turn_on_a_landing_leaves_no_flight_out_that_another_step_tells() {
         assert_eq!(floors(told), 0, "{told}");
     }
     assert!(floors("Go straight. Turn right, then turn right again. Go straight and stop.") > 0);
+}
+
+#[test]
+fn a_bend_that_straightens_the_way_at_once_needs_no_word() {
+    let decisions = |stops: &[[f64; 2]]| -> Vec<Side> {
+        let stop = |at: &[f64; 2]| PathStop { position: DVec3::new(at[0], at[1], 1.5), viewpoint: None, level: None };
+        let path = Path { frames: Path::frames_along(stops.iter().map(stop).collect(), None), ..flat_path() };
+        let evidence = Evidence::for_path_alone(&path);
+        let memory = WalkMemory::from_path(&evidence, &path);
+        let facts = WalkFacts::new(&evidence, &memory);
+        memory.bends.iter().filter(|bend| facts.is_decision(bend)).map(|bend| bend.side()).collect()
+    };
+    let aslant = [[0.0, 0.0], [0.0, 1.0], [0.0, 2.0], [0.8, 2.6], [0.9, 3.6], [1.0, 4.6]];
+    assert_eq!(decisions(&aslant), [Side::Right]);
+    let later = [[0.0, 0.0], [0.0, 1.0], [0.0, 2.0], [0.8, 2.6], [1.6, 3.2], [2.4, 3.8], [3.2, 4.4], [3.3, 5.4]];
+    assert_eq!(decisions(&later), [Side::Right, Side::Left]);
+    let square = [[0.0, 0.0], [0.0, 1.0], [0.0, 2.0], [1.0, 2.0], [1.0, 3.0], [1.0, 4.0]];
+    assert_eq!(decisions(&square), [Side::Right, Side::Left]);
+}
+
+#[test]
+fn the_frames_of_a_recording_are_no_graph_where_they_lie_close_together() {
+    let mut path = flat_path();
+    for (at, frame) in path.frames.iter_mut().enumerate() {
+        frame.viewpoint = Some(ViewpointId::new(at.to_string()).unwrap());
+    }
+    let (mut evidence, _) = flat_walk();
+    assert!(WalkMemory::from_path(&evidence, &path).is_on_graph());
+    evidence.source = EvidenceSource::Captions;
+    assert!(!WalkMemory::from_path(&evidence, &path).is_on_graph());
+    evidence.moves.iter_mut().for_each(|step| step.distance_m *= 2.0);
+    assert!(WalkMemory::from_path(&evidence, &path).is_on_graph());
 }
