@@ -10,47 +10,66 @@ use wayword_language::{
     reading::{EventContent, PlaceMention, read_instruction},
 };
 
-/// Things that replace others: common in homes, clearly different from each other, and not rooms.
-const REPLACEMENT_THINGS: [&str; 36] = [
-    "sofa",
-    "bed",
-    "dining table",
-    "piano",
-    "fireplace",
-    "refrigerator",
-    "bathtub",
-    "toilet",
-    "sink",
-    "desk",
-    "bookshelf",
-    "television",
-    "chandelier",
-    "mirror",
-    "rug",
-    "plant",
-    "vase",
-    "statue",
-    "clock",
-    "lamp",
-    "curtain",
-    "window",
-    "washing machine",
-    "stove",
-    "wardrobe",
-    "bench",
-    "ottoman",
-    "armchair",
-    "pool table",
-    "microwave",
-    "pillow",
-    "towel",
-    "basket",
-    "picture",
-    "door",
-    "column",
+/// What one does at a thing, or how it stands in a room. A thing is replaced by one of its role, so that the text stays one that somebody could
+/// have written: one goes through an arch and not through a lamp, and walks up a ladder and not up a rug.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum ThingRole {
+    /// One goes through it.
+    Passage,
+    /// One goes up and down on it.
+    Climb,
+    /// It stands on the floor, and one walks past it or around it.
+    Furniture,
+    /// It has water or a plug.
+    Fixture,
+    /// It hangs on a wall, or is in one.
+    Wall,
+    /// It stands or lies about.
+    Ornament,
+}
+
+/// Things that replace others of their role: common in homes, and clearly different from each other.
+const REPLACEMENT_THINGS: [(ThingRole, &str); 37] = [
+    (ThingRole::Passage, "door"),
+    (ThingRole::Passage, "doorway"),
+    (ThingRole::Passage, "gate"),
+    (ThingRole::Passage, "arch"),
+    (ThingRole::Climb, "ramp"),
+    (ThingRole::Climb, "ladder"),
+    (ThingRole::Furniture, "sofa"),
+    (ThingRole::Furniture, "bed"),
+    (ThingRole::Furniture, "dining table"),
+    (ThingRole::Furniture, "piano"),
+    (ThingRole::Furniture, "desk"),
+    (ThingRole::Furniture, "bookshelf"),
+    (ThingRole::Furniture, "wardrobe"),
+    (ThingRole::Furniture, "bench"),
+    (ThingRole::Furniture, "ottoman"),
+    (ThingRole::Furniture, "armchair"),
+    (ThingRole::Furniture, "pool table"),
+    (ThingRole::Fixture, "refrigerator"),
+    (ThingRole::Fixture, "bathtub"),
+    (ThingRole::Fixture, "toilet"),
+    (ThingRole::Fixture, "sink"),
+    (ThingRole::Fixture, "washing machine"),
+    (ThingRole::Fixture, "stove"),
+    (ThingRole::Fixture, "microwave"),
+    (ThingRole::Wall, "fireplace"),
+    (ThingRole::Wall, "television"),
+    (ThingRole::Wall, "mirror"),
+    (ThingRole::Wall, "clock"),
+    (ThingRole::Wall, "curtain"),
+    (ThingRole::Wall, "window"),
+    (ThingRole::Wall, "picture"),
+    (ThingRole::Ornament, "lamp"),
+    (ThingRole::Ornament, "plant"),
+    (ThingRole::Ornament, "vase"),
+    (ThingRole::Ornament, "statue"),
+    (ThingRole::Ornament, "basket"),
+    (ThingRole::Ornament, "column"),
 ];
 /// Rooms that replace others.
-const REPLACEMENT_ROOMS: [&str; 14] = [
+const REPLACEMENT_ROOMS: [&str; 13] = [
     "kitchen",
     "bedroom",
     "bathroom",
@@ -62,10 +81,11 @@ const REPLACEMENT_ROOMS: [&str; 14] = [
     "gym",
     "closet",
     "balcony",
-    "classroom",
     "entryway",
     "attic",
 ];
+/// What replaces a hallway, because one walks along it.
+const LONG_ROOM: &str = "balcony";
 /// Most rounds of reading and replacing. One round is not enough, because the reader finds some names only after others are replaced.
 const MAX_REPLACEMENT_ROUNDS: usize = 3;
 /// How far before a name the names that specify it are looked for ("bathroom" in "bathroom door"), bytes.
@@ -145,10 +165,46 @@ fn closing_name(text: &str) -> Option<(usize, String)> {
     (is_known(&place.name) && !gap.is_empty() && gap.trim().is_empty()).then_some((from + last.span[0], place.name))
 }
 
+/// The role of a thing by its name. What the lexicon does not have stands about like furniture.
+fn role_of(name: &str) -> ThingRole {
+    use ThingClass as Class;
+    let Some(thing) = find_thing(name) else { return ThingRole::Furniture };
+    match thing.class {
+        _ if matches!(thing.name, "doorway" | "arch") => ThingRole::Passage,
+        _ if matches!(thing.name, "ramp" | "ladder") => ThingRole::Climb,
+        _ if matches!(thing.name, "basket" | "box" | "trash can") => ThingRole::Ornament,
+        Class::Door => ThingRole::Passage,
+        Class::Stairs => ThingRole::Climb,
+        Class::Appliance | Class::Cooker | Class::Fridge | Class::Basin | Class::Tap | Class::Toilet | Class::Tub => {
+            ThingRole::Fixture
+        }
+        Class::WallArt | Class::Glass | Class::Drape | Class::Screen | Class::Hearth | Class::Switch => ThingRole::Wall,
+        Class::Textile
+        | Class::Light
+        | Class::Plant
+        | Class::Ornament
+        | Class::Small
+        | Class::Fan
+        | Class::Structure
+        | Class::Fabric => ThingRole::Ornament,
+        Class::Seat
+        | Class::Surface
+        | Class::Container
+        | Class::Bed
+        | Class::Floor
+        | Class::Furnishing
+        | Class::Water
+        | Class::Music
+        | Class::Exercise
+        | Class::Vehicle
+        | Class::Unknown => ThingRole::Furniture,
+    }
+}
+
 /// The replacements of names in one text.
 struct LandmarkReplacements {
     /// Names that can replace others, in random order.
-    things: Vec<&'static str>,
+    things: Vec<(ThingRole, &'static str)>,
     rooms: Vec<&'static str>,
     /// The names that the text itself has, to be replaced.
     own_names: BTreeSet<String>,
@@ -190,12 +246,30 @@ impl LandmarkReplacements {
         if self.own_names.len() > MAX_NAMES {
             return None;
         }
-        let kind = if named.is_room { &self.rooms } else { &self.things };
-        let free: Vec<&'static str> = kind.iter().copied().filter(|name| !self.conflicts_with(name)).collect();
+        let kind = if named.is_room { self.rooms_for(&named.name) } else { self.things_for(&named.name) };
+        let free: Vec<&'static str> = kind.into_iter().filter(|name| !self.conflicts_with(name)).collect();
         let is_new = |name: &&&'static str| !self.replacements.values().any(|given| *given == **name);
         let other = *free.iter().find(is_new).or(free.first())?;
         self.replacements.insert(named.name.clone(), other);
         Some(other)
+    }
+
+    /// What may replace a room, the best first.
+    fn rooms_for(&self, name: &str) -> Vec<&'static str> {
+        let is_long = same_room(name, "hallway");
+        let (long, others): (Vec<_>, Vec<_>) =
+            self.rooms.iter().copied().partition(|room| is_long && *room == LONG_ROOM);
+        [long, others].concat()
+    }
+
+    /// What may replace a thing, the best first: those of its role. A text with more things of a role than there are gets some of other
+    /// roles, but nobody goes through or up any other thing.
+    fn things_for(&self, name: &str) -> Vec<&'static str> {
+        let role = role_of(name);
+        let is_moved_on = |role: ThingRole| matches!(role, ThingRole::Passage | ThingRole::Climb);
+        let (same, others): (Vec<_>, Vec<_>) = self.things.iter().copied().partition(|(other, _)| *other == role);
+        let others = others.into_iter().filter(|(other, _)| !is_moved_on(role) && !is_moved_on(*other));
+        same.into_iter().chain(others).map(|(_, name)| name).collect()
     }
 
     /// The edits that write another name for one: its article, if that is right before it, and the name itself.
@@ -236,14 +310,34 @@ mod tests {
 
     #[test]
     fn every_replacement_is_read_as_itself() {
-        for (names, is_room) in [(&REPLACEMENT_THINGS[..], false), (&REPLACEMENT_ROOMS[..], true)] {
-            for name in names {
-                for written in [(*name).to_owned(), to_plural(name)] {
-                    let read = find_names(&format!("go past the {written} and wait"));
-                    assert_eq!((read.len(), read[0].name.as_str(), read[0].is_room), (1, *name, is_room), "{written}");
-                }
+        let things = REPLACEMENT_THINGS.iter().map(|(_, name)| (*name, false));
+        for (name, is_room) in things.chain(REPLACEMENT_ROOMS.iter().map(|name| (*name, true))) {
+            for written in [name.to_owned(), to_plural(name)] {
+                let read = find_names(&format!("go past the {written} and wait"));
+                assert_eq!((read.len(), read[0].name.as_str(), read[0].is_room), (1, name, is_room), "{written}");
             }
         }
+        let mut own = REPLACEMENT_THINGS.iter().filter(|(role, name)| role_of(name) != *role);
+        assert_eq!(own.next(), None, "each has its own role");
+    }
+
+    #[test]
+    fn one_goes_only_through_passages_and_only_up_what_can_be_climbed() {
+        let text = "Enter the doorway. Go through the glass door into the den, up the stairs and past the pink bed. Turn right at the \
+                    silver sink, and stop under the painting beside the plant.";
+        for item in 0..40 {
+            let new = swap_landmarks(text, 1, &item.to_string()).unwrap();
+            let roles = |text: &str| -> Vec<Option<ThingRole>> {
+                find_names(text).iter().map(|named| (!named.is_room).then(|| role_of(&named.name))).collect()
+            };
+            assert_eq!(roles(&new), roles(text), "{new}");
+        }
+    }
+
+    #[test]
+    fn one_walks_along_what_is_long() {
+        let new = swap_landmarks("Walk down the hall and enter the kitchen.", 1, "item").unwrap();
+        assert!(new.starts_with("Walk down the balcony and enter the "), "{new}");
     }
 
     #[test]
