@@ -198,11 +198,22 @@ fn progress_line(bar: &ProgressBar, words: &LineWords, elapsed: Duration) -> Str
     line
 }
 
+/// Whether so much is done that its pace tells how long the rest takes. The first things take longer, because scenes are made ready for
+/// them and threads are idle: an estimate by them was up to fifteen times too high.
+pub(crate) fn is_pace_known(done: u64, all: u64) -> bool {
+    done >= KNOWN_PACE_COUNT || done > 1 && done >= all.div_ceil(KNOWN_PACE_PARTS)
+}
+
+/// After so many things the pace is known.
+const KNOWN_PACE_COUNT: u64 = 20;
+/// Of few things, the pace is known after this part of them.
+const KNOWN_PACE_PARTS: u64 = 5;
+
 /// How long the rest takes, as far as the bar can know.
 fn time_left(bar: &ProgressBar) -> Option<Duration> {
     let left = bar.eta();
-    (!left.is_zero() && bar.position() > 0 && left < Duration::from_secs(365 * 86_400))
-        .then(|| left.max(Duration::from_secs(1)))
+    let is_known = is_pace_known(bar.position(), bar.length().unwrap_or(0));
+    (!left.is_zero() && is_known && left < Duration::from_secs(365 * 86_400)).then(|| left.max(Duration::from_secs(1)))
 }
 
 #[cfg(test)]
@@ -263,6 +274,29 @@ mod tests {
         assert_eq!(line(&bar), "reading the scene: at work for 65s");
         bar.inc(2);
         assert_eq!(line(&bar), "reading the scene: 2");
+    }
+
+    #[test]
+    fn the_first_things_say_nothing_about_the_time_that_is_left() {
+        let words = LineWords { what: "panoramas", message_has_time: false };
+        let bar = hidden_bar(66);
+        thread::sleep(Duration::from_millis(20));
+        bar.inc(2);
+        assert_eq!(progress_line(&bar, &words, Duration::ZERO), "panoramas: 2 of 66");
+        thread::sleep(Duration::from_millis(20));
+        bar.inc(18);
+        assert!(progress_line(&bar, &words, Duration::ZERO).contains(" left"));
+        for (done, all, is_known) in [
+            (0, 4, false),
+            (1, 4, false),
+            (2, 4, true),
+            (2, 10, true),
+            (13, 66, false),
+            (14, 66, true),
+            (20, 1000, true),
+        ] {
+            assert_eq!(is_pace_known(done, all), is_known, "{done} of {all}");
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The only place that writes to the terminal: results to standard output, messages and progress to standard error. Inside
 //! another program (the Python package) a listener gets them instead.
 
-use crate::command_progress::{LastPrint, LinePace, LineWords};
+use crate::command_progress::{LastPrint, LinePace, LineWords, is_pace_known};
 use crate::error::CommandError;
 
 pub use crate::command_progress::{CommandProgress, SilenceWatch};
@@ -251,7 +251,9 @@ fn bar_style(template: &str) -> ProgressStyle {
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     style.with_key("left", |state: &ProgressState, out: &mut dyn fmt::Write| {
         // If this cannot be written, the rest of the bar cannot either.
-        let _ = out.write_str(&remaining_text(state.eta()));
+        if is_pace_known(state.pos(), state.len().unwrap_or(0)) {
+            let _ = out.write_str(&remaining_text(state.eta()));
+        }
     })
 }
 
