@@ -39,11 +39,20 @@ impl Study {
             .read_transaction(self, now_ms(), |transaction| transaction.read_progress())
     }
 
-    /// Makes personal links. Each is for one participant.
+    /// Whether the study is closed.
     ///
     /// # Errors
-    /// When participants come from a recruiter, or the database cannot be written.
-    pub fn invite_participants(&self, count: u32) -> Result<InviteTokens, StudyError> {
+    /// When the database cannot be read.
+    pub fn is_closed(&self) -> Result<bool, StudyError> {
+        StudyStore::open_to_read(&self.database_file())?
+            .read_transaction(self, now_ms(), |transaction| transaction.is_closed())
+    }
+
+    /// Refuses to make personal links that would lead nobody into the study.
+    ///
+    /// # Errors
+    /// When participants come from a recruiter, the study is closed, or there are too many links.
+    pub fn check_invitation(&self, count: u32) -> Result<(), StudyError> {
         if self.settings.recruiter != RecruiterSettings::Links {
             let problem = "study.toml: participants come from a recruiter, whose links name them";
             return Err(StudyError::refused_request(problem, "for personal links set [recruiter] kind = \"links\""));
@@ -54,6 +63,22 @@ impl Study {
                 format!("give at most {MAX_LINKS_PER_COMMAND}"),
             ));
         }
+        if self.is_closed()? {
+            let problem = format!(
+                "{} is closed: it takes no more answers, so a link would lead nobody into it",
+                self.folder.display()
+            );
+            return Err(StudyError::refused_request(problem, "make another study with `wayword study new`"));
+        }
+        Ok(())
+    }
+
+    /// Makes personal links. Each is for one participant.
+    ///
+    /// # Errors
+    /// As [`Self::check_invitation`], or when the database cannot be written.
+    pub fn invite_participants(&self, count: u32) -> Result<InviteTokens, StudyError> {
+        self.check_invitation(count)?;
         self.run_transaction(|transaction| transaction.invite_participants(count))
     }
 

@@ -9,7 +9,7 @@ use wayword_run::settings::AskedPlatform;
 #[command(after_long_help = "\
 Examples:
   wayword study new --run ours=runs/central#r2r --run theirs=runs/other#r2r --mode follow --out STUDY
-      Make a study: people walk by the texts of two runs, and by texts of other paths, through generated houses.
+      Make a study: people follow the texts of two runs through generated houses.
   wayword study plan STUDY
       See how many people it needs, and which differences it would find.
   wayword study serve STUDY --preview
@@ -73,7 +73,7 @@ pub struct StudyNew {
     /// with its sides turned and its landmarks exchanged). The last two show what a wrong text reaches; corrupted needs no second path.
     #[arg(long, value_name = "CONTROLS", value_delimiter = ',')]
     pub include: Vec<StudyControl>,
-    /// Mark the words to doubt in the texts of this set or control, with the alternatives, for those who walk by them.
+    /// Mark the words to doubt in the texts of this set or control, with the alternatives, for those who follow them.
     /// May be given several times. The same run under two names, one of them marked, shows what the marks are worth.
     #[arg(long, value_name = "NAME")]
     pub doubts: Vec<String>,
@@ -86,7 +86,7 @@ pub struct StudyNew {
     /// What people do: follow (follow the text as an instruction), rate (answer four questions about it) or pair (choose between two).
     #[arg(long, value_name = "MODE")]
     pub mode: StudyMode,
-    /// How many paths. Each has one text for every condition; one more path is for practice.
+    /// How many paths. Each has one text for every condition. One more path is for practice, so N + 1 paths are needed.
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub items: u32,
     /// How many answers each text gets, from as many people.
@@ -161,8 +161,8 @@ Stop it with Ctrl-C, and start it again with the same command: participants go o
 pub struct StudyServe {
     /// Folder of the study.
     pub study: PathBuf,
-    /// Address and port to listen on.
-    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:8080")]
+    /// Address and port to listen on, as 127.0.0.1:8080 or [::1]:8080.
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:8080", value_parser = listen_address)]
     pub listen: SocketAddr,
     /// The address that participants open, where another server passes requests on to this one.
     #[arg(long, value_name = "URL", value_parser = public_url)]
@@ -180,9 +180,22 @@ pub struct StudyServe {
     /// another --listen.
     #[arg(long, conflicts_with = "links")]
     pub preview: bool,
-    /// Make so many personal links, and print them.
+    /// Make so many new personal links, and print them. Links of earlier commands stay valid.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub links: u32,
+}
+
+/// Reads an address to listen on. The names `localhost` and an empty host mean this machine alone.
+fn listen_address(text: &str) -> Result<SocketAddr, String> {
+    let form = "give an address and a port, as 127.0.0.1:8080, or 0.0.0.0:8443 for all networks";
+    let Some((host, port)) = text.rsplit_once(':') else {
+        return Err(format!("the port is missing; {form}"));
+    };
+    if port.parse::<u16>().is_err() {
+        return Err(format!("{port:?} is no port, which is a number from 0 to 65535; {form}"));
+    }
+    let host = if host.is_empty() || host.eq_ignore_ascii_case("localhost") { "127.0.0.1" } else { host };
+    format!("{host}:{port}").parse().map_err(|_| format!("{host:?} is no IP address; {form}"))
 }
 
 fn public_url(text: &str) -> Result<String, String> {
@@ -201,7 +214,7 @@ pub struct StudyInvite {
     /// Folder of the study.
     pub study: PathBuf,
     /// How many links.
-    #[arg(long = "links", alias = "count", value_name = "N", default_value_t = 1)]
+    #[arg(long = "links", alias = "count", value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub count: u32,
     /// The address that participants open.
     #[arg(long = "public", alias = "url", value_name = "URL", default_value = "http://127.0.0.1:8080", value_parser = public_url)]
@@ -327,6 +340,33 @@ impl FromStr for NamedSet {
                 Ok(Self { name: name.to_owned(), source: source.to_owned() })
             }
             _ => Err("give NAME=RUN#STYLE or NAME=FILE; a name has letters, digits, - _ and .".to_owned()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_address_to_listen_on_is_read_or_refused_with_its_form() {
+        for (text, read) in [
+            ("localhost:8080", "127.0.0.1:8080"),
+            (":0", "127.0.0.1:0"),
+            ("0.0.0.0:8443", "0.0.0.0:8443"),
+            ("[::1]:80", "[::1]:80"),
+        ] {
+            assert_eq!(listen_address(text).map(|address| address.to_string()).as_deref(), Ok(read));
+        }
+        for (text, said) in [
+            ("localhost", "the port is missing"),
+            (":80999", "\"80999\" is no port"),
+            ("127.0.0.1:", "\"\" is no port"),
+            ("study.example.org:80", "is no IP address"),
+            ("::1:80", "is no IP address"),
+        ] {
+            let told = listen_address(text).unwrap_err();
+            assert!(told.contains(said) && told.contains("127.0.0.1:8080"), "{text}: {told}");
         }
     }
 }

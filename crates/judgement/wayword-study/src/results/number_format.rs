@@ -16,6 +16,12 @@ pub(super) fn format_number(value: f64, digits: usize) -> String {
     if is_zero { text.replace('-', "") } else { text.replace('-', "−") }
 }
 
+/// A share in per cent, with as many digits as it has: 0.2 is `20`, and 0.002 is `0.2`.
+pub(super) fn format_percent(share: f64) -> String {
+    // Rounding takes away what the conversion from per cent and back added.
+    format!("{}", (share * 1e8).round() / 1e6)
+}
+
 /// A value of a measure, in the unit in which it is shown.
 pub(super) fn format_value(measure: &StudyMeasure, value: f64) -> String {
     match measure.unit {

@@ -3,6 +3,7 @@
 
 use super::{
     CONFIDENCE_LEVEL,
+    number_format::format_percent,
     planned_answers::{PlannedItem, count_answers, count_routes, full_items, items_of_study, plan_answers},
 };
 use crate::{ConditionKind, StudyDesign, StudyError, StudyItem, StudySettings, StudyTask};
@@ -110,24 +111,61 @@ impl PlanQuestion {
     /// # Errors
     /// The first that makes no sense, by the name of its flag.
     pub fn check(&self) -> Result<(), StudyError> {
-        let refuse = |flag: &str, hint: &str| Err(StudyError::refused_request(format!("{flag}: not possible"), hint));
+        let refuse = |problem: &str, hint: &str| Err(StudyError::refused_request(problem, hint));
+        let (base, effect) = (format_percent(self.base_share), format_percent(self.effect));
         if !(self.base_share > 0.0 && self.base_share < 1.0) {
-            return refuse("--base", "give per cent above 0 and below 100");
+            return refuse(
+                &format!("--base {base}: this is no share between 0 and 100 %"),
+                "--base is in per cent, above 0 and below 100, as in --base 50",
+            );
         }
-        if !(self.effect > 0.0 && self.effect < 2.0 * self.base_share.min(1.0 - self.base_share)) {
-            return refuse("--effect", "give points above 0 by which both shares stay within 0 and 100 %");
+        if !(self.effect > 0.0 && self.effect < 1.0) {
+            return refuse(
+                &format!("--effect {effect}: no two shares differ by that"),
+                "--effect is in points of per cent, above 0 and below 100, as in --effect 20",
+            );
+        }
+        // The shares of the two conditions lie half of the effect below the base and above it.
+        let ends = [self.base_share - self.effect / 2.0, self.base_share + self.effect / 2.0];
+        if let Some(end) = ends.into_iter().find(|end| !(*end > 0.0 && *end < 1.0)) {
+            let problem =
+                format!("--base {base} with an effect of {effect} points gives a share of {} %", format_percent(end));
+            let hint = if self.base_share <= 0.01 {
+                format!(
+                    "--base is in per cent, as in --base 50; did you mean {}?",
+                    format_percent(100.0 * self.base_share)
+                )
+            } else {
+                let most = format_percent(2.0 * self.base_share.min(1.0 - self.base_share));
+                format!("give an --effect below {most}, or a --base nearer to 50")
+            };
+            return refuse(&problem, &hint);
         }
         for (flag, sd) in [("--person-sd", self.person_sd), ("--route-sd", self.route_sd)] {
             if sd.is_some_and(|sd| !(0.0..=MAX_ASKED_SD).contains(&sd)) {
-                return refuse(flag, "give a standard deviation on the logit scale, 0 to 5");
+                let given = sd.unwrap_or_default();
+                return refuse(
+                    &format!("{flag} {given}: not possible"),
+                    "give a standard deviation on the logit scale, 0 to 5",
+                );
             }
         }
         for (flag, count) in [("--routes", self.routes), ("--participants", self.participants)] {
             if count.is_some_and(|count| count == 0 || count > MAX_ASKED_COUNT) {
-                return refuse(flag, "give 1 to 10000");
+                let given = count.unwrap_or_default();
+                return refuse(&format!("{flag} {given}: not possible"), "give 1 to 10000");
             }
         }
         Ok(())
+    }
+
+    /// A question to somebody who gave the effect or the base as a share, and not in per cent; `None` where nothing looks like that.
+    #[must_use]
+    pub fn unit_question(&self) -> Option<String> {
+        let shares = [("--effect", self.effect, "of a point"), ("--base", self.base_share, "per cent")];
+        let (flag, share, unit) = shares.into_iter().find(|(_, share, _)| *share <= 0.01)?;
+        let (given, meant) = (format_percent(share), format_percent(100.0 * share));
+        Some(format!("{flag} {given} is {given} {unit}; did you mean {flag} {meant}?"))
     }
 
     /// The assumed standard deviations of persons and routes.

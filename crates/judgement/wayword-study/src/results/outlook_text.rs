@@ -2,7 +2,7 @@
 
 use super::{
     PlannedPower, StudyOutlook, escape,
-    number_format::{count_with_noun, format_number},
+    number_format::{count_with_noun, format_number, format_percent},
     sheets::kind_name,
 };
 use crate::{ConditionKind, StudyTask};
@@ -50,7 +50,7 @@ impl StudyOutlook {
             return writeln!(f, "\nThere are no two conditions to compare.");
         }
         let points = |share: f64| format!("{} points", format_number(100.0 * share, 0));
-        let effect = points(self.effect);
+        let effect = format!("{} points", format_percent(self.effect));
         match self.mode {
             StudyTask::Pair => {
                 writeln!(f, "\nTwo conditions; one is preferred {effect} more often than half of the time.")?;
@@ -59,7 +59,7 @@ impl StudyOutlook {
                 writeln!(
                     f,
                     "\nTwo conditions whose shares differ by {effect} around {} %.",
-                    format_number(100.0 * self.base_share, 0)
+                    format_percent(self.base_share)
                 )?;
             }
         }

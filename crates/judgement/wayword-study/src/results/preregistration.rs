@@ -2,8 +2,11 @@
 //! gap to fill in.
 
 use super::{
-    PlannedPower, StudyMeasure, StudyOutlook, escape::escape_markdown as escaped, number_format::format_number,
-    scales_for_mode, sheets::kind_name,
+    PlannedPower, StudyMeasure, StudyOutlook,
+    escape::escape_markdown as escaped,
+    number_format::{format_number, format_percent},
+    scales_for_mode,
+    sheets::kind_name,
 };
 use crate::{ConditionKind, EndQuestionKind, Study, StudyError, StudyTask};
 use std::{fmt::Write, path::Path};
@@ -65,7 +68,7 @@ fn hypotheses(study: &Study, outlook: &StudyOutlook) -> String {
     }
     text.push_str(&format!(
         "- Smallest difference of interest: {} points. TODO: why.\n",
-        format_number(100.0 * outlook.effect, 0)
+        format_percent(outlook.effect)
     ));
     text
 }
@@ -179,9 +182,9 @@ fn sample_size(study: &Study, outlook: &StudyOutlook) -> String {
          | Persons differ | Routes differ | Power for {} points | Found with power 0.8 | Participants for {} points |\n| ---: | ---: | ---: | ---: | ---: |\n",
         outlook.simulated_studies,
         study.plan.seed,
-        format_number(100.0 * outlook.base_share, 0),
-        format_number(100.0 * outlook.effect, 0),
-        format_number(100.0 * outlook.effect, 0)
+        format_percent(outlook.base_share),
+        format_percent(outlook.effect),
+        format_percent(outlook.effect)
     ));
     outlook.assumptions.iter().for_each(|assumption| text.push_str(&assumption_row(assumption)));
     text + "\nTODO: which line is assumed, and why.\n"

@@ -13,6 +13,7 @@ use axum::{Router, extract::Request};
 use hyper::{body::Incoming, server::conn::http1, service::service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use std::{
+    io,
     net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket},
     path::PathBuf,
     sync::Arc,
@@ -163,9 +164,7 @@ fn serve_audience(
         .build()
         .map_err(StudyError::io_error("the async runtime", "start"))?;
     let served = runtime.block_on(async {
-        let listener = TcpListener::bind(listen.address)
-            .await
-            .map_err(StudyError::io_error(listen.address.to_string(), "listen on"))?;
+        let listener = TcpListener::bind(listen.address).await.map_err(|error| listen_error(listen.address, error))?;
         let address = listener.local_addr().map_err(StudyError::io_error(listen.address.to_string(), "listen on"))?;
         let url = public.unwrap_or_else(|| format!("{scheme}://{}", SocketAddr::new(host, address.port())));
         started(&SiteAddress { address, url });
@@ -176,6 +175,26 @@ fn serve_audience(
     // The desk's thread ends when the last request has gone.
     let _ = thread.join();
     served
+}
+
+/// Why an address cannot be had, and what to do.
+fn listen_error(address: SocketAddr, error: io::Error) -> StudyError {
+    let (problem, hint) = match error.kind() {
+        io::ErrorKind::AddrInUse => (
+            format!("port {} is in use by another program", address.port()),
+            format!("stop that program, or give --listen {} or another port", SocketAddr::new(address.ip(), 0)),
+        ),
+        io::ErrorKind::AddrNotAvailable => (
+            "this machine does not have this address".to_owned(),
+            "give --listen an address of this machine, 127.0.0.1 for this machine alone, or 0.0.0.0 for all its networks".to_owned(),
+        ),
+        io::ErrorKind::PermissionDenied => (
+            format!("you may not use port {}", address.port()),
+            "give --listen a port from 1024 on, such as 127.0.0.1:8080".to_owned(),
+        ),
+        _ => return StudyError::io_error(address.to_string(), "listen on")(error),
+    };
+    StudyError::refused_request(format!("--listen {address}: {problem}"), hint)
 }
 
 /// Refuses addresses with which answers could be read along.
@@ -309,4 +328,19 @@ async fn serve_http(
     }
     connection.as_mut().graceful_shutdown();
     let _ = time::timeout(SHUTDOWN_GRACE, connection).await;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_address_that_cannot_be_had_says_what_to_do() {
+        let told = |kind: io::ErrorKind| listen_error("127.0.0.1:8080".parse().unwrap(), kind.into()).to_string();
+        let in_use = told(io::ErrorKind::AddrInUse);
+        assert!(in_use.contains("port 8080 is in use") && in_use.contains("--listen 127.0.0.1:0"), "{in_use}");
+        assert!(told(io::ErrorKind::AddrNotAvailable).contains("0.0.0.0"));
+        assert!(told(io::ErrorKind::PermissionDenied).contains("from 1024"));
+        assert!(told(io::ErrorKind::OutOfMemory).contains("cannot listen on"));
+    }
 }

@@ -41,6 +41,12 @@ pub struct ConditionProgress {
 }
 
 impl StudyTransaction<'_> {
+    /// How many personal links nobody has used.
+    pub(super) fn count_unused_links(&self) -> Result<u32, StudyError> {
+        let count = "SELECT count(*) FROM link WHERE hash NOT IN (SELECT link FROM person)";
+        Ok(self.db.query_row(count, params![], |row| row.get(0))?)
+    }
+
     /// How far the study is.
     pub(crate) fn read_progress(&self) -> Result<StudyProgress, StudyError> {
         let filled = self.fill_counts()?;
@@ -77,14 +83,13 @@ impl StudyTransaction<'_> {
         let participants = counts
             .query_map([], |row| Ok((people::status_in_column(row, 0)?, row.get(1)?)))?
             .collect::<Result<_, _>>()?;
-        let count_unused = "SELECT count(*) FROM link WHERE hash NOT IN (SELECT link FROM person)";
         Ok(StudyProgress {
             is_closed: self.is_closed()?,
             rows,
             participants,
             live: self.count_live()?,
             forgotten: people::count_forgotten(self)?,
-            unused_links: self.db.query_row(count_unused, params![], |row| row.get(0))?,
+            unused_links: self.count_unused_links()?,
         })
     }
 }

@@ -95,6 +95,8 @@ pub(crate) enum WithdrawalChoice {
 pub struct InviteTokens {
     /// One token for each link. A link is the site's address, `/t/` and a token. The database has only hashes of the tokens.
     pub tokens: Vec<String>,
+    /// How many earlier links nobody has used so far. They stay valid.
+    pub unused_before: u32,
 }
 
 /// What `forget` removes, or would remove.
@@ -113,6 +115,7 @@ pub struct ErasureReport {
 impl StudyTransaction<'_> {
     /// Makes personal links.
     pub(crate) fn invite_participants(&self, count: u32) -> Result<InviteTokens, StudyError> {
+        let unused_before = self.count_unused_links()?;
         let mut tokens = Vec::new();
         for _ in 0..count {
             let token = new_token()?;
@@ -120,7 +123,7 @@ impl StudyTransaction<'_> {
             self.db.execute("INSERT INTO link (hash, made_ms) VALUES (?1, ?2)", params![link, self.now_ms])?;
             tokens.push(token);
         }
-        Ok(InviteTokens { tokens })
+        Ok(InviteTokens { tokens, unused_before })
     }
 
     /// Decides where an arrival leads. This writes only the new session of a known participant.

@@ -4,7 +4,7 @@ use super::{PageTexts, StudyDesign, StudyError, StudyItem, StudyRoute, StudyScen
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
     fs,
-    io::Write,
+    io::{self, Write},
     path::{Path, PathBuf},
 };
 
@@ -93,14 +93,14 @@ impl Study {
     /// When the folder holds none, or a file of it cannot be used.
     pub fn open(folder: &Path) -> Result<Self, StudyError> {
         let read = |name: &str| read_limited_file(&folder.join(name));
-        if !folder.join(PLAN_FILE).is_file() {
-            let problem = format!("{}: there is no study (no {PLAN_FILE})", folder.display());
-            return Err(StudyError::refused_request(problem, "`wayword study new` makes one"));
-        }
+        check_folder(folder)?;
         let plan = StudyDesign::from_file(&read(PLAN_FILE)?)
             .map_err(|problem| wrong_file_error(folder, PLAN_FILE, &problem))?;
-        let settings: StudySettings =
-            toml::from_str(&read(SETTINGS_FILE)?).map_err(|error| wrong_file_error(folder, SETTINGS_FILE, &error))?;
+        if !folder.join(SETTINGS_FILE).exists() {
+            return Err(wrong_file_error(folder, SETTINGS_FILE, &"this file of the study is missing"));
+        }
+        let settings: StudySettings = toml::from_str(&read(SETTINGS_FILE)?)
+            .map_err(|error| wrong_file_error(folder, SETTINGS_FILE, &settings_problem(&error)))?;
         settings.check().map_err(|problem| wrong_file_error(folder, SETTINGS_FILE, &problem))?;
         let texts = folder.join(TEXTS_FILE);
         let texts = if texts.exists() { PageTexts::read(&texts)? } else { PageTexts::default() };
@@ -117,11 +117,49 @@ impl Study {
         Ok(study)
     }
 
+    /// Refuses an output inside the folder of a study, which has the answers of people and pictures of others, while outputs are made to be
+    /// passed on. `flag` names the output, as in `--out`.
+    ///
+    /// # Errors
+    /// When the output would lie in a study, or a folder on the way to it cannot be read.
+    pub fn check_outside(flag: &str, output: &Path) -> Result<(), StudyError> {
+        let absolute = std::path::absolute(output).map_err(StudyError::io_error(output, "find"))?;
+        // Links on the way are followed as far as there is anything, so that none leads into a study unseen.
+        let known = absolute.ancestors().find_map(|folder| fs::canonicalize(folder).ok());
+        let written = absolute.ancestors().map(Path::to_owned);
+        let mut folders = written.chain(known.iter().flat_map(|known| known.ancestors().map(Path::to_owned)));
+        match folders.find(|folder| Self::is_in(folder) && folder.join(SETTINGS_FILE).is_file()) {
+            Some(study) => Err(StudyError::refused_request(
+                format!(
+                    "{flag} {}: it is in the study {}, whose folder is private: it has the answers of people",
+                    output.display(),
+                    study.display()
+                ),
+                format!("give {flag} another place, beside the study"),
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses a name for a new file that is taken, or lies in the folder of a study.
+    ///
+    /// # Errors
+    /// When it is one of these.
+    pub fn check_new_file(flag: &str, file: &Path) -> Result<(), StudyError> {
+        Self::check_outside(flag, file)?;
+        if fs::symlink_metadata(file).is_ok() {
+            let problem = format!("{flag} {}: there is something of this name already", file.display());
+            return Err(StudyError::refused_request(problem, "give the name of a new file, or move the old one away"));
+        }
+        Ok(())
+    }
+
     /// Writes a new file about the study that its researcher keeps.
     ///
     /// # Errors
-    /// When the file exists, or cannot be written.
+    /// When the file exists or lies in a study, or cannot be written.
     pub(crate) fn write_new_file(path: &Path, text: &str) -> Result<(), StudyError> {
+        Self::check_outside("--out", path)?;
         let written = fs::File::options().write(true).create_new(true).open(path).and_then(|mut file| {
             file.write_all(text.as_bytes())?;
             file.sync_all()
@@ -195,6 +233,33 @@ impl Study {
     }
 }
 
+/// Refuses a folder that has no study, or that this user may not read.
+fn check_folder(folder: &Path) -> Result<(), StudyError> {
+    let plan = folder.join(PLAN_FILE);
+    let refuse =
+        |problem: &str, hint: &str| Err(StudyError::refused_request(format!("{}: {problem}", folder.display()), hint));
+    match fs::metadata(&plan) {
+        Ok(about) if about.is_file() => Ok(()),
+        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => refuse(
+            "you may not read this folder (permission denied)",
+            "only the one who made a study can read its folder: run the command as that user",
+        ),
+        Err(error) if ![io::ErrorKind::NotFound, io::ErrorKind::NotADirectory].contains(&error.kind()) => {
+            Err(StudyError::Io { path: plan, doing: "read", source: error })
+        }
+        _ => match fs::metadata(folder) {
+            Ok(about) if about.is_dir() => refuse(
+                "this folder holds no study (it has no plan.json)",
+                "give the folder that `wayword study new --out` named",
+            ),
+            Ok(_) => {
+                refuse("this is no folder, and a study is one", "give the folder that `wayword study new --out` named")
+            }
+            Err(_) => refuse("there is no such folder", "check the name; `wayword study new` makes a study"),
+        },
+    }
+}
+
 /// Lets only the owner into a folder, because it will contain people's answers.
 fn keep_private(folder: &Path) -> Result<(), StudyError> {
     #[cfg(unix)]
@@ -205,6 +270,14 @@ fn keep_private(folder: &Path) -> Result<(), StudyError> {
     #[cfg(not(unix))]
     let _ = folder;
     Ok(())
+}
+
+/// What is wrong in `study.toml`, with the type of a number in plain words.
+fn settings_problem(error: &toml::de::Error) -> String {
+    let told = error.to_string();
+    ["u32", "u64", "usize"].iter().fold(told.trim_end().to_owned(), |told, type_name| {
+        told.replace(&format!(", expected {type_name}"), "; give a whole number, 0 or more")
+    })
 }
 
 /// An error about the contents of a file of the study, with advice.
@@ -249,10 +322,80 @@ fn read_limited_file(path: &Path) -> Result<String, StudyError> {
 
 /// Reads a file of JSON lines. An error names the line.
 fn read_json_lines<T: DeserializeOwned>(folder: &Path, name: &str) -> Result<Vec<T>, StudyError> {
+    if !folder.join(name).exists() {
+        return Err(wrong_file_error(folder, name, &"this file of the study is missing"));
+    }
     let text = read_limited_file(&folder.join(name))?;
     let parse = |(number, line): (usize, &str)| {
         serde_json::from_str(line)
             .map_err(|error| wrong_file_error(folder, name, &format!("line {}: {error}", number + 1)))
     };
     text.lines().enumerate().map(parse).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(folder: &Path) -> String {
+        Study::open(folder).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn what_is_no_study_is_told_apart() {
+        let around = tempfile::tempdir().unwrap();
+        let (file, empty) = (around.path().join("file"), around.path().join("empty"));
+        fs::write(&file, "").unwrap();
+        fs::create_dir(&empty).unwrap();
+        assert!(refused(&around.path().join("gone")).contains("there is no such folder"));
+        assert!(refused(&empty).contains("this folder holds no study"));
+        assert!(refused(&file).contains("this is no folder"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_folder_that_one_may_not_read_is_not_called_empty() {
+        use std::os::unix::fs::PermissionsExt;
+        let around = tempfile::tempdir().unwrap();
+        let closed = around.path().join("study");
+        fs::create_dir(&closed).unwrap();
+        fs::set_permissions(&closed, PermissionsExt::from_mode(0o000)).unwrap();
+        // The superuser may read everything.
+        if fs::read_dir(&closed).is_err() {
+            assert!(refused(&closed).contains("permission denied"), "{}", refused(&closed));
+        }
+        fs::set_permissions(&closed, PermissionsExt::from_mode(0o700)).unwrap();
+    }
+
+    #[test]
+    fn no_output_lands_in_a_study() {
+        let around = tempfile::tempdir().unwrap();
+        let study = around.path().join("study");
+        fs::create_dir_all(study.join(PICTURES_FOLDER)).unwrap();
+        for name in [PLAN_FILE, SETTINGS_FILE] {
+            fs::write(study.join(name), "").unwrap();
+        }
+        let mut inside =
+            vec![study.clone(), study.join(PICTURES_FOLDER), study.join("new/deep"), study.join("sheet.md")];
+        inside.push(study.join("pictures/../tables"));
+        #[cfg(unix)]
+        {
+            let link = around.path().join("link");
+            std::os::unix::fs::symlink(study.join(PICTURES_FOLDER), &link).unwrap();
+            inside.extend([link.clone(), link.join("tables")]);
+        }
+        for output in inside {
+            let told = Study::check_outside("--out", &output).unwrap_err().to_string();
+            assert!(told.contains("--out") && told.contains("private"), "{told}");
+        }
+        for output in ["tables", "study-tables", "deep/new"] {
+            Study::check_outside("--out", &around.path().join(output)).unwrap();
+        }
+        assert!(
+            Study::check_new_file("--out", &study.join(SETTINGS_FILE)).unwrap_err().to_string().contains("private")
+        );
+        fs::write(around.path().join("taken"), "").unwrap();
+        let taken = Study::check_new_file("--out", &around.path().join("taken")).unwrap_err().to_string();
+        assert!(taken.contains("already") && taken.contains("new file"), "{taken}");
+    }
 }

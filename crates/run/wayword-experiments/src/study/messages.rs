@@ -9,12 +9,24 @@ use wayword_study::{ErasureReport, Participant, ParticipantStatus, Reconciliatio
 #[derive(Debug, Serialize)]
 pub(super) struct PersonalLinks {
     pub(super) links: Vec<String>,
+    /// How many earlier links nobody has used.
+    pub(super) unused_before: u32,
 }
 
 impl fmt::Display for PersonalLinks {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.links.join("\n"))
     }
+}
+
+/// A note for somebody who makes links again: the earlier ones are not replaced. `None` where there are none.
+pub(super) fn unused_links_note(made: usize, unused_before: u32) -> Option<String> {
+    (made > 0 && unused_before > 0).then(|| {
+        let links = if made == 1 { "this link is".to_owned() } else { format!("these {made} links are") };
+        let (earlier, stay) = if unused_before == 1 { ("1 earlier link", "stays") } else { ("earlier links", "stay") };
+        let earlier = if unused_before == 1 { earlier.to_owned() } else { format!("{unused_before} {earlier}") };
+        format!("{links} new; {earlier} that nobody has used {stay} valid (links are not stored, so they cannot be printed again)")
+    })
 }
 
 /// The progress of a study, for `wayword study status`.
@@ -119,5 +131,26 @@ pub(super) struct ClosedNotice;
 impl fmt::Display for ClosedNotice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("closed: it takes no more answers, and the recruiter's ids are gone")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_makes_links_again_reads_that_the_earlier_ones_stay_valid() {
+        assert_eq!(unused_links_note(3, 0), None);
+        assert_eq!(unused_links_note(0, 3), None);
+        assert!(
+            unused_links_note(1, 1)
+                .unwrap()
+                .starts_with("this link is new; 1 earlier link that nobody has used stays valid")
+        );
+        assert!(
+            unused_links_note(3, 2)
+                .unwrap()
+                .starts_with("these 3 links are new; 2 earlier links that nobody has used stay")
+        );
     }
 }

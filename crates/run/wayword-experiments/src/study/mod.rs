@@ -13,13 +13,14 @@ mod serve;
 use crate::study_args::{
     StudyArgs as Args, StudyCommand, StudyForget, StudyInvite, StudyPlan, StudyResults, StudyStatus,
 };
-use messages::{ClosedNotice, PersonalLinks, ReconciliationTable, RemovalReport, StudyStatusReport};
+use messages::{ClosedNotice, PersonalLinks, ReconciliationTable, RemovalReport, StudyStatusReport, unused_links_note};
 use serde::Serialize;
 use std::{fmt, path::PathBuf};
 use wayword_run::{
     count::count_phrase,
     error::{CommandError, Exit},
     output::CommandOutput,
+    written_files::expect_output_folder,
 };
 use wayword_study::{
     ENGLISH_TEXTS, PageTexts, Study, now_ms,
@@ -62,7 +63,13 @@ fn show_plan(args: &StudyPlan, output: &CommandOutput) -> Result<(), CommandErro
         participants: args.participants,
     };
     question.check()?;
+    if let Some(doubt) = question.unit_question() {
+        output.say(doubt);
+    }
     let study = Study::open(&args.study)?;
+    if let Some(file) = &args.out {
+        Study::check_new_file("--out", file)?;
+    }
     let outlook = StudyOutlook::new(&study.plan, &study.settings, &study.items, &question);
     if let Some(file) = &args.out {
         study.write_preregistration(&outlook, file)?;
@@ -74,13 +81,17 @@ fn show_plan(args: &StudyPlan, output: &CommandOutput) -> Result<(), CommandErro
 fn run_invite(args: &StudyInvite, output: &CommandOutput) -> Result<(), CommandError> {
     let links = make_links(&Study::open(&args.study)?, args.count, &args.url)?;
     output.print_result(&links, &links);
+    if let Some(note) = unused_links_note(links.links.len(), links.unused_before) {
+        output.say(note);
+    }
     Ok(())
 }
 
 /// New personal links to the site at an address.
 fn make_links(study: &Study, count: u32, url: &str) -> Result<PersonalLinks, CommandError> {
-    let tokens = study.invite_participants(count)?.tokens;
-    Ok(PersonalLinks { links: tokens.into_iter().map(|token| format!("{url}/t/{token}")).collect() })
+    let made = study.invite_participants(count)?;
+    let links = made.tokens.into_iter().map(|token| format!("{url}/t/{token}")).collect();
+    Ok(PersonalLinks { links, unused_before: made.unused_before })
 }
 
 fn show_status(args: &StudyStatus, output: &CommandOutput) -> Result<(), CommandError> {
@@ -121,6 +132,8 @@ impl fmt::Display for WrittenResults {
 
 fn write_results(args: &StudyResults, output: &CommandOutput) -> Result<(), CommandError> {
     let study = Study::open(&args.study)?;
+    expect_output_folder(&args.out)?;
+    Study::check_outside("--out", &args.out)?;
     study.note_export(&args.out)?;
     let data = study.into_data()?;
     let answers = data.slots.iter().filter(|slot| slot.answer.is_some() && slot.position.is_some()).count();

@@ -1,6 +1,6 @@
 //! `wayword study serve`: runs the site of a study, and prints its address and links.
 
-use super::make_links;
+use super::{make_links, messages::unused_links_note};
 use crate::study_args::StudyServe;
 use qrcode::{QrCode, render::unicode::Dense1x2};
 use serde::Serialize;
@@ -15,18 +15,27 @@ use wayword_study::{ListenOptions, RecruiterSettings, SiteAddress, SiteSecurity,
 #[derive(Debug, Serialize)]
 struct ServedSite {
     url: String,
+    /// Whether the study takes no more answers. Those who finished still get their code.
+    is_closed: bool,
     /// The link that walks through a preview.
     #[serde(skip_serializing_if = "Option::is_none")]
     preview_link: Option<String>,
     /// The link for the recruiter. For Prolific it contains placeholders that Prolific fills in.
     #[serde(skip_serializing_if = "Option::is_none")]
     recruiter_link: Option<String>,
+    /// New personal links.
     links: Vec<String>,
+    /// How many earlier links nobody has used.
+    unused_before: u32,
 }
 
 pub(super) fn run_serve(args: &StudyServe, output: &CommandOutput) -> Result<Exit, CommandError> {
     let _interrupt_guard = interrupt::finish_items_first(None);
     let study = Study::open(&args.study)?;
+    let is_closed = !args.preview && study.is_closed()?;
+    if args.links > 0 {
+        study.check_invitation(args.links)?;
+    }
     let security = match &args.tls {
         Some(files) => SiteSecurity::Tls { certificate: files[0].clone(), key: files[1].clone() },
         None if args.self_signed => SiteSecurity::SelfSigned,
@@ -40,7 +49,7 @@ pub(super) fn run_serve(args: &StudyServe, output: &CommandOutput) -> Result<Exi
     let listen = ListenOptions { address: args.listen, security, public: args.public.clone() };
     let announced_study = study.clone();
     let mut announced = Ok(());
-    let started = |started: &SiteAddress| announced = announce_site(&announced_study, started, args, output);
+    let started = |started: &SiteAddress| announced = announce_site(&announced_study, started, args, is_closed, output);
     if args.preview {
         preview_study(study, &listen, started, interrupt::is_interrupted)?;
         announced?;
@@ -57,23 +66,38 @@ fn announce_site(
     study: &Study,
     started: &SiteAddress,
     args: &StudyServe,
+    is_closed: bool,
     output: &CommandOutput,
 ) -> Result<(), CommandError> {
-    if args.preview {
-        let preview_link = Some(format!("{}/preview", started.url));
-        let serving = ServedSite { url: started.url.clone(), preview_link, recruiter_link: None, links: Vec::new() };
+    let mut serving = ServedSite {
+        url: started.url.clone(),
+        is_closed,
+        preview_link: None,
+        recruiter_link: None,
+        links: Vec::new(),
+        unused_before: 0,
+    };
+    if is_closed {
         output.print_result(&serving, describe_site(&serving, args.self_signed));
         output.say("Ctrl-C stops it");
         return Ok(());
     }
-    let links = if args.links > 0 { make_links(study, args.links, &started.url)?.links } else { Vec::new() };
-    let recruiter_link = match &study.settings.recruiter {
+    if args.preview {
+        serving.preview_link = Some(format!("{}/preview", started.url));
+        output.print_result(&serving, describe_site(&serving, args.self_signed));
+        output.say("Ctrl-C stops it");
+        return Ok(());
+    }
+    if args.links > 0 {
+        let made = make_links(study, args.links, &started.url)?;
+        (serving.links, serving.unused_before) = (made.links, made.unused_before);
+    }
+    serving.recruiter_link = match &study.settings.recruiter {
         RecruiterSettings::Links => None,
         RecruiterSettings::Parameters { person, session, study, .. } => {
             Some(recruiter_link(&started.url, [person, study, session]))
         }
     };
-    let serving = ServedSite { url: started.url.clone(), preview_link: None, recruiter_link, links };
     output.print_result(&serving, describe_site(&serving, args.self_signed));
     if study.settings.contact.trim().is_empty() {
         output
@@ -100,6 +124,13 @@ fn recruiter_link(url: &str, [person, study, session]: [&String; 3]) -> String {
 }
 
 fn describe_site(serving: &ServedSite, has_code: bool) -> String {
+    if serving.is_closed {
+        return format!(
+            "this study is closed: it takes no more answers. At {} those who finished still see their code by their own link; everybody else \
+             reads that the study is over",
+            serving.url
+        );
+    }
     let mut lines = vec![format!("the study is at {}", serving.url)];
     if let Some(link) = &serving.preview_link {
         lines.push(format!("preview, of which nothing is stored; open it again to begin anew: {link}"));
@@ -107,6 +138,7 @@ fn describe_site(serving: &ServedSite, has_code: bool) -> String {
         lines.push(format!("link for the recruiter: {link}"));
     }
     lines.extend(serving.links.iter().map(|link| format!("personal link: {link}")));
+    lines.extend(unused_links_note(serving.links.len(), serving.unused_before));
     if serving.preview_link.is_none() && serving.recruiter_link.is_none() && serving.links.is_empty() {
         lines.push("participants need a personal link: `wayword study invite` makes some".to_owned());
     }

@@ -23,6 +23,30 @@ fn two_conditions(mode: StudyTask, routes: usize, per_item: u32, per_participant
 
 /// 30 people with one item each in each of two groups detect about 35 points.
 #[test]
+fn an_impossible_question_names_the_flag_that_was_given_and_its_unit() {
+    let ask = |base: f64, effect: f64| {
+        let question = PlanQuestion { effect: effect / 100.0, base_share: base / 100.0, ..PlanQuestion::default() };
+        question.check().map(|()| question.unit_question()).map_err(|error| error.to_string())
+    };
+    for (base, effect, said) in [
+        (0.5, 20.0, "--base 0.5 with an effect of 20 points gives a share of -9.5 %"),
+        (0.5, 20.0, "--base is in per cent, as in --base 50; did you mean 50?"),
+        (95.0, 20.0, "--base 95 with an effect of 20 points gives a share of 105 %"),
+        (95.0, 20.0, "give an --effect below 10, or a --base nearer to 50"),
+        (50.0, 200.0, "--effect 200: no two shares differ by that"),
+        (50.0, 0.0, "--effect 0:"),
+        (100.0, 20.0, "--base 100: this is no share between 0 and 100 %"),
+        (f64::NAN, 20.0, "--base NaN"),
+    ] {
+        let told = ask(base, effect).unwrap_err();
+        assert!(told.contains(said), "{base} {effect}: {told}");
+    }
+    assert_eq!(ask(50.0, 0.2).unwrap().unwrap(), "--effect 0.2 is 0.2 of a point; did you mean --effect 20?");
+    assert_eq!(ask(0.5, 0.1).unwrap().unwrap(), "--effect 0.1 is 0.1 of a point; did you mean --effect 10?");
+    assert_eq!(ask(50.0, 20.0).unwrap(), None);
+}
+
+#[test]
 fn thirty_people_in_each_group_detect_about_35_points() {
     let outlook = of(&two_conditions(StudyTask::Rate, 30, 1, 1), &PlanQuestion::default());
     assert_eq!([outlook.items, outlook.routes, outlook.answers, outlook.participants], [60, 30, 60, 60]);
