@@ -1,4 +1,4 @@
-//! A study with people, who judge texts that describe a way: they walk by a text, rate one, or choose between two.
+//! A study with people, who judge texts that describe a way: they follow a text, rate one, or choose between two.
 //!
 //! A caller makes a study from items (text, path, pictures, graph) with [`Study::create`]. [`serve_study`] shows it to people as a web site
 //! and keeps each answer on disk before it acknowledges it. [`compute_results()`] turns the answers ([`StudyData`]) into tables.
@@ -32,9 +32,9 @@ pub use store::{
 };
 pub use study::{
     AttentionCheck, CompletionCodes, ComprehensionQuestion, ConditionKind, ConsentLink, ENGLISH_TEXTS, EndAnswer,
-    EndQuestion, EndQuestionKind, ExclusionRules, FilmPicture, ItemSlot, PageTexts, PairChoice, Participant,
-    ParticipantAnswer, ParticipantMove, ParticipantStatus, RecruiterSettings, SlotState, Study, StudyCondition,
-    StudyData, StudyDesign, StudyError, StudyItem, StudyRoute, StudyScene, StudySettings, StudyTask, StudyText,
-    StudyViewpoint, TextMark, WindowSize,
+    EndQuestion, EndQuestionKind, ExclusionRules, FilmMotion, FilmPicture, ItemSlot, PageTexts, PairChoice,
+    Participant, ParticipantAnswer, ParticipantMove, ParticipantStatus, RecruiterSettings, SlotState, Study,
+    StudyCondition, StudyData, StudyDesign, StudyError, StudyItem, StudyRoute, StudyScene, StudySettings, StudyTask,
+    StudyText, StudyViewpoint, TextMark, WindowSize,
 };
 pub use wording::{FOLLOW_STATEMENTS, RATE_QUESTIONS, RatingScale};

@@ -17,35 +17,39 @@ pub(crate) const AGREEMENT_LEVELS: [&str; 5] =
 
 /// After a walk: the three statements of HEAR's study (Zhao et al. 2024), in our words.
 pub const FOLLOW_STATEMENTS: [RatingScale; 3] = [
-    RatingScale { name: "easy", text: "The text was easy to follow.", levels: AGREEMENT_LEVELS },
+    RatingScale { name: "easy", text: "The directions were easy to follow.", levels: AGREEMENT_LEVELS },
     RatingScale {
         name: "confident",
-        text: "I am confident that I went the way that the text describes.",
+        text: "I am confident that I went the way the directions describe.",
         levels: AGREEMENT_LEVELS,
     },
-    RatingScale { name: "demanding", text: "Following the text was mentally demanding.", levels: AGREEMENT_LEVELS },
+    RatingScale {
+        name: "demanding",
+        text: "Following the directions was mentally demanding.",
+        levels: AGREEMENT_LEVELS,
+    },
 ];
 
 /// About a text: the four questions of arXiv 2403.11487. Its wording and scale are lost; these words are ours.
 pub const RATE_QUESTIONS: [RatingScale; 4] = [
     RatingScale {
         name: "similar",
-        text: "How similar is this text to one that you would write?",
-        levels: ["Very different", "Minor overlaps", "Partly similar", "Mostly similar", "Almost the same"],
+        text: "How similar are these directions to ones you would write?",
+        levels: ["Very different", "Slightly similar", "Partly similar", "Mostly similar", "Almost the same"],
     },
     RatingScale {
         name: "accurate",
-        text: "How accurately does the text describe the walk?",
-        levels: ["Not at all", "A little", "Decently", "Well", "Very well"],
+        text: "How accurately do the directions describe the walk?",
+        levels: ["Not at all", "Slightly", "Moderately", "Well", "Very well"],
     },
     RatingScale {
         name: "ghosts",
-        text: "Does the text name things that you did not see in the walk?",
+        text: "Do the directions mention things that you did not see on the walk?",
         levels: ["None", "One", "Two", "Three", "More than three"],
     },
     RatingScale {
         name: "reachable",
-        text: "Could a robot reach the end of the walk by this text?",
+        text: "Could a robot reach the end of the walk with these directions?",
         levels: ["Certainly not", "Probably not", "Perhaps", "Probably", "Certainly"],
     },
 ];

@@ -33,6 +33,7 @@ fn study(folder: &Path, mode: StudyTask) -> Study {
         position: [at, 0.0, 1.5],
         level: None,
         neighbours: neighbours.iter().map(|name| viewpoint(name)).collect(),
+        bends: BTreeMap::new(),
         panorama: "picture.jpg".into(),
     };
     let places = [("start", place(0.0, &["goal-g"])), ("goal-g", place(2.0, &["start"]))];
@@ -45,16 +46,16 @@ fn study(folder: &Path, mode: StudyTask) -> Study {
         start_heading: Heading::NORTH,
         film: vec![FilmPicture { file: "picture.jpg".into(), alt: "The walk begins.".into() }],
     };
-    let told = |name: &str| StudyText {
+    // Each route has texts of its own, because nobody gets a text twice.
+    let told = |name: &str, route: u32| StudyText {
         condition: name.into(),
-        text: "Go to the <b>door</b> & stop.".into(),
+        text: format!("Go to the <b>door</b> & stop.{}", "!".repeat(route as usize)),
         ..StudyText::default()
     };
-    let texts = match mode {
-        StudyTask::Pair => vec![told("condition-x"), told("condition-y")],
-        _ => vec![told("condition-x")],
+    let item = |id, is_practice| {
+        let names: &[&str] = if mode == StudyTask::Pair { &["condition-x", "condition-y"] } else { &["condition-x"] };
+        StudyItem { id, route: id, is_practice, texts: names.iter().map(|name| told(name, id)).collect() }
     };
-    let item = |id, is_practice| StudyItem { id, route: id, is_practice, texts: texts.clone() };
     let plan = StudyDesign {
         mode,
         seed: 1,
@@ -308,15 +309,12 @@ fn a_walk_for_practice_says_how_it_went_and_can_be_walked_again() {
     let mut browser = site.participant();
     let page = browser.get("/");
     let slot = page.field("slot");
-    assert!(
-        page.is_page("follow") && page.body.contains("<h1 tabindex=\"-1\">Follow the instruction</h1>"),
-        "{page:?}"
-    );
+    assert!(page.is_page("follow") && page.body.contains("<h1 tabindex=\"-1\">Follow the directions</h1>"), "{page:?}");
     // The goal lies behind the one way.
     assert_eq!(browser.post("/stop", &format!("slot={slot}&seq=0&looks=0")).status, 303);
     let after = browser.get("/");
     assert!(
-        after.is_page("follow_after") && after.body.contains("You did not arrive.</b> The instruction ends 4 m"),
+        after.is_page("follow_after") && after.body.contains("You did not arrive.</b> The directions end 4\u{a0}m"),
         "{}",
         after.body
     );
@@ -348,8 +346,8 @@ fn a_walk_for_practice_says_how_it_went_and_can_be_walked_again() {
 fn the_ways_from_a_place_have_names_of_their_own() {
     let site = Site::new(StudyTask::Follow, |_| {});
     let page = site.participant().get("/");
-    assert!(page.body.contains("data-slope=") && !page.body.contains("(0 m)"), "{}", page.body);
-    assert!(page.body.contains("Go <span class=\"words\">"), "{}", page.body);
+    assert!(page.body.contains("data-spot-slope=") && !page.body.contains("(0\u{a0}m)"), "{}", page.body);
+    assert!(page.body.contains(">Go to the right (2\u{a0}m)</button>"), "{}", page.body);
 }
 
 #[test]
@@ -640,7 +638,7 @@ fn a_browser_without_cookies_is_told_so() {
     browser.cookies.clear();
     let page = browser.get(&came.headers["location"]);
     assert_eq!(page.status, 403);
-    assert!(page.body.contains("keeps no cookies"), "{page:?}");
+    assert!(page.body.contains("does not keep cookies"), "{page:?}");
     browser.get(&format!("/t/{token}"));
     assert_eq!(browser.get("/?arrived").headers["location"], "/");
     assert!(browser.get("/").is_page("consent"));
@@ -665,7 +663,7 @@ fn a_text_that_is_too_long_comes_back_whole() {
 fn pages_speak_the_language_of_the_texts() {
     let german = ENGLISH_TEXTS
         .replace("language = \"en\"", "language = \"ar\"")
-        .replace("\"Compare two texts\"", "\"Vergleichen <b>Sie</b>\"")
+        .replace("\"Compare two sets of directions\"", "\"Vergleichen <b>Sie</b>\"")
         .replace("\"Play\"", "\"Ab\\\"spielen\"");
     let site = Site::with(StudyTask::Pair, |study| study.texts = PageTexts::parse(&german).unwrap());
     assert_eq!(Study::open(&site.study.folder).unwrap().texts, site.study.texts, "the folder keeps the words");
@@ -761,4 +759,209 @@ fn a_second_server_of_one_study_is_refused_at_once() {
     for _ in 0..2 {
         serve_study(study.clone(), &listen(SiteSecurity::Loopback), |_| (), || true).unwrap();
     }
+}
+
+/// The words of all pages, with another letter in the place of each letter of the alphabet.
+fn foreign_texts() -> PageTexts {
+    let mut foreign = String::new();
+    for line in ENGLISH_TEXTS.lines() {
+        let Some((key, text)) = line.split_once(" = ").filter(|(key, _)| !key.starts_with(['#', '['])) else {
+            foreign.extend([line, "\n"]);
+            continue;
+        };
+        let mut in_braces = false;
+        let letter = |letter: char| {
+            in_braces = (in_braces || letter == '{') && letter != '}';
+            if letter.is_ascii_alphabetic() && !in_braces { 'ж' } else { letter }
+        };
+        let text: String = if key == "language" { "\"ru\"".to_owned() } else { text.chars().map(letter).collect() };
+        foreign.extend([key, " = ", &text, "\n"]);
+    }
+    PageTexts::parse(&foreign).unwrap()
+}
+
+/// What somebody reads or hears on a page: its text, and the attributes that stand for text.
+fn words_of(page: &str) -> String {
+    let (mut words, mut rest) = (String::new(), page);
+    while let Some((before, after)) = rest.split_once('<') {
+        words.push_str(before);
+        let (tag, after) = after.split_once('>').unwrap();
+        for name in ["aria-label=\"", "alt=\"", "title=\"", "placeholder=\"", "data-words=\""] {
+            words.extend(tag.split(name).skip(1).filter_map(|value| value.split('"').next()));
+        }
+        rest = after;
+        words.push(' ');
+    }
+    // Escaped characters are no words.
+    words.split('&').map(|part| part.split_once(';').map_or(part, |(_, after)| after)).collect()
+}
+
+/// The first two letters of the alphabet in a row.
+fn first_english(words: &str) -> Option<usize> {
+    words.as_bytes().windows(2).position(|pair| pair.iter().all(u8::is_ascii_alphabetic))
+}
+
+#[test]
+fn no_page_of_a_translated_study_has_an_english_word() {
+    for mode in [StudyTask::Follow, StudyTask::Rate, StudyTask::Pair] {
+        let texts = foreign_texts();
+        let site = Site::with(mode, |study| {
+            study.settings = StudySettings {
+                contact: "Ж. Ж.".into(),
+                ethics: "ж 7".into(),
+                attention_checks: 2,
+                end: vec![EndQuestion {
+                    name: "a".into(),
+                    text: "ж?".into(),
+                    kind: EndQuestionKind::Text,
+                    answers: Vec::new(),
+                    optional: true,
+                    max_chars: 20,
+                }],
+                ..StudySettings::in_language(mode, 1, &texts)
+            };
+            study.texts = texts;
+            for text in study.items.iter_mut().flat_map(|item| &mut item.texts) {
+                text.text = format!("ж ж {}.", "!".repeat(text.text.len()));
+                let grades = [DoubtGrade::Likely, DoubtGrade::Uncertain].into_iter().zip([[0, 2], [3, 5]]);
+                let marks =
+                    grades.map(|(grade, span)| TextMark { span, grade, alternatives: vec![Some("ж".into()), None] });
+                text.marks = marks.collect();
+            }
+            let start = ViewpointId::new("start").unwrap();
+            study.scenes[0].places.get_mut(&start).unwrap().position[0] = -1.5;
+        });
+        let token = site.study.invite_participants(1).unwrap().tokens.remove(0);
+        let mut browser = site.browser();
+        let mut pages = vec![browser.get("/?arrived"), browser.get("/")];
+        browser.get(&format!("/t/{token}"));
+        pages.push(browser.get("/"));
+        pages.push(browser.post("/consent", "agree=yes&version=old"));
+        browser.post("/consent", "agree=yes");
+        let mut names = Vec::new();
+        for turn in 0..40 {
+            let page = browser.get("/");
+            let slot = page.field("slot");
+            let name =
+                page.body.split("data-page=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap().to_owned();
+            pages.push(page.clone());
+            match name.as_str() {
+                "understood" => {
+                    pages.push(browser.post("/understood", "try=0&q0=1"));
+                    let right = if mode == StudyTask::Rate { "q0=2&q1=0" } else { "q0=1&q1=0" };
+                    // Wrong at first, then right.
+                    let answers = if page.field("try") == "0" { "q0=0&q1=1" } else { right };
+                    browser.post("/understood", &format!("try={}&{answers}", page.field("try")));
+                }
+                "follow" if turn % 2 == 0 && page.field("seq") == "0" => {
+                    pages.push(browser.post("/move", &format!("slot={slot}&seq=0")));
+                    browser.post("/move", &format!("slot={slot}&seq=0&to=0"));
+                }
+                "follow" => {
+                    browser.post("/stop", &format!("slot={slot}&seq={}&looks=0", page.field("seq")));
+                    if pages.len() < 12 {
+                        pages.push(browser.get("/"));
+                        browser.post("/again", &format!("slot={slot}"));
+                    }
+                }
+                "follow_after" => {
+                    pages.push(browser.post("/answer", &format!("slot={slot}")));
+                    browser.post("/answer", &format!("slot={slot}&s0=1&s1=1&s2=1"));
+                }
+                "watch" => {
+                    pages.push(browser.post("/write", &format!("slot={slot}")));
+                    browser.post("/write", &format!("slot={slot}&own_text=1"));
+                }
+                "rate" => {
+                    browser.post("/answer", &format!("slot={slot}&q0=1&q1=1&q2=1&q3=1"));
+                }
+                "pair" => {
+                    pages.push(browser.post("/answer", &format!("slot={slot}")));
+                    browser.post("/answer", &format!("slot={slot}&choice=a"));
+                }
+                "attention" => {
+                    browser.post("/attention", &format!("number={}&choice=1", page.field("number")));
+                }
+                "end" => {
+                    browser.post("/end", "");
+                }
+                name => {
+                    assert_eq!(name, "done");
+                    break;
+                }
+            }
+            names.push(name);
+        }
+        assert!(names.iter().any(|name| name == "end") && names.iter().any(|name| name == "attention"), "{names:?}");
+        pages.extend([browser.get("/withdraw"), browser.post("/withdraw", ""), browser.get("/nowhere")]);
+        pages.push(browser.send("POST", "/answer", "", "Sec-Fetch-Site: cross-site\r\n"));
+        for page in pages.iter().filter(|page| page.body.contains("<html")) {
+            let words = words_of(&page.body.replace(&page.field("version"), "").replace("ж ж", ""));
+            if let Some(at) = first_english(&words) {
+                panic!(
+                    "{mode:?}: English words: {:?}\n{}",
+                    words[at..].chars().take(60).collect::<String>(),
+                    page.body
+                );
+            }
+        }
+        assert!(pages.len() > 12, "{}", pages.len());
+    }
+}
+
+#[test]
+fn the_script_has_no_words_of_its_own() {
+    let site = Site::with(StudyTask::Follow, |study| study.texts = foreign_texts());
+    let script = site.browser().get("/script.js").body;
+    let code = script
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .map(|line| line.split("  //").next().unwrap());
+    // What is no word for people: a directive of the language, and names that only the script reads.
+    let known = ["use strict", "wayword-study ", "(prefers-reduced-motion: reduce)"];
+    for line in code {
+        for quote in ['\'', '`', '"'] {
+            for literal in line.split(quote).skip(1).step_by(2).filter(|literal| !known.contains(literal)) {
+                let spaced = literal
+                    .split(' ')
+                    .filter(|word| word.len() > 1 && word.bytes().all(|byte| byte.is_ascii_alphabetic()));
+                let is_selector = literal.contains(['.', '#', '[', '$', '(', ',']);
+                assert!(spaced.count() < 2 || is_selector, "{literal:?} in {line}");
+                let is_sentence = literal.starts_with(|letter: char| letter.is_ascii_uppercase())
+                    && literal.ends_with(['.', '!', '?']);
+                assert!(!is_sentence, "{literal:?} in {line}");
+            }
+        }
+    }
+    assert!(script.contains("\"turned_left\":\"ж"), "{}", &script[..200]);
+}
+
+#[test]
+fn what_is_recorded_stands_on_the_consent_page_and_belongs_to_its_version() {
+    let consent = |mode: StudyTask| {
+        let site = Site::new(mode, |_| {});
+        let token = site.study.invite_participants(1).unwrap().tokens.remove(0);
+        let mut browser = site.browser();
+        browser.get(&format!("/t/{token}"));
+        browser.get("/")
+    };
+    let (walked, watched) = (consent(StudyTask::Follow), consent(StudyTask::Pair));
+    for word in ["browser window", "pixel density", "touchscreen or a mouse", "each step"] {
+        assert!(walked.body.contains(word) && !watched.body.contains(word), "{word}: {}", walked.body);
+    }
+    assert!(watched.body.contains("how many of the pictures"), "{}", watched.body);
+    assert_ne!(walked.field("version"), watched.field("version"));
+}
+
+#[test]
+fn a_closed_study_still_gives_its_code_to_those_who_finished() {
+    let site = Site::new(StudyTask::Pair, |settings| settings.codes.done = "C0DE".into());
+    let mut browser = site.participant();
+    for _ in 0..2 {
+        let slot = browser.get("/").field("slot");
+        browser.post("/answer", &format!("slot={slot}&choice=a"));
+    }
+    site.study.close(true).unwrap();
+    assert!(browser.get("/").body.contains("<output>C0DE</output>"));
+    assert!(site.study.invite_participants(1).unwrap_err().to_string().contains("is closed"));
 }

@@ -9,7 +9,7 @@ use wayword_metrics::IntervalMethod;
 pub(super) fn describe_study(results: &StudyReport) -> String {
     let everybody = results.everybody();
     let task = match results.mode {
-        StudyTask::Follow => "people walked by the text alone",
+        StudyTask::Follow => "people followed the text alone",
         StudyTask::Rate => "people watched a walk and rated a text about it",
         StudyTask::Pair => "people watched a walk and chose between two texts about it",
     };

@@ -14,7 +14,7 @@ use crate::{
     wording::{FOLLOW_STATEMENTS, RATE_QUESTIONS, RatingScale},
 };
 use minijinja::{Environment, Error, Value, context, value::Kwargs};
-use wayword_core::{Heading, ViewpointId, doubt::split_at_doubts, hex_text};
+use wayword_core::{DoubtGrade, Heading, ViewpointId, doubt::split_at_doubts, hex_text};
 
 /// The templates by their names. They are part of the program.
 const TEMPLATES: [(&str, &str); 15] = [
@@ -66,7 +66,7 @@ pub(super) fn person_mark(name: &str) -> String {
 
 /// A short hash of the consent text. A changed text has another version.
 pub(super) fn consent_version(study: &Study) -> String {
-    hex_text(&hash_parts(&study.settings.consent_words())[..6])
+    hex_text(&hash_parts(&study.consent_words())[..6])
 }
 
 impl PageTemplates {
@@ -138,6 +138,7 @@ impl StudyPage {
         let own = context! {
             paragraphs => study.settings.about, agreement => study.settings.agreement, version => consent_version(study),
             ethics => study.settings.ethics, links => study.settings.links,
+            recorded => study.texts.recorded_words(study.plan.mode),
         };
         Self::new(study, "consent", page_context, false, own)
     }
@@ -246,7 +247,7 @@ impl StudyPage {
         let study = transaction.study();
         let (item, route, scene) = transaction.slot_contents(held)?;
         let film = || {
-            let alt: Vec<&str> = route.film.iter().map(|picture| picture.alt.as_str()).collect();
+            let alt: Vec<&str> = route.film.iter().map(|picture| study.texts.film_description(&picture.alt)).collect();
             context! { frames => alt.len(), alt }
         };
         let text = item.texts.first().map(|first| &first.text);
@@ -273,7 +274,8 @@ impl StudyPage {
             }
             StudyTask::Follow => {
                 let marked_text = item.texts.first()?;
-                ("follow", context! { ..marked_runs(marked_text), ..walker_context(held, route, scene?)? })
+                let walker = walker_context(held, route, scene?, &study.texts)?;
+                ("follow", context! { ..marked_runs(marked_text, &study.texts), ..walker })
             }
         };
         let own = context! { slot => held.slot, is_practice => held.is_practice, ..own };
@@ -322,14 +324,17 @@ fn end_context(study: &Study) -> Value {
 }
 
 /// Splits a text into runs of words. A marked run has its number, grade and alternatives.
-fn marked_runs(study_text: &StudyText) -> Value {
+fn marked_runs(study_text: &StudyText, texts: &PageTexts) -> Value {
     let mut number = 0;
     let runs = split_at_doubts(&study_text.text, &study_text.marks, |mark| mark.span).into_iter();
     let run = |(words, mark): (&str, Option<&crate::study::TextMark>)| {
         number += usize::from(mark.is_some());
         let mark = mark.map(|mark| {
-            let (grade, says) = (mark.grade.name(), mark.grade.reader_label());
-            context! { number, grade, says, alternatives => mark.alternatives }
+            let says = match mark.grade {
+                DoubtGrade::Likely => texts.text("walk", "mark_likely"),
+                DoubtGrade::Uncertain => texts.text("walk", "mark_uncertain"),
+            };
+            context! { number, grade => mark.grade.name(), says, alternatives => mark.alternatives }
         });
         context! { words, mark }
     };
@@ -354,7 +359,7 @@ fn practice_result(held: &StoredSlot, route: &StudyRoute, scene: &StudyScene) ->
 }
 
 /// The values for a walker's page: the place, the viewing direction and the ways on.
-fn walker_context(held: &StoredSlot, route: &StudyRoute, scene: &StudyScene) -> Option<Value> {
+fn walker_context(held: &StoredSlot, route: &StudyRoute, scene: &StudyScene, texts: &PageTexts) -> Option<Value> {
     let (here, facing) = walker_place(held, route, scene)?;
     let place = scene.places.get(here)?;
     let seq = held.moves.len();
@@ -362,7 +367,7 @@ fn walker_context(held: &StoredSlot, route: &StudyRoute, scene: &StudyScene) -> 
         seq,
         panorama => format!("/look/{}/{seq}.jpg", held.slot),
         facing_deg => (facing.deg() * 10.0).round() / 10.0,
-        ways => if seq < MAX_MOVES_PER_WALK { ways_from_place(scene, place, facing) } else { Vec::new() },
+        ways => if seq < MAX_MOVES_PER_WALK { ways_from_place(scene, place, facing, texts) } else { Vec::new() },
         moves_left => MAX_MOVES_PER_WALK - seq.min(MAX_MOVES_PER_WALK),
     })
 }

@@ -199,7 +199,10 @@ fn page_response(site: &StudySite, status: StatusCode, page: &StudyPage) -> Resp
     let html = header::HeaderValue::from_static("text/html; charset=utf-8");
     match site.pages.render_html(page) {
         Ok(text) => (status, [(header::CONTENT_TYPE, html)], text).into_response(),
-        Err(_) => (StatusCode::INTERNAL_SERVER_ERROR, "This page cannot be shown.").into_response(),
+        Err(_) => {
+            let words = site.study.texts.text("message", "fault_title").to_owned();
+            (StatusCode::INTERNAL_SERVER_ERROR, words).into_response()
+        }
     }
 }
 
@@ -229,8 +232,8 @@ async fn serve_script(State(site): SiteState) -> Response {
 
 /// The script of the pages, with its words in front of it.
 pub(super) fn script_with_words(texts: &PageTexts) -> String {
-    let words = ["script", "film", "walk"].map(|name| texts.sections().get(name).cloned().unwrap_or_default());
-    let words: BTreeMap<String, String> = words.into_iter().flatten().collect();
+    let words: BTreeMap<&str, _> =
+        ["script", "film", "walk"].into_iter().map(|name| (name, texts.sections().get(name))).collect();
     // JSON is also JavaScript. No page contains the script, so no word can end it.
     format!("'use strict';\nconst T = {};\n{}", serde_json::json!(words), include_str!("assets/script.js"))
 }

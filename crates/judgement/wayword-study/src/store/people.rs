@@ -179,7 +179,7 @@ impl StudyTransaction<'_> {
         if outcome != ArrivalOutcome::New {
             return Ok(outcome);
         }
-        let words = serde_json::json!(self.study.settings.consent_words()).to_string();
+        let words = serde_json::json!(self.study.consent_words()).to_string();
         self.db.execute("INSERT OR IGNORE INTO consent (hash, words) VALUES (?1, ?2)", [consent, &words])?;
         self.db.execute(
             "INSERT INTO person (name, link, status, consent, consented_ms, seen_ms, understood, expected) \

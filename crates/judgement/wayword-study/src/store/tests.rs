@@ -29,6 +29,7 @@ fn scene() -> StudyScene {
         position: [at, 0.0, 1.5],
         level: None,
         neighbours: neighbours.iter().map(|name| viewpoint(name)).collect(),
+        bends: BTreeMap::new(),
         panorama: format!("{at}.jpg"),
     };
     let places = [("a", place(0.0, &["b"])), ("b", place(2.0, &["a", "c"])), ("c", place(4.0, &["b"]))];

@@ -32,6 +32,22 @@ pub struct StudyText {
     pub marks: Vec<TextMark>,
 }
 
+impl StudyText {
+    /// Whether somebody who has read the other text would know this one: both have the same words.
+    #[must_use]
+    pub fn reads_like(&self, other: &Self) -> bool {
+        self.text.split_whitespace().eq(other.text.split_whitespace())
+    }
+}
+
+impl StudyItem {
+    /// Whether two items have a text in common.
+    #[must_use]
+    pub fn shares_text_with(&self, other: &Self) -> bool {
+        self.texts.iter().any(|text| other.texts.iter().any(|known| text.reads_like(known)))
+    }
+}
+
 /// Words that are marked for the participants because a reader should doubt them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -100,6 +116,10 @@ pub struct StudyViewpoint {
     pub level: Option<u32>,
     /// The viewpoints to which one can walk from it.
     pub neighbours: Vec<ViewpointId>,
+    /// The first bend of the way to a neighbour, a point of the floor in the world frame, metres. A neighbour that is not here is reached
+    /// straight, as far as the platform knows. A way with a bend leads round a corner or a piece of furniture, so one may not see its end.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub bends: BTreeMap<ViewpointId, [f64; 3]>,
     /// Its panorama: a file in the folder `pictures`. North is in the middle.
     pub panorama: String,
 }

@@ -26,7 +26,7 @@ pub(crate) use exclusion::{FILM_NOT_WATCHED, TOO_FAST, TOO_FEW_MOVES};
 pub use folder::Study;
 pub use item::{FilmPicture, StudyItem, StudyRoute, StudyScene, StudyText, StudyViewpoint, TextMark};
 pub(crate) use page_texts::fill_placeholders;
-pub use page_texts::{ENGLISH_TEXTS, PageTexts};
+pub use page_texts::{ENGLISH_TEXTS, FilmMotion, PageTexts};
 pub use plan::{ConditionKind, StudyCondition, StudyDesign, StudyTask};
 pub(crate) use serve_lock::ServeLock;
 pub use settings::{CompletionCodes, ComprehensionQuestion, RecruiterSettings, StudySettings};

@@ -1,6 +1,7 @@
 //! The words that participants read on the pages, in English or as somebody translated them. `texts.toml` beside this file has the
 //! English ones.
 
+use super::StudyTask;
 use crate::wording::RatingScale;
 use serde::Serialize;
 use std::{collections::BTreeMap, sync::LazyLock};
@@ -34,6 +35,39 @@ static ENGLISH: LazyLock<PageTexts> = LazyLock::new(|| {
     let (language, sections) = read_sections(ENGLISH_TEXTS).unwrap_or_default();
     PageTexts { language, sections }
 });
+
+/// The motion in a picture of a film, which its description names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FilmMotion {
+    /// It is the first picture.
+    Begins,
+    /// The walk goes straight on.
+    GoesOn,
+    /// The walk turns to the left.
+    TurnsLeft,
+    /// The walk turns to the right.
+    TurnsRight,
+}
+
+impl FilmMotion {
+    const ALL: [Self; 4] = [Self::Begins, Self::GoesOn, Self::TurnsLeft, Self::TurnsRight];
+
+    /// The key of its words in the section `film`.
+    fn key(self) -> &'static str {
+        match self {
+            Self::Begins => "begins",
+            Self::GoesOn => "goes_on",
+            Self::TurnsLeft => "turns_left",
+            Self::TurnsRight => "turns_right",
+        }
+    }
+
+    /// Its words in English, as the files of a study have them.
+    #[must_use]
+    pub fn in_english(self) -> &'static str {
+        ENGLISH.text("film", self.key())
+    }
+}
 
 impl Default for PageTexts {
     /// The English words.
@@ -96,6 +130,20 @@ impl PageTexts {
     /// A text; empty if there is none, which tests rule out.
     pub(crate) fn text(&self, section: &str, key: &str) -> &str {
         self.sections.get(section).and_then(|texts| texts.get(key)).map_or("", String::as_str)
+    }
+
+    /// The description of a picture of a film, which `study new` writes in English, in the language of the pages.
+    pub(crate) fn film_description<'a>(&'a self, written: &'a str) -> &'a str {
+        let motion = FilmMotion::ALL.into_iter().find(|motion| motion.in_english() == written);
+        motion.map_or(written, |motion| self.text("film", motion.key()))
+    }
+
+    /// What the consent page says of the records that come beside the answers of a task.
+    pub(crate) fn recorded_words(&self, mode: StudyTask) -> &str {
+        match mode {
+            StudyTask::Follow => self.text("consent", "recorded_walk"),
+            StudyTask::Rate | StudyTask::Pair => self.text("consent", "recorded_film"),
+        }
     }
 
     /// The words of a question and of its five levels. A statement has the levels of agreement.
@@ -262,17 +310,17 @@ mod tests {
 
     #[test]
     fn problems_are_named_by_section_and_key() {
-        let without = ENGLISH_TEXTS.replace("go_on = \"Go on\"\n", "goon = \"Weiter\"\n");
+        let without = ENGLISH_TEXTS.replace("go_on = \"Continue\"\n", "goon = \"Weiter\"\n");
         let told = PageTexts::parse(&without).unwrap_err();
-        assert!(told.contains("[base] go_on is missing; in English it is \"Go on\""), "{told}");
+        assert!(told.contains("[base] go_on is missing; in English it is \"Continue\""), "{told}");
         assert!(told.contains("[base] goon: there is no such text; did you mean \"go_on\"?"), "{told}");
         for (from, to, said) in [
             ("[consent]", "[consnt]", "did you mean \"consent\"?"),
             ("about {minutes} minutes", "about some minutes", "[consent] minutes: it needs {minutes} once"),
             ("{done} of {of} done", "{done} of {off} done", "[base] progress: it needs {done} and {of}"),
-            ("\"Go on\"", "\"Go {on}\"", "the English text has none"),
-            ("\"Go on\"", "\" \"", "it is empty"),
-            ("\"Go on\"", "3", "give a text in quotes"),
+            ("\"Continue\"", "\"Go {on}\"", "the English text has none"),
+            ("\"Continue\"", "\" \"", "it is empty"),
+            ("\"Continue\"", "3", "give a text in quotes"),
             ("language = \"en\"", "language = \"<b>\"", "language"),
             ("language = \"en\"", "", "language"),
             ("language = \"en\"", "language = 3", "only `language`"),
@@ -294,8 +342,9 @@ mod tests {
 
     #[test]
     fn translated_words_are_written_and_read_back() {
-        let file =
-            ENGLISH_TEXTS.replace("language = \"en\"", "language = \"de\"").replace("Go on", "Weiter \\\"x\\\"\\n</b>");
+        let file = ENGLISH_TEXTS
+            .replace("language = \"en\"", "language = \"de\"")
+            .replace("Continue", "Weiter \\\"x\\\"\\n</b>");
         let german = PageTexts::parse(&file).unwrap();
         assert_eq!(PageTexts::parse(&german.to_file().unwrap()), Ok(german));
     }

@@ -1,6 +1,6 @@
 //! The settings of a study in `study.toml`, which the researcher may edit: wording, limits, questions and recruiter.
 
-use super::{ConsentLink, EndQuestion, ExclusionRules, StudyTask, consent_page::check_consent_page};
+use super::{ConsentLink, EndQuestion, ExclusionRules, PageTexts, StudyTask, consent_page::check_consent_page};
 use serde::{Deserialize, Serialize};
 
 /// The contents of `study.toml`. A change takes effect at the next start of the site.
@@ -109,6 +109,8 @@ pub struct CompletionCodes {
 
 /// Prolific's rule, minutes: in a study of this length or longer, a participant may fail one attention check; in a shorter one, none.
 const LONG_STUDY_MINUTES: u32 = 5;
+/// How long a participant needs for everything besides the items, minutes.
+const BASE_MINUTES: u32 = 4;
 /// Most answers that a comprehension question may offer. [`StudySettings::check`] refuses more.
 const MAX_ANSWERS_PER_QUESTION: usize = 10;
 
@@ -128,37 +130,27 @@ impl StudySettings {
         words
     }
 
-    /// The settings that a new study begins with.
+    /// The settings that a new study begins with, in English.
     #[must_use]
     pub fn for_mode(mode: StudyTask, per_participant: u32) -> Self {
-        let (task, minutes_each) = match mode {
-            StudyTask::Follow => {
-                ("You walk through pictures of a building by following a text, and stop where the text ends.", 2)
-            }
-            StudyTask::Rate => {
-                ("You watch a walk through a building, read a text about it, and answer four questions.", 2)
-            }
-            StudyTask::Pair => {
-                ("You watch a walk through a building and say which of two texts describes it better.", 1)
-            }
+        Self::in_language(mode, per_participant, &PageTexts::default())
+    }
+
+    /// The settings that a new study begins with, in the language of its pages.
+    #[must_use]
+    pub fn in_language(mode: StudyTask, per_participant: u32, texts: &PageTexts) -> Self {
+        let minutes_each = match mode {
+            StudyTask::Follow | StudyTask::Rate => 2,
+            StudyTask::Pair => 1,
         };
-        // Four minutes for everything besides the items.
-        let minutes = 4 + minutes_each * per_participant;
+        let word = |key: &str| texts.text("new_study", key).to_owned();
         Self {
-            title: "Finding the way by a text".to_owned(),
+            title: word("title"),
             contact: String::new(),
-            retention: "one year after the study ends".to_owned(),
-            minutes,
-            about: [
-                "We study how well texts describe a way through a building.",
-                task,
-                "Taking part is voluntary. You can stop at any time, and you need not say why.",
-                "We keep your answers and the time they took. We do not keep your name, your address on the internet or your browser. \
-                 An id from a recruiting service is kept apart from your answers and deleted when the study is closed.",
-            ]
-            .map(str::to_owned)
-            .to_vec(),
-            agreement: "I am at least 18 years old. I have read this, and I want to take part.".to_owned(),
+            retention: word("retention"),
+            minutes: BASE_MINUTES + minutes_each * per_participant,
+            about: ["about", mode.name(), "privacy"].map(word).to_vec(),
+            agreement: word("agreement"),
             examples: Vec::new(),
             write_first: mode == StudyTask::Rate,
             attention_checks: if per_participant > 2 { 2 } else { 0 },
@@ -169,7 +161,7 @@ impl StudySettings {
             links: Vec::new(),
             end: Vec::new(),
             exclusions: ExclusionRules::default(),
-            questions: ComprehensionQuestion::for_mode(mode),
+            questions: ComprehensionQuestion::for_mode(mode, texts),
             recruiter: RecruiterSettings::Links,
             codes: CompletionCodes::default(),
         }
@@ -231,41 +223,19 @@ impl StudySettings {
 
 impl ComprehensionQuestion {
     /// The questions with which a new study of this task begins.
-    fn for_mode(mode: StudyTask) -> Vec<Self> {
-        let question = |text: &str, answers: [&str; 3], right| Self {
-            text: text.to_owned(),
-            answers: answers.map(str::to_owned).to_vec(),
-            right,
+    fn for_mode(mode: StudyTask, texts: &PageTexts) -> Vec<Self> {
+        let question = |name: &str, answers: [&str; 3]| {
+            let word = |key: &str| texts.text("new_questions", &format!("{name}{key}")).to_owned();
+            let right = answers.iter().position(|answer| *answer == "_right").unwrap_or_default();
+            Self { text: word(""), answers: answers.map(word).to_vec(), right }
         };
+        let right_last = ["_wrong_1", "_wrong_2", "_right"];
+        let right_first = ["_right", "_wrong_1", "_wrong_2"];
+        let right_between = ["_wrong_1", "_right", "_wrong_2"];
         match mode {
-            StudyTask::Follow => vec![
-                question(
-                    "How do you find the way?",
-                    ["I go where I like.", "I do what the text says.", "I visit every room."],
-                    1,
-                ),
-                question(
-                    "When do you press the button that stops?",
-                    ["Where the text ends.", "After ten steps.", "At once."],
-                    0,
-                ),
-            ],
-            StudyTask::Rate => vec![
-                question("What do you do first?", ["I guess.", "I rate the text.", "I watch the walk."], 2),
-                question(
-                    "What do the questions ask about?",
-                    ["The text about the walk.", "The weather.", "My own home."],
-                    0,
-                ),
-            ],
-            StudyTask::Pair => vec![
-                question("What do you compare?", ["Two walks.", "Two texts about one walk.", "Two buildings."], 1),
-                question(
-                    "What if both are equally good?",
-                    ["I say that they are about equal.", "I always choose A.", "I stop."],
-                    0,
-                ),
-            ],
+            StudyTask::Follow => vec![question("follow_way", right_between), question("follow_stop", right_first)],
+            StudyTask::Rate => vec![question("rate_first", right_last), question("rate_about", right_first)],
+            StudyTask::Pair => vec![question("pair_what", right_between), question("pair_equal", right_first)],
         }
     }
 }

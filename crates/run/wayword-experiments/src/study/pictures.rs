@@ -8,7 +8,7 @@ use std::{
     path::Path as FilePath,
     sync::Arc,
 };
-use wayword_core::{Frame, Heading, Platform, Pose, SceneId, ViewGaze, ViewpointGraph, ViewpointId, hex_text};
+use wayword_core::{DVec3, Frame, Heading, Platform, Pose, SceneId, ViewGaze, ViewpointGraph, ViewpointId, hex_text};
 use wayword_house::{HouseOptions, HousePlatform};
 use wayword_report::view::{
     panorama::draw_panorama,
@@ -16,7 +16,7 @@ use wayword_report::view::{
     picture,
 };
 use wayword_run::{error::CommandError, interrupt, output::CommandOutput, written_files::write_file};
-use wayword_study::{FilmPicture, StudyScene, StudyViewpoint};
+use wayword_study::{FilmMotion, FilmPicture, StudyScene, StudyViewpoint};
 
 /// Platforms for which this program draws pictures itself, at any place.
 const DRAWING_PLATFORMS: [&str; 2] = ["house", "habitat"];
@@ -30,6 +30,8 @@ const MAX_FRAMES_BETWEEN: usize = 5;
 const TARGET_FILM_PICTURES: usize = 60;
 /// A film mentions a turn if it is larger than this since the last picture, radians.
 const TURNED_RAD: f64 = 0.15;
+/// A way is straight where it nowhere leads farther off the line to its end than this, metres.
+const STRAIGHT_M: f64 = 0.1;
 
 /// Draws a panorama for each viewpoint that people can reach from the starts of some walks.
 ///
@@ -111,8 +113,29 @@ fn draw_place(
         let whole = draw_panorama(platform, scene, &frame, None, output)?;
         write_file(&file, picture::encode_jpeg(&whole)?)?;
     }
-    let neighbours = graph.neighbours_of(id).into_iter().cloned().collect();
-    Ok(StudyViewpoint { position: position.to_array(), level, neighbours, panorama })
+    let neighbours: Vec<ViewpointId> = graph.neighbours_of(id).into_iter().cloned().collect();
+    let mut bends = BTreeMap::new();
+    for neighbour in &neighbours {
+        let position = graph.position_of(neighbour).ok_or_else(unknown)?;
+        let to = Frame { pose: Pose::looking_level(position, Heading::NORTH), viewpoint: None, level: None };
+        let way = platform.ground().ground_route(scene, &frame, &to)?;
+        if let Some(bend) = way.and_then(|way| first_bend(&way.corners)) {
+            bends.insert(neighbour.clone(), bend.to_array());
+        }
+    }
+    Ok(StudyViewpoint { position: position.to_array(), level, neighbours, bends, panorama })
+}
+
+/// The first place at which a way turns noticeably off the line to its end; `None` for a straight way.
+fn first_bend(corners: &[DVec3]) -> Option<DVec3> {
+    let (start, end) = (*corners.first()?, *corners.last()?);
+    let between = &corners[1..corners.len().max(2) - 1];
+    let along = (end - start).with_z(0.0).normalize_or_zero();
+    let aside_m = |corner: &DVec3| {
+        let off = (*corner - start).with_z(0.0);
+        (off - along * off.dot(along)).length()
+    };
+    between.iter().any(|corner| aside_m(corner) > STRAIGHT_M).then(|| between[0])
 }
 
 /// Draws the film of a walk.
@@ -138,7 +161,8 @@ pub(super) fn draw_film(
             write_file(&file, picture::encode_jpeg(&image)?)?;
         }
         let before = number.checked_sub(1).map(|before| &steps[before]);
-        Ok(Some(FilmPicture { file: name, alt: describe_motion(before, step, walk.path.motion.is_known()) }))
+        let motion = describe_motion(before, step, walk.path.motion.is_known());
+        Ok(Some(FilmPicture { file: name, alt: motion.in_english().to_owned() }))
     };
     let pictures: Vec<FilmPicture> = steps
         .par_iter()
@@ -160,18 +184,17 @@ pub(super) fn draw_film(
 
 /// Describes the motion in a picture of a film, as its alternative text. It names no thing in the picture, because people judge
 /// whether the text names the right things.
-fn describe_motion(before: Option<&FilmStep>, step: &FilmStep, is_known: bool) -> String {
-    let Some(before) = before else { return "The walk begins.".to_owned() };
+fn describe_motion(before: Option<&FilmStep>, step: &FilmStep, is_known: bool) -> FilmMotion {
+    let Some(before) = before else { return FilmMotion::Begins };
     if !is_known {
-        return "The walk goes on.".to_owned();
+        return FilmMotion::GoesOn;
     }
     let turn_rad = before.frame.pose.heading.turn_to(step.frame.pose.heading);
     match turn_rad {
-        right if right > TURNED_RAD => "The walk turns to the right.",
-        left if left < -TURNED_RAD => "The walk turns to the left.",
-        _ => "The walk goes on.",
+        right if right > TURNED_RAD => FilmMotion::TurnsRight,
+        left if left < -TURNED_RAD => FilmMotion::TurnsLeft,
+        _ => FilmMotion::GoesOn,
     }
-    .to_owned()
 }
 
 /// A file name that does not reveal its content to participants: a hash of the parts.
@@ -182,4 +205,26 @@ fn file_name(parts: &[&str]) -> String {
         hash.update(part.as_bytes());
     }
     format!("{}.jpg", hex_text(&hash.finalize()[..12]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_way_has_a_bend_where_it_leaves_the_straight_line() {
+        let at = |x: f64, y: f64| DVec3::new(x, y, 0.0);
+        let corner = Some(at(0.0, 2.0));
+        assert_eq!(first_bend(&[at(0.0, 0.0), at(0.0, 2.0), at(2.0, 2.0)]), corner, "round a corner");
+        assert_eq!(first_bend(&[at(0.0, 0.0), at(0.0, 2.0), at(1.0, 3.0), at(2.0, 2.0)]), corner, "the first of two");
+        assert_eq!(first_bend(&[at(0.0, 0.0), at(0.05, 1.0), at(0.0, 3.0)]), None, "nearly straight");
+        assert_eq!(
+            first_bend(&[at(0.0, 0.0), DVec3::new(0.0, 1.0, 0.8), DVec3::new(0.0, 2.0, 1.0)]),
+            None,
+            "up stairs"
+        );
+        for straight in [&[][..], &[at(0.0, 0.0)], &[at(0.0, 0.0), at(0.0, 0.0)], &[at(1.0, 0.0), at(3.0, 0.0)]] {
+            assert_eq!(first_bend(straight), None);
+        }
+    }
 }

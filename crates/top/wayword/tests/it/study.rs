@@ -347,7 +347,7 @@ fn the_same_texts_with_marks_and_without_are_two_conditions() {
             pages.push_str(&person.page);
         }
     }
-    assert!(pages.contains("<mark class=") && pages.contains("Marked words may be wrong"), "no marks");
+    assert!(pages.contains("<mark class=") && pages.contains("The marked words may be wrong"), "no marks");
     assert!(pages.contains("Some words may be marked"), "nobody is told of marks");
     drop(site);
     wayword(folder, &["study", "results", "study", "--out", "tables"]);

@@ -30,7 +30,7 @@ fn a_study_is_translated_planned_and_preregistered() {
         assert!(refused.refused().contains(said), "{said}: {refused:?}");
     }
     assert!(!folder.join("study").exists(), "nothing is drawn for a file that cannot be used");
-    let made = new(&english.replace("language = \"en\"", "language = \"de\"").replace("\"Go on\"", "\"Weiter\""));
+    let made = new(&english.replace("language = \"en\"", "language = \"de\"").replace("\"Continue\"", "\"Weiter\""));
     assert_eq!(made.code, Some(0), "{made:?}");
     assert!(std::fs::read_to_string(folder.join("study/texts.toml")).unwrap().contains("Weiter"));
 

@@ -56,6 +56,7 @@ fn line() -> StudyScene {
         position: [2.0 * at as f64, 0.0, 1.5],
         level: Some(1),
         neighbours: [at.checked_sub(1), (at < 5).then_some(at + 1)].into_iter().flatten().map(viewpoint).collect(),
+        bends: BTreeMap::new(),
         panorama: format!("{at}.jpg"),
     };
     let places: BTreeMap<ViewpointId, StudyViewpoint> = (0..6).map(|at| (viewpoint(at), place(at))).collect();

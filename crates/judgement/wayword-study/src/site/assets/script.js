@@ -1,6 +1,6 @@
 // The study works without this file: every page is a form. It adds an outbox, so that no answer is lost with the network; a film that plays; and a view that turns.
 'use strict';
-/* global T: the words of the page, in its language; the server puts them in front of this file. */
+/* global T: the words of the pages by section, in their language; the server puts them in front of this file. */
 
 const $ = (what, where = document) => where.querySelector(what);
 const all = (what, where = document) => [...where.querySelectorAll(what)];
@@ -39,7 +39,7 @@ async function send(answer, leftover) {
   const body = new URLSearchParams(answer.body);
   const keepalive = String(body).length < LARGEST_KEPT_ALIVE;
   for (let tries = 0; ; tries += 1) {
-    const slow = setTimeout(() => net(T.sending), 800);
+    const slow = setTimeout(() => net(T.script.sending), 800);
     let pause = Math.min(30000, 1000 * 2 ** tries) * (0.75 + Math.random() / 2);
     try {
       const stop = new AbortController();
@@ -57,7 +57,7 @@ async function send(answer, leftover) {
       }
       pause = Math.max(pause, 1000 * Number(reply.headers.get('Retry-After')) || 0);
     } catch { /* no network, or too slow: the same again */ } finally { clearTimeout(slow); }
-    net(T.not_sent);
+    net(T.script.not_sent);
     await Promise.race([wait(pause), new Promise((done) => addEventListener('online', done, { once: true }))]);
   }
 }
@@ -73,7 +73,7 @@ addEventListener('submit', async (event) => {
   if (pressed && pressed.name) body.push([pressed.name, pressed.value]);
   if (String(new URLSearchParams(body)).length > LARGEST_FORM) {  // the page stays with what was written
     busy = false;
-    net(T.too_long);
+    net(T.script.too_long);
     return;
   }
   const answer = { url: form.getAttribute('action'), body };
@@ -124,7 +124,7 @@ function show(doc, reply) {
     $('.view').scrollIntoView({ block: 'nearest' });
     $('.view').focus({ preventScroll: true });
     const words = all('.ways [data-words]').map((way) => way.dataset.words);
-    say(words.length ? `You moved. Ways: ${words.join(', ')}.` : 'You moved. No way leads on from here.');
+    say(words.length ? fill(T.walk.moved, { ways: words.join('; ') }) : T.walk.moved_no_way);
   } else {
     scrollTo(0, 0);
     ($('#error') || $('h1')).focus({ preventScroll: true });
@@ -153,7 +153,7 @@ function insist(img) {
   img.addEventListener('error', () => {
     tries += 1;
     if (tries < 6) setTimeout(() => { img.src = img.src; }, 1000 * tries);
-    else net(T.picture_failed);
+    else net(T.script.picture_failed);
   });
   if (img.complete && !img.naturalWidth) img.src = img.src;
 }
@@ -177,7 +177,7 @@ function film(section) {
     img.src = `/film/${slot}/${n}.jpg`;
     img.alt = alts[n] || '';
     slider.value = n + 1;
-    const position = fill(T.position, { number: n + 1, pictures: frames });
+    const position = fill(T.film.position, { number: n + 1, pictures: frames });
     slider.setAttribute('aria-valuetext', `${position}. ${img.alt}`);
     $('.at', section).textContent = position;
     seen.add(n);
@@ -185,14 +185,14 @@ function film(section) {
     for (const field of all('[name=pictures]')) field.value = seen.size;
     for (let k = n + 1; k < Math.min(n + 5, frames); k += 1) picture(k);
   };
-  const pause = () => { clearInterval(timer); timer = 0; play.textContent = T.play; };
+  const pause = () => { clearInterval(timer); timer = 0; play.textContent = T.script.play; };
   const acts = {
     back: () => { pause(); go(n - 1); },
     next: () => { pause(); go(n + 1); },
     play: () => {
       if (timer) { pause(); return; }
       if (n === frames - 1) go(0);
-      play.textContent = T.pause;
+      play.textContent = T.script.pause;
       timer = setInterval(() => {
         if (!section.isConnected || n >= frames - 1) pause();
         else if (picture(n + 1).complete) go(n + 1);  // else it waits for the network
@@ -212,14 +212,14 @@ const turnTo = (deg) => ((deg % 360) + 540) % 360 - 180;  // into -180..180
 const SHOWN_HALF = 0.6;  // of these heights, how much the view shows above and below its middle
 let lookAt = -0.2;  // the height in the middle of the view: a little down, to where one goes; it stays from place to place
 
-// The direction of a way in words, as in ways.rs.
-function describeTurn(deg) {
+// The words for a turn, by their key, as in ways.rs.
+function directionKey(deg) {
   const turn = Math.abs(deg);
   const side = deg < 0 ? 'left' : 'right';
   if (turn < 15) return 'ahead';
   if (turn > 155) return 'back';
-  if (turn < 60) return `slightly to the ${side}`;
-  return turn < 120 ? `to the ${side}` : `back, to the ${side}`;
+  if (turn < 60) return `slightly_${side}`;
+  return turn < 120 ? side : `back_${side}`;
 }
 
 // Gives the ways their words for a walker who looks along a heading, and their order from left to right. No two have the same words.
@@ -228,23 +228,33 @@ function nameWays(ways, heading) {
   for (const one of ways) one.turn = turnTo(one.deg - heading);
   ways.sort((a, b) => a.turn - b.turn);
   for (const one of ways) {
-    const words = describeTurn(one.turn) + (one.stairs ? `, ${one.stairs}` : '');
+    const way = T.walk[directionKey(one.turn)];
+    const words = one.stairs ? fill(T.walk[one.stairs], { way }) : way;
     groups.set(words, [...(groups.get(words) || []), one]);
   }
-  const ordinals = ['first', 'second', 'third', 'fourth', 'fifth', 'sixth', 'seventh', 'eighth'];
   for (const [words, group] of groups) {
     const [a, b] = group;
     const inLine = group.length === 2 && Math.abs(a.turn - b.turn) < 8 && a.length !== b.length;
     group.forEach((one, rank) => {
-      let which = '';
-      if (inLine) which = one.length === Math.min(a.length, b.length) ? ', the near one' : ', the far one';
-      else if (group.length === 2) which = `, the ${['left', 'right'][rank]} one`;
-      else if (group.length === 3) which = `, the ${['left', 'middle', 'right'][rank]} one`;
-      else if (group.length > 3) which = ordinals[rank] ? `, ${ordinals[rank]} from the left` : `, number ${rank + 1} from the left`;
-      one.words = words + which;
+      let key = 'numbered_one';
+      if (inLine) key = one.length === Math.min(a.length, b.length) ? 'near_one' : 'far_one';
+      else if (group.length === 2) key = ['left_one', 'right_one'][rank];
+      else if (group.length === 3) key = ['left_one', 'middle_one', 'right_one'][rank];
+      one.words = group.length === 1 ? words : fill(T.walk[key], { way: words, number: rank + 1 });
     });
   }
 }
+
+// What the keys do. The walk that is shown sets it, so that they work wherever the focus is.
+let keyActs = null;
+addEventListener('keydown', (event) => {
+  if (event.altKey || event.ctrlKey || event.metaKey || event.shiftKey) return;  // alt and left is "back"
+  // A long text scrolls by keys, and a field keeps its own.
+  if (!$('.walk') || event.target.closest?.('.task, .strip, input, textarea, select, summary')) return;
+  const { top, bottom } = $('.view').getBoundingClientRect();
+  const act = bottom > 0 && top < innerHeight && keyActs?.[event.key];  // keys scroll the page where the view is not in sight
+  if (act) { event.preventDefault(); act(event); }
+});
 
 function walk(section) {
   const img = $('.around', section);
@@ -260,11 +270,12 @@ function walk(section) {
     go.type = 'button';
     go.tabIndex = -1;  // the same way is a button in the list below, for keys and screen readers
     go.className = 'go';
-    go.textContent = `${way.dataset.stairs ? way.dataset.stairs + ' ' : ''}${way.dataset.metres} m`;
+    const { deg, length, metres, spotDeg, spotSlope, stairs } = way.dataset;
+    go.textContent = fill(T.walk[stairs ? `spot_${stairs}` : 'spot'], { metres });
+    go.hidden = spotDeg === undefined;  // the picture does not show the floor of this way
     go.addEventListener('click', () => way.click());
     const one = {
-      deg: Number(way.dataset.deg), slope: Number(way.dataset.slope), stairs: way.dataset.stairs,
-      length: Number(way.dataset.length), way, go,
+      deg: Number(deg), spotDeg: Number(spotDeg), slope: Number(spotSlope), stairs, length: Number(length), metres, way, go,
     };
     way.addEventListener('focus', draw);
     way.addEventListener('blur', draw);
@@ -273,7 +284,11 @@ function walk(section) {
   const marks = document.createElement('div');
   marks.setAttribute('aria-hidden', 'true');
   marks.append(...ways.map((one) => one.go));
-  view.append(marks);
+  const notice = document.createElement('p');
+  notice.className = 'notice';
+  notice.hidden = true;
+  notice.setAttribute('aria-hidden', 'true');
+  view.append(marks, notice);
 
   // The way that arrow up takes: the nearest to the middle, if it is about in front.
   const ahead = () => ways.filter((one) => Math.abs(turnTo(one.deg - heading)) < 60)
@@ -293,9 +308,9 @@ function walk(section) {
     view.style.backgroundPosition = `${across - (heading + 180) * perDeg()}px ${down - (half() - middle()) * perRad()}px`;
     const placed = [];
     // The nearest first: they keep their places, and what would cover them moves up, as if it were farther away.
-    for (const one of [...ways].sort((a, b) => a.slope - b.slope)) {
+    for (const one of ways.filter((way) => !way.go.hidden).sort((a, b) => a.slope - b.slope)) {
       const [width, height] = [one.go.offsetWidth, one.go.offsetHeight];
-      const x = across + turnTo(one.deg - heading) * perDeg();
+      const x = across + turnTo(one.spotDeg - heading) * perDeg();
       let y = down - (one.slope - middle()) * perRad();
       y = Math.max(height / 2 + 4, Math.min(view.clientHeight - height / 2 - 4, y));
       for (const other of placed) {
@@ -314,16 +329,26 @@ function walk(section) {
     const focused = document.activeElement;
     nameWays(ways, heading);
     for (const one of ways) {
-      $('.words', one.way).textContent = one.words;
+      one.way.textContent = fill(T.walk.go, { way: one.words, metres: one.metres });
       one.way.dataset.words = one.words;
       list.append(one.way.parentElement);
     }
     if (list.contains(focused)) focused.focus({ preventScroll: true });
   }
   function looked() {
+    notice.hidden = true;
     looks += 1;
     looksField.value = looks;
     tab.set(looksKey, looks);
+  }
+  // Says something to everybody: over the picture, and to screen readers.
+  let quiet = 0;
+  function tell(text) {
+    say(text);
+    notice.textContent = text;
+    notice.hidden = false;
+    clearTimeout(quiet);
+    quiet = setTimeout(() => { notice.hidden = true; }, 3000);
   }
   let turning = null;  // where the turn that is under way ends
   function turn(by) {
@@ -341,15 +366,16 @@ function walk(section) {
     turning = to;
     step(began);
     const next = ways.find((one) => Math.abs(turnTo(one.deg - to)) < 20);
-    say(`Turned ${by < 0 ? 'left' : 'right'}.${next ? ` In front of you now: a way of ${next.way.dataset.metres} m.` : ''}`);
+    const turned = by < 0 ? T.walk.turned_left : T.walk.turned_right;
+    say(next ? `${turned} ${fill(T.walk.way_in_front, { metres: next.metres })}` : turned);
   }
   function look(up) {
-    if (half() <= shown()) { say('The picture goes no farther up or down.'); return; }
-    looked();
     const before = middle();
     lookAt = before + up * 0.25;
     lookAt = middle();
-    say(lookAt === before ? 'The picture goes no farther.' : `Looking farther ${up > 0 ? 'up' : 'down'}.`);
+    if (lookAt === before) { tell(up > 0 ? T.walk.no_higher : T.walk.no_lower); return; }
+    looked();
+    say(up > 0 ? T.walk.looked_up : T.walk.looked_down);
     draw();
   }
 
@@ -374,19 +400,21 @@ function walk(section) {
   for (const end of ['pointerup', 'pointercancel']) view.addEventListener(end, drop);
   for (const button of all('[data-look]', section)) button.addEventListener('click', () => look(Number(button.dataset.look)));
   for (const button of all('[data-turn]', section)) button.addEventListener('click', () => turn(Number(button.dataset.turn)));
-  section.addEventListener('keydown', (event) => {
-    if (event.altKey || event.ctrlKey || event.metaKey || event.shiftKey) return;  // alt and left is "back"
-    const act = { ArrowLeft: () => turn(-30), ArrowRight: () => turn(30), PageUp: () => look(1), PageDown: () => look(-1), ArrowUp: () => {
+  keyActs = {
+    ArrowLeft: () => turn(-30),
+    ArrowRight: () => turn(30),
+    PageUp: () => look(1),
+    PageDown: () => look(-1),
+    ArrowUp: (event) => {
       if (event.repeat) return;
-      if (ahead()) ahead().way.click(); else say('No way in front of you. Turn left or right.');
-    } }[event.key];
-    if (act) { event.preventDefault(); act(); }
-  });
+      if (ahead()) ahead().way.click(); else tell(T.walk.no_way_ahead);
+    },
+  };
 
   looksField.value = looks;
   for (const one of all('.view, .turns, #keys', section)) one.hidden = false;
   $('.strip', section).hidden = $('.strip-note', section).hidden = true;
-  $('.ways-note', section).textContent = 'The directions follow where you look.';
+  $('.ways-note', section).textContent = T.walk.ways_note;
   const loaded = () => {
     view.style.backgroundImage = `url("${img.src}")`;
     for (const button of all('[data-look]', section)) button.hidden = half() <= shown();
@@ -399,12 +427,14 @@ function walk(section) {
   new ResizeObserver(draw).observe(view);
   // The text stays on top: what gets the focus must not come to lie under it. If it is long, it scrolls by keys too.
   const task = $('.task');
+  const fade = () => task.classList.toggle('more', task.scrollTop + task.clientHeight < task.scrollHeight - 2);
+  task.addEventListener('scroll', fade);
   new ResizeObserver(() => {
     if (!task.isConnected) return;
     const sticks = getComputedStyle(task).position === 'sticky';
     document.documentElement.style.scrollPaddingTop = sticks ? `${task.offsetHeight + 8}px` : '';
     const rest = task.scrollHeight > task.clientHeight + 1;
-    task.classList.toggle('long', rest);
+    fade();
     if (rest) task.tabIndex = 0; else task.removeAttribute('tabindex');
   }).observe(task);
 }
