@@ -1,12 +1,12 @@
 //! Decides who gets which item.
 //!
-//! Items with the fewest answers come first, and no participant gets a route twice. An item is lent for the time of a lease, which each
+//! Items with the fewest answers come first, and no participant gets a route or a text twice. An item is lent for the time of a lease, which each
 //! sign of life renews. When the lease has run out, the item may go to another participant.
 
 use super::{StudyTransaction, people::new_token};
 use crate::study::{StudyError, StudyItem};
 use rusqlite::params;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use wayword_core::seed::derive_seed;
 
 /// How many answers an item has, and how many may still come.
@@ -20,6 +20,12 @@ pub(super) struct ItemFillCount {
 /// How many answers an item has, plus those that its current holders may still give.
 fn filled_places(filled: &BTreeMap<u32, ItemFillCount>, item: u32) -> u32 {
     filled.get(&item).map_or(0, |filled| filled.answered + filled.live)
+}
+
+/// Whether an item has another route and other texts than those that its holder got before. Who has read a text on one route would know it
+/// again on another.
+fn is_new_to_holder(item: &StudyItem, earlier: &[&StudyItem]) -> bool {
+    !earlier.iter().any(|known| known.route == item.route || known.shares_text_with(item))
 }
 
 impl StudyTransaction<'_> {
@@ -41,19 +47,20 @@ impl StudyTransaction<'_> {
         Ok(counts.collect::<Result<_, _>>()?)
     }
 
-    /// How many items, each on another route, would be left for one more person if all current participants finish.
+    /// How many items, each on another route and with another text, would be left for one more person if all current participants finish.
     pub(super) fn count_free_items(&self) -> Result<u32, StudyError> {
         let filled = self.fill_counts()?;
         let per_item = self.study.plan.per_item;
         let free_places = |item: &StudyItem| u64::from(per_item.saturating_sub(filled_places(&filled, item.id)));
         let open: u64 = self.study.items.iter().filter(|item| !item.is_practice).map(free_places).sum();
-        let routes: BTreeSet<u32> = self
-            .study
-            .items
-            .iter()
-            .filter(|item| !item.is_practice && free_places(item) > 0)
-            .map(|item| item.route)
-            .collect();
+        let mut taken: Vec<&StudyItem> = self.study.items.iter().filter(|item| item.is_practice).take(1).collect();
+        let practice_items = taken.len();
+        for item in self.study.items.iter().filter(|item| !item.is_practice && free_places(item) > 0) {
+            if is_new_to_holder(item, &taken) {
+                taken.push(item);
+            }
+        }
+        let takeable = taken.len() - practice_items;
         // What the current participants will still take: the items that each expects, without those answered or held.
         let pending: i64 = self.db.query_row(
             "SELECT coalesce(sum(max(0, expected - (SELECT count(*) FROM slot WHERE person = person.id AND position IS NOT NULL \
@@ -62,7 +69,7 @@ impl StudyTransaction<'_> {
             params![self.now_ms, self.now_ms - self.lease_length_ms()],
             |row| row.get(0),
         )?;
-        let remaining = open.saturating_sub(pending.unsigned_abs()).min(routes.len() as u64);
+        let remaining = open.saturating_sub(pending.unsigned_abs()).min(takeable as u64);
         Ok(u32::try_from(remaining).unwrap_or(u32::MAX))
     }
 
@@ -79,7 +86,6 @@ impl StudyTransaction<'_> {
     pub(super) fn hand_out_next(&self, person: i64) -> Result<bool, StudyError> {
         let filled = self.fill_counts()?;
         let (earlier_items, name) = self.items_handed_out(person)?;
-        let routes: BTreeSet<u32> = earlier_items.iter().map(|item| item.route).collect();
         let mut conditions: BTreeMap<&str, u32> = BTreeMap::new();
         for text in earlier_items.iter().filter(|item| !item.is_practice).flat_map(|item| &item.texts) {
             *conditions.entry(&text.condition).or_default() += 1;
@@ -93,7 +99,7 @@ impl StudyTransaction<'_> {
         let open = |item: &&StudyItem| {
             !item.is_practice
                 && filled_places(&filled, item.id) < self.study.plan.per_item
-                && !routes.contains(&item.route)
+                && is_new_to_holder(item, &earlier_items)
         };
         let Some(item) = self.study.items.iter().filter(open).min_by_key(key) else { return Ok(false) };
         let position = earlier_items.iter().filter(|item| !item.is_practice).count();

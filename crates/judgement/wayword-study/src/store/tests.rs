@@ -50,17 +50,21 @@ fn study(mode: StudyTask, routes: u32, per_item: u32, per_participant: u32) -> D
         start_heading: Heading::NORTH,
         film: Vec::new(),
     };
-    let told = |name: &str| StudyText { condition: name.to_owned(), text: "Go on.".to_owned(), ..StudyText::default() };
+    let told = |name: &str, route: u32| StudyText {
+        condition: name.to_owned(),
+        text: format!("Text {name} of route {route}."),
+        ..StudyText::default()
+    };
     let mut items: Vec<StudyItem> = (0..routes)
         .flat_map(|route| match mode {
-            StudyTask::Pair => vec![(route, vec![told("x"), told("y")])],
-            _ => vec![(route, vec![told("x")]), (route, vec![told("y")])],
+            StudyTask::Pair => vec![(route, vec![told("x", route), told("y", route)])],
+            _ => vec![(route, vec![told("x", route)]), (route, vec![told("y", route)])],
         })
         .zip(0..)
         .map(|((route, texts), id)| StudyItem { id, route, is_practice: false, texts })
         .collect();
     let id = u32::try_from(items.len()).unwrap();
-    items.push(StudyItem { id, route: routes, is_practice: true, texts: vec![told("x")] });
+    items.push(StudyItem { id, route: routes, is_practice: true, texts: vec![told("x", routes)] });
     let condition = |name: &str| StudyCondition {
         name: name.to_owned(),
         kind: ConditionKind::Run,
@@ -220,6 +224,64 @@ fn a_condition_that_a_person_had_comes_later() {
     let conditions: Vec<String> =
         (0..4).map(|_| desk.study.items[desk.answer(person).item as usize].texts[0].condition.clone()).collect();
     assert_eq!(conditions.iter().filter(|name| *name == "x").count(), 2, "{conditions:?}");
+}
+
+#[test]
+fn nobody_gets_a_text_twice_and_every_item_is_filled() {
+    for (routes, per_item, per_participant) in [(4, 2, 4), (3, 1, 3), (2, 2, 2), (6, 3, 4)] {
+        let mut desk = study(StudyTask::Rate, routes, per_item, per_participant);
+        // The second text of each route is the first one of the next route, as with texts of other paths, with other white space.
+        let own: Vec<String> =
+            desk.study.items.iter().step_by(2).map(|item| item.texts[0].text.replace(' ', "  ")).collect();
+        for item in desk.study.items.iter_mut().filter(|item| item.texts[0].condition == "y") {
+            item.texts[0].text = own[(item.route + 1) as usize % routes as usize].clone();
+        }
+        let mut people = 0;
+        loop {
+            let token = desk.ask(|book| book.invite_participants(1)).tokens.remove(0);
+            let Ok(person) = desk.come(&ParticipantArrival::Link(token)) else { break };
+            people += 1;
+            let (mut texts, mut expected) = (Vec::new(), 0);
+            while let ParticipantStage::Item(_) = desk.stage(person) {
+                expected = desk.ask(|book| book.answer_progress(person)).expected;
+                let item = &desk.study.items[desk.answer(person).item as usize];
+                texts.push(item.texts[0].text.split_whitespace().collect::<Vec<_>>().join(" "));
+            }
+            let different: std::collections::BTreeSet<&String> = texts.iter().collect();
+            assert_eq!(different.len(), texts.len(), "{routes} routes: {texts:?}");
+            assert!(texts.len() > 1 && texts.len() <= 1 + expected as usize, "{texts:?}");
+        }
+        assert_eq!(desk.answered(), vec![per_item; 2 * routes as usize], "{routes} routes, {people} people");
+    }
+}
+
+#[test]
+fn a_text_that_practice_showed_comes_never_again_and_nobody_waits_for_it() {
+    let mut desk = study(StudyTask::Rate, 2, 1, 2);
+    // A study of an earlier version lent the text of practice to both routes.
+    let practice = desk.study.items.iter().find(|item| item.is_practice).unwrap().texts[0].text.clone();
+    for item in desk.study.items.iter_mut().filter(|item| item.texts[0].condition == "y") {
+        item.texts[0].text.clone_from(&practice);
+    }
+    let person = desk.newcomer();
+    desk.answer_all(person);
+    assert_eq!(desk.answered(), [1, 0, 1, 0]);
+    let token = desk.ask(|book| book.invite_participants(1)).tokens.remove(0);
+    assert_eq!(desk.come(&ParticipantArrival::Link(token)), Err(ArrivalOutcome::Full));
+}
+
+#[test]
+fn a_closed_study_makes_no_links() {
+    let desk = study(StudyTask::Pair, 1, 1, 1);
+    assert_eq!(desk.study.invite_participants(2).unwrap().unused_before, 0);
+    assert_eq!(desk.study.invite_participants(1).unwrap().unused_before, 2);
+    assert!(!desk.study.is_closed().unwrap());
+    desk.study.close(false).unwrap();
+    assert!(desk.study.is_closed().unwrap());
+    for refused in [desk.study.invite_participants(1).unwrap_err(), desk.study.check_invitation(1).unwrap_err()] {
+        assert!(refused.to_string().contains("is closed: it takes no more answers"), "{refused}");
+    }
+    assert_eq!(desk.study.read_progress().unwrap().unused_links, 3, "none was made");
 }
 
 #[test]

@@ -6,19 +6,15 @@ use super::{
         read_run_texts,
     },
     corrupted::corrupt_text,
+    lent_texts::{ScenePaths, TextChoice},
 };
 use crate::{
-    demands::{PlatformDemands, SAME_GOAL_M},
+    demands::PlatformDemands,
     study_args::{StudyControl, StudyNew},
 };
 use rand::{Rng as _, seq::SliceRandom as _};
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    sync::Arc,
-};
-use wayword_core::{Heading, Path, Platform, SceneId, ViewpointId, seeded_rng};
-use wayword_metrics::SceneDistances;
-use wayword_navigation::swap::{SwapCandidate, other_path};
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::{Heading, Path, Platform, ViewpointId, seeded_rng};
 use wayword_run::{count::count_phrase, error::CommandError, output::CommandOutput};
 use wayword_study::{ConditionKind, StudyCondition, StudyTask, StudyText};
 
@@ -35,6 +31,16 @@ pub(super) struct StudyWalk {
     pub(super) viewpoints: Vec<ViewpointId>,
     pub(super) start_heading: Heading,
     pub(super) condition_texts: Vec<StudyText>,
+}
+
+/// The paths of a study.
+#[derive(Debug)]
+pub(super) struct ChosenWalks {
+    /// Those of the study in their order, and last the one for practice.
+    pub(super) walks: Vec<StudyWalk>,
+    /// How many are in the study.
+    pub(super) routes: usize,
+    pub(super) has_practice: bool,
 }
 
 /// The conditions of a study: one for each `--run` and each control.
@@ -92,13 +98,14 @@ fn check_doubts(args: &StudyNew, all: &[StudyCondition]) -> Result<(), CommandEr
         ));
     }
     if !args.doubts.is_empty() && args.mode != crate::study_args::StudyMode::Follow {
-        let problem = "--doubts: words are marked only for people who walk by a text";
+        let problem = "--doubts: words are marked only for people who walk through the pictures";
         return Err(CommandError::usage(problem, "use --mode follow, or leave out --doubts"));
     }
     Ok(())
 }
 
-/// Chooses the paths that have a text of every condition, each path once, in an order drawn by the seed.
+/// Chooses the paths that have a text of every condition, each path once, in an order drawn by the seed: at most
+/// `--items` for the study, and one for practice. No text of the path for practice, and none that practice shows, comes again.
 ///
 /// # Errors
 /// When files cannot be read, or no path has texts of all conditions.
@@ -108,7 +115,7 @@ pub(super) fn choose_walks(
     conditions: &[StudyCondition],
     platform: &dyn Platform,
     output: &CommandOutput,
-) -> Result<Vec<StudyWalk>, CommandError> {
+) -> Result<ChosenWalks, CommandError> {
     let demands = PlatformDemands::new(platform);
     let sets = read_run_texts(conditions)?;
     let listed = list_paths(&candidates_file(args))?;
@@ -151,80 +158,27 @@ pub(super) fn choose_walks(
         }
         texts.push(of_item);
     }
-    // Only a path that has a text can lend it to another path.
-    let source = conditions
-        .iter()
-        .find(|condition| condition.kind == ConditionKind::OtherPath)
-        .map(|condition| &condition.source);
-    let has_source = |at: usize| source.is_some_and(|source| texts[at].contains_key(source.as_str()));
-    let other_indices = match source {
-        Some(_) => find_other_paths(&candidates, &demands, args.seed, &has_source)?,
-        None => vec![None; candidates.len()],
-    };
-    let texts_for_path = |at: usize| -> Option<Vec<StudyText>> {
-        let text = |condition: &StudyCondition| {
-            let text = match condition.kind {
-                ConditionKind::OtherPath => {
-                    texts.get(other_indices.get(at).copied().flatten()?)?.get(condition.source.as_str())
-                }
-                _ => texts[at].get(condition.name.as_str()),
-            };
-            Some(StudyText { condition: condition.name.clone(), text: text?.clone(), marks: Vec::new() })
-        };
-        conditions.iter().map(text).collect()
-    };
+    let choice =
+        TextChoice { conditions, texts: &texts, scenes: ScenePaths::of(&candidates, &demands)?, seed: args.seed };
     let mut order: Vec<usize> = (0..candidates.len()).collect();
     order.shuffle(&mut seeded_rng(args.seed, &["study", "paths"]));
-    let mut chosen_texts: BTreeMap<usize, Vec<StudyText>> =
-        order.iter().filter_map(|at| Some((*at, texts_for_path(*at)?))).collect();
     let mut seen = BTreeSet::new();
-    order.retain(|at| chosen_texts.contains_key(at) && seen.insert(candidates[*at].name.clone()));
-    if order.is_empty() {
+    order.retain(|at| choice.has_own_texts(*at) && seen.insert(candidates[*at].name.clone()));
+    let chosen = choice.choose(&order, args.items as usize, mode);
+    if chosen.study.is_empty() {
         return Err(no_text_error(candidates.len(), conditions));
     }
     let mut candidates: Vec<Option<CandidatePath>> = candidates.into_iter().map(Some).collect();
-    let walk = |at: usize| {
+    let mut walk = |(at, condition_texts): (usize, Vec<StudyText>)| {
         let CandidatePath { name, path, viewpoints, .. } = candidates[at].take()?;
         let start_heading = path.frames.first().map_or(Heading::NORTH, |frame| frame.pose.heading);
-        Some(StudyWalk { name, path, viewpoints, start_heading, condition_texts: chosen_texts.remove(&at)? })
+        Some(StudyWalk { name, path, viewpoints, start_heading, condition_texts })
     };
-    Ok(order.into_iter().filter_map(walk).collect())
-}
-
-/// For each path, the index of another one in the same scene with another goal, among those for which `has_text` is true.
-fn find_other_paths(
-    paths: &[CandidatePath],
-    demands: &PlatformDemands<'_>,
-    seed: u64,
-    has_text: &dyn Fn(usize) -> bool,
-) -> Result<Vec<Option<usize>>, CommandError> {
-    let mut distances: BTreeMap<SceneId, Arc<SceneDistances>> = BTreeMap::new();
-    let mut swap_candidates = Vec::new();
-    for item in paths {
-        let scene = item.path.scene.clone();
-        let goal =
-            item.viewpoints.last().or_else(|| item.path.frames.last().and_then(|frame| frame.viewpoint.as_ref()));
-        if goal.is_some() {
-            distances.insert(scene.clone(), demands.scene_distances(&scene)?);
-        }
-        // A path without viewpoints ends at a place of its own.
-        let goal = goal.cloned().or_else(|| ViewpointId::new(format!("end-of-{}", item.id)).ok());
-        let Some(goal) = goal else {
-            return Err(CommandError::usage(format!("item {}: it has no usable id", item.id), "give it another"));
-        };
-        swap_candidates.push(SwapCandidate { id: item.id.clone(), scene, goal, cluster: item.name.clone() });
-    }
-    let is_far = |a: &SwapCandidate, b: &SwapCandidate| {
-        let apart_m = distances.get(&a.scene).and_then(|distances| distances.metres_between(&a.goal, &b.goal));
-        apart_m.is_none_or(|apart_m| apart_m >= SAME_GOAL_M)
-    };
-    let lenders: Vec<usize> = (0..paths.len()).filter(|at| has_text(*at)).collect();
-    let other = |at: usize| {
-        // The path itself comes first, and the others after it.
-        let indices: Vec<usize> =
-            std::iter::once(at).chain(lenders.iter().copied().filter(|other| *other != at)).collect();
-        let swap_candidates: Vec<SwapCandidate> = indices.iter().map(|index| swap_candidates[*index].clone()).collect();
-        other_path(&swap_candidates, 0, seed, &is_far).map(|found| indices[found])
-    };
-    Ok((0..paths.len()).map(other).collect())
+    let study: Vec<StudyWalk> = chosen.study.into_iter().filter_map(&mut walk).collect();
+    let practice = chosen.practice.and_then(walk);
+    Ok(ChosenWalks {
+        routes: study.len(),
+        has_practice: practice.is_some(),
+        walks: study.into_iter().chain(practice).collect(),
+    })
 }

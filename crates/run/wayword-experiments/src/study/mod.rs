@@ -4,6 +4,7 @@ mod candidates;
 mod choose_paths;
 mod corrupted;
 mod ground_survey;
+mod lent_texts;
 mod marks;
 mod messages;
 mod new_study;

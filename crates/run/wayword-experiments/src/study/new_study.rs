@@ -1,7 +1,7 @@
 //! `wayword study new`: chooses paths and texts, draws the pictures, and writes the folder of a study.
 
 use super::{
-    choose_paths::{StudyWalk, choose_walks, study_conditions},
+    choose_paths::{ChosenWalks, StudyWalk, choose_walks, study_conditions},
     ground_survey::{GROUND_FILE, GroundSurvey},
     marks, pictures,
 };
@@ -43,13 +43,18 @@ struct NewStudySummary {
 impl fmt::Display for NewStudySummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (routes, items) = (count_phrase(self.routes, "path"), count_phrase(self.items, "item"));
-        writeln!(f, "{}: {routes}, {items}, {} wanted", self.study.display(), count_phrase(self.answers, "answer"))?;
+        let practice = if self.has_practice { " and one more for practice" } else { "" };
+        let answers = count_phrase(self.answers, "answer");
+        writeln!(f, "{}: {routes}{practice}; {items}, {answers} wanted", self.study.display())?;
         writeln!(f, "conditions: {}", self.conditions.join(", "))?;
         if let Some(ground) = &self.ground {
             writeln!(f, "{ground}")?;
         }
         if !self.has_practice {
-            writeln!(f, "no path was left for practice: give more paths, or fewer --items")?;
+            writeln!(
+                f,
+                "there is no practice: no path was left for it whose text the study does not need; give more paths"
+            )?;
         }
         write!(
             f,
@@ -57,6 +62,18 @@ impl fmt::Display for NewStudySummary {
             self.study.display()
         )
     }
+}
+
+/// The message that there are fewer paths than the user asked for.
+fn missing_paths(asked: u32, routes: usize, has_practice: bool) -> String {
+    let fit = count_phrase(routes + usize::from(has_practice), "path");
+    let verb = if routes + usize::from(has_practice) == 1 { "has" } else { "have" };
+    let practice = if has_practice {
+        format!("{routes} in the study, and one for practice")
+    } else {
+        "none for practice".to_owned()
+    };
+    format!("--items {asked}: only {fit} {verb} a text of every condition: {practice}")
 }
 
 pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), CommandError> {
@@ -72,19 +89,12 @@ pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), 
         let problem = format!("{}: there is a study already", args.out.display());
         return Err(CommandError::usage(problem, "give another --out; a study that people see is not changed"));
     }
+    Study::check_outside("--out", &args.out)?;
     let conditions = study_conditions(args)?;
     let texts = args.texts.as_deref().map_or_else(|| Ok(PageTexts::default()), PageTexts::read)?;
-    if args.texts.is_some() && mode == StudyTask::Follow {
-        output.say("the page on which people walk stays in English; --texts words all others");
-    }
-    let mut walks = choose_walks(args, mode, &conditions, &*platform, output)?;
-    let asked = args.items as usize;
-    // One more path than the user asked for is for practice.
-    walks.truncate(asked + 1);
-    let has_practice = walks.len() > 1;
-    let routes = walks.len() - usize::from(has_practice);
-    if routes < asked {
-        output.say(format_args!("there are only {} with a text of every condition", count_phrase(routes, "path")));
+    let ChosenWalks { mut walks, routes, has_practice } = choose_walks(args, mode, &conditions, &*platform, output)?;
+    if routes < args.items as usize {
+        output.say(missing_paths(args.items, routes, has_practice));
     }
     marks::mark_doubts(&mut walks, &conditions, &*platform, output)?;
     let ground = match mode {
@@ -103,7 +113,7 @@ pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), 
     let items = study_items(&walks, mode, has_practice);
     let style = first_style(args);
     let per_participant = args.per_participant.min(u32::try_from(routes).unwrap_or(u32::MAX));
-    let mut settings = StudySettings::for_mode(mode, per_participant);
+    let mut settings = StudySettings::in_language(mode, per_participant, &texts);
     settings.recruiter = recruiter_settings(args.recruiter);
     settings.codes = completion_codes(args.recruiter);
     settings.examples = style_examples(&style);

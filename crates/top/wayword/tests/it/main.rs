@@ -54,6 +54,7 @@ mod steps;
 mod study;
 mod study_ground;
 mod study_planning;
+mod study_refusals;
 mod turning_worlds;
 mod view;
 mod workers;
