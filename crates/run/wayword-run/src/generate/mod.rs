@@ -46,8 +46,8 @@ pub fn run_generate(args: &GenerateArgs, output: &CommandOutput) -> Result<Exit,
     let job = args.asked.clone().or_file(settings_file::read_settings(args.config.as_deref())?).into_job()?;
     if args.dry_run {
         let prepared = PreparedRun::open(&job, None, ModelCheck::Rehearsal, output)?;
-        let chunk = args.workers.is_asked().then(|| args.workers.chunk_items());
         let plan = prepared.plan_run(output)?;
+        let chunk = args.workers.is_asked().then(|| args.workers.chunk_items(plan.items.len(), None));
         let estimate = plan.estimate_calls(chunk)?;
         say_house_spread(&plan, output);
         output.print_result(&estimate, &estimate);

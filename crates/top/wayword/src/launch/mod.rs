@@ -129,8 +129,10 @@ fn parse_worker_command(arguments: &[String]) -> Result<GenerateArgs, CommandErr
 
 /// Warns if the run has fewer chunks than workers, as far as this machine can know.
 fn warn_of_idle_workers(arguments: &[String], workers: u32, output: &CommandOutput) -> Result<(), CommandError> {
-    let items = ChunkedItems::of_command(&parse_worker_command(arguments)?)?;
-    let warning = items.and_then(|items| items.idle_warning(usize::try_from(workers).unwrap_or(usize::MAX)));
+    let args = parse_worker_command(arguments)?;
+    let workers = usize::try_from(workers).unwrap_or(usize::MAX);
+    let items = ChunkedItems::of_command(&args, args.workers.queue.is_none().then_some(workers))?;
+    let warning = items.and_then(|items| items.idle_warning(workers));
     warning.iter().for_each(|warning| output.say(warning));
     Ok(())
 }

@@ -7,6 +7,7 @@ mod merge;
 mod prometheus;
 mod retry;
 mod status;
+mod unfinished;
 
 use crate::runs::args::{RunsArgs, RunsCommand, RunsMerge, RunsQueue, RunsRetry, RunsStatus};
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! `wayword runs status`: how far a run of many workers is.
 
-use super::damage::damage_lines;
+use super::{damage::damage_lines, unfinished::items_in_unfinished};
 use crate::runs::args::{RunsQueue, RunsStatus};
 use serde::Serialize;
 use std::{
@@ -69,6 +69,8 @@ pub(super) struct RunStatus {
     pub(super) items: usize,
     /// Items of finished chunks.
     pub(super) items_done: usize,
+    /// Items that are made in chunks which are not finished.
+    pub(super) items_kept: usize,
     pub(super) chunks: usize,
     pub(super) done: usize,
     pub(super) running: usize,
@@ -152,6 +154,7 @@ impl RunStatus {
             status.count_done(record);
         }
         let finished: BTreeSet<usize> = done.iter().map(|record| record.chunk).collect();
+        status.items_kept = items_in_unfinished(folder, &finished)?;
         for chunk in (0..plan.chunk_count()).filter(|chunk| !finished.contains(chunk)) {
             if let Some(reason) = read_dead_mark(folder, chunk)? {
                 status.dead.insert(chunk, reason);
@@ -221,6 +224,9 @@ impl fmt::Display for RunStatus {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let share = 100.0 * self.items_done as f64 / self.items.max(1) as f64;
         writeln!(f, "{}: {} of {} ({share:.1} %)", self.run, self.items_done, count_phrase(self.items, "item"))?;
+        if self.items_kept > 0 {
+            writeln!(f, "begun    {} more in chunks that are not finished", count_phrase(self.items_kept, "item"))?;
+        }
         writeln!(
             f,
             "chunks   {} done, {} running, {} open, {} given up",

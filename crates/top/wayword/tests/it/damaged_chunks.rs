@@ -156,11 +156,13 @@ fn marks_of_older_versions_are_read_and_compared_by_counts() {
 #[test]
 fn workers_without_work_are_told_beforehand() {
     let building = Building::new();
-    let told = building.generate("few", &["--episodes", EPISODES, "--style", "r2r", "--shard", "1/2"]);
+    let few = ["--episodes", EPISODES, "--style", "r2r", "--shard", "1/2"];
+    assert!(!building.generate("even", &few).err.contains("workers share"));
+    let told = building.generate("few", &[&few[..], &["--chunk", "64"]].concat());
     assert_eq!(told.code, Some(0), "{told:?}");
     assert!(told.err.contains("2 workers share 1 chunk") && told.err.contains("--chunk "), "{told:?}");
     // The plan is there: it is told before anything else.
-    let again = building.generate("few", &["--episodes", EPISODES, "--style", "r2r", "--shard", "1/2"]);
+    let again = building.generate("few", &few);
     assert!(again.err.starts_with("warning: 2 workers") && again.err.contains("another --out"), "{again:?}");
     let enough = building.generate("more", &[&RUN[..], &["--shard", "1/2"]].concat());
     assert!(!enough.err.contains("workers share"), "{enough:?}");
@@ -168,7 +170,8 @@ fn workers_without_work_are_told_beforehand() {
         let head = ["launch", "slurm", "--workers", "3", "--time", "1:00:00", "--", "generate", "--out", "big"];
         building.wayword(&[&head[..], command].concat())
     };
-    let script = launch(&["--paths", "100"]);
+    assert!(!launch(&["--paths", "100"]).err.contains("workers share"));
+    let script = launch(&["--paths", "100", "--queue", "wayword_db"]);
     assert!(script.code == Some(0) && script.out.starts_with("#!"), "{script:?}");
     assert!(script.err.contains("3 workers share 2 chunks") && script.err.contains("--chunk 34 "), "{script:?}");
     assert!(!launch(&["--paths", "1000"]).err.contains("workers share"));

@@ -1,5 +1,6 @@
 //! The flags of a run that many workers make.
 
+use super::work_spread::even_chunk;
 use clap::Args;
 use std::{num::NonZeroUsize, time::Duration};
 use wayword_queue::ShardPart;
@@ -14,7 +15,7 @@ pub struct AskedWorkers {
     /// settings and other data. The first worker writes it if it is missing.
     #[arg(long)]
     pub plan: bool,
-    /// Items in a chunk, which one worker makes as a whole. [default: 64]
+    /// Items in a chunk, which one worker makes as a whole. [default: 64, or with --shard less if otherwise a worker had none]
     #[arg(long, value_name = "N")]
     pub chunk: Option<NonZeroUsize>,
     /// Make this part of the run: K from 0 to N-1. Needs only a folder that all workers share. Each chunk keeps its own calls,
@@ -41,10 +42,12 @@ impl AskedWorkers {
         self.plan || self.shard.is_some() || self.queue.is_some()
     }
 
-    /// Items in a chunk.
+    /// Items in a chunk of a run with so many items. Where the number of workers is known, each gets a chunk if there are enough items.
     #[must_use]
-    pub fn chunk_items(&self) -> usize {
-        self.chunk.map_or(DEFAULT_CHUNK_ITEMS, NonZeroUsize::get)
+    pub fn chunk_items(&self, items: usize, workers: Option<usize>) -> usize {
+        let workers = workers.or(self.shard.map(|part| part.n));
+        let even = workers.map_or(DEFAULT_CHUNK_ITEMS, |workers| even_chunk(items, workers));
+        self.chunk.map_or(even.min(DEFAULT_CHUNK_ITEMS), NonZeroUsize::get)
     }
 
     /// How long a sign of life counts.

@@ -74,7 +74,8 @@ pub fn run_worker(
     let prepared = PreparedRun::open(&job, continued, check, output)?;
     let (plan, settings) = &prepared.plan_with_settings(output)?;
     if prepared.is_new {
-        warn_idle(ChunkedItems { items: plan.items.len(), chunk: asked.chunk_items(), is_planned: false });
+        let items = plan.items.len();
+        warn_idle(ChunkedItems { items, chunk: asked.chunk_items(items, None), is_planned: false });
         place.check_store()?;
         plan_file::write_plan(out, plan, settings, asked)?;
         place.publish_file(PLAN)?;
@@ -140,6 +141,9 @@ fn make_chunks(
 }
 
 fn interrupt_stop() -> Option<WorkerStop> {
-    interrupt::is_interrupted()
-        .then(|| WorkerStop { reason: "interrupted: its chunk was handed back".to_owned(), exit: Exit::Interrupted })
+    interrupt::is_interrupted().then(|| WorkerStop {
+        reason: "interrupted: its chunk was handed back with the items made so far; the same command goes on"
+            .to_owned(),
+        exit: Exit::Interrupted,
+    })
 }

@@ -39,8 +39,8 @@ pub(super) fn write_plan(
     asked: &AskedWorkers,
 ) -> Result<(), CommandError> {
     fs::create_dir_all(out.join("chunks")).map_err(CommandError::io(out, "make the run folder"))?;
-    let chunk = asked.chunk_items();
     let items: Vec<String> = plan.items.iter().map(RunItem::id).collect();
+    let chunk = asked.chunk_items(items.len(), None);
     let mut new = wayword_queue::ChunkPlan::new(fresh_id("run"), chunk, config_text(settings)?, items);
     let scenes: BTreeSet<_> = plan.items.iter().map(RunItem::scene).collect();
     new.data = scene_hashes(plan.platform, scenes)?;

@@ -24,9 +24,11 @@ impl ChunkedItems {
     /// The items of a command that workers are going to run, as far as they can be known here: those of its plan, or its random
     /// paths or episodes. `None` where they cannot, as where its files are on other machines.
     ///
+    /// `workers` is the number of its workers, where each has a fixed part.
+    ///
     /// # Errors
     /// When the plan cannot be read.
-    pub fn of_command(args: &GenerateArgs) -> Result<Option<Self>, CommandError> {
+    pub fn of_command(args: &GenerateArgs, workers: Option<usize>) -> Result<Option<Self>, CommandError> {
         let plan = args.out.as_deref().map(ChunkPlan::find_plan).transpose()?.flatten();
         if let Some(plan) = plan {
             return Ok(Some(Self::of_plan(&plan)));
@@ -45,7 +47,7 @@ impl ChunkedItems {
             },
         };
         let items = items.min(settings.limit.unwrap_or(usize::MAX));
-        Ok(Some(Self { items, chunk: args.workers.chunk_items(), is_planned: false }))
+        Ok(Some(Self { items, chunk: args.workers.chunk_items(items, workers), is_planned: false }))
     }
 
     fn chunk_count(self) -> usize {
@@ -57,8 +59,7 @@ impl ChunkedItems {
     pub fn idle_warning(self, workers: usize) -> Option<String> {
         let chunks = self.chunk_count();
         let idle = workers.checked_sub(chunks).filter(|idle| *idle > 0 && self.items > 0)?;
-        let fits = |chunk: &usize| self.items.div_ceil(*chunk) >= workers;
-        let even = Some(self.items.div_ceil(workers)).filter(fits).unwrap_or((self.items / workers).max(1));
+        let even = even_chunk(self.items, workers);
         let has = format!(
             "warning: {} share {} of {}, so {} of them will have nothing to do",
             count_phrase(workers, "worker"),
@@ -75,6 +76,14 @@ impl ChunkedItems {
             ),
         })
     }
+}
+
+/// The largest chunk with which each worker has one: of one item, if there are fewer items than workers.
+pub(super) fn even_chunk(items: usize, workers: usize) -> usize {
+    let fits = |chunk: &usize| items.div_ceil(*chunk) >= workers;
+    Some(items.div_ceil(workers.max(1)))
+        .filter(|chunk| *chunk > 0 && fits(chunk))
+        .unwrap_or((items / workers.max(1)).max(1))
 }
 
 #[cfg(test)]
