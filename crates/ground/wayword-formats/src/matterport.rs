@@ -60,7 +60,11 @@ pub(crate) fn take_instructions(item: &mut DatasetItem<'_>) -> Result<Vec<String
 pub(crate) fn path_field(file: &Path, episode: &Episode) -> Result<Value, FormatError> {
     if episode.viewpoints.is_empty() {
         let problem = format!("the path of item {:?} names no viewpoints, and this format requires them", episode.id);
-        return Err(FormatError::for_document(file, problem, "write it as vlnce or wayword"));
+        return Err(FormatError::for_document(
+            file,
+            problem,
+            "only Matterport3D's have them; write it as vlnce, wayword, parquet, hf or steps",
+        ));
     }
     Ok(episode.viewpoints.iter().map(ViewpointId::as_str).collect())
 }

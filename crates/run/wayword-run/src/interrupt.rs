@@ -42,6 +42,8 @@ struct CommandEnding {
     stop: Box<dyn Fn() + Send>,
     /// Whether the command makes calls to models.
     has_calls: bool,
+    /// What the command does until then, for the user.
+    words: &'static str,
 }
 
 /// Until this is dropped, the command checks for interrupts by itself, and the signal handler does not end it at once.
@@ -56,7 +58,14 @@ pub fn finish_items_first(calls: Option<&ModelCalls>) -> GracefulEnding {
         Some(ending) => Box::new(ending),
         None => Box::new(|| ()),
     };
-    *lock_ending() = Some(CommandEnding { stop, has_calls: calls.is_some() });
+    *lock_ending() = Some(CommandEnding { stop, has_calls: calls.is_some(), words: "finishing the items in progress" });
+    GracefulEnding(())
+}
+
+/// As [`finish_items_first`], for a command that answers requests.
+pub fn finish_answers_first() -> GracefulEnding {
+    let words = "sending the answers in progress, then stopping";
+    *lock_ending() = Some(CommandEnding { stop: Box::new(|| ()), has_calls: false, words });
     GracefulEnding(())
 }
 
@@ -143,7 +152,7 @@ pub fn listen_for_signals(pending: PendingSignals, output: &CommandOutput) {
 /// Lets the command come to its end, and ends it if that takes too long.
 #[cfg(unix)]
 fn finish_items(ending: &CommandEnding, output: CommandOutput) {
-    output.say("finishing the items in progress; interrupt again to stop at once");
+    output.say(format_args!("{}; interrupt again to stop at once", ending.words));
     (ending.stop)();
     let has_calls = ending.has_calls;
     thread::spawn(move || {

@@ -30,7 +30,7 @@ struct ServedSite {
 }
 
 pub(super) fn run_serve(args: &StudyServe, output: &CommandOutput) -> Result<Exit, CommandError> {
-    let _interrupt_guard = interrupt::finish_items_first(None);
+    let _interrupt_guard = interrupt::finish_answers_first();
     let study = Study::open(&args.study)?;
     let is_closed = !args.preview && study.is_closed()?;
     if args.links > 0 {

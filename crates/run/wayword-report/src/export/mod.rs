@@ -145,9 +145,13 @@ fn refuse_what_does_not_fit(args: &ExportArgs, format: ExportFormat) -> Result<(
     if let Some(share) = args.val_share.filter(|share| !(0.0..=1.0).contains(share)) {
         return refused(format!("--val-share {share} is not a share"), "give a number from 0 to 1");
     }
-    if args.split.is_some() && (args.val_share.is_some() || format == ExportFormat::Wayword) {
-        let problem = "--split puts all texts into one split, and --val-share and --format wayword divide them";
-        return refused(problem.to_owned(), "give one of the two; for --format wayword, --val-share");
+    if args.split.is_some() && args.val_share.is_some() {
+        let problem = "--split puts all texts into one split, and --val-share divides them";
+        return refused(problem.to_owned(), "give one of the two");
+    }
+    if args.split.is_some() && format == ExportFormat::Wayword {
+        let problem = "records of --format wayword have a split only with --val-share".to_owned();
+        return refused(problem, "leave --split out, or give --val-share");
     }
     if format != ExportFormat::Duet && (args.tokenizer.is_some() || args.dataset.is_some()) {
         return refused("--tokenizer and --dataset are for --format duet".to_owned(), "leave them out");

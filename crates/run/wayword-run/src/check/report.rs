@@ -168,11 +168,11 @@ impl CheckedText {
 }
 
 impl CheckedText {
-    /// The verdict, as people read it: a text with unverified claims passes as far as it was decided.
+    /// The verdict, as people read it.
     fn verdict_words(&self) -> String {
         let unverified = self.findings.iter().filter(|finding| finding.verdict == Verdict::Unverified).count();
         match self.verdict {
-            Verdict::Unverified => format!("Pass, {} unverified", count_phrase(unverified, "claim")),
+            Verdict::Unverified => format!("{} unverified", count_phrase(unverified, "claim")),
             verdict => format!("{verdict:?}"),
         }
     }
