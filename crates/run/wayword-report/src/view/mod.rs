@@ -11,14 +11,17 @@ mod walk;
 
 use crate::view::args::{ViewArgs, ViewCommand};
 use serde::Serialize;
-use std::{fmt, path::PathBuf};
+use std::{
+    fmt,
+    path::{Path, PathBuf},
+};
 use wayword_core::{GroundIsland, Platform, SceneId};
 use wayword_run::{
     count::count_phrase,
     error::{CommandError, Exit},
     output::CommandOutput,
-    platforms,
-    settings::AskedPlatform,
+    platforms, run_folder,
+    settings::{AskedPlatform, RunSettings},
 };
 
 /// Result of a view: the written files and their size.
@@ -71,6 +74,17 @@ pub fn run_view(args: &ViewArgs, output: &CommandOutput) -> Result<Exit, Command
 /// When flags do not fit the platform, or its data cannot be read.
 pub fn open_platform(asked: &AskedPlatform) -> Result<Box<dyn Platform>, CommandError> {
     platforms::open_at(asked.name(), asked.into())
+}
+
+/// The platform that the flags ask for. With the texts of a run and no flag, it is the platform of that run.
+fn platform_of_texts(asked: &AskedPlatform, episodes: Option<&Path>) -> AskedPlatform {
+    let run = episodes.and_then(Path::parent).filter(|_| *asked == AskedPlatform::default());
+    match run.and_then(|run| run_folder::read_run_settings(run).ok()) {
+        Some(RunSettings { platform, data, at, island, connectivity, .. }) => {
+            AskedPlatform { platform: Some(platform), data, at, island, connectivity }
+        }
+        None => asked.clone(),
+    }
 }
 
 /// The scene with this name, or the platform's first if there is no name.

@@ -6,7 +6,7 @@ mod paint;
 mod sketch;
 mod svg;
 
-use super::{WrittenView, choose_scene, file_kind::FileKind, open_platform, picture, walk};
+use super::{WrittenView, choose_scene, file_kind::FileKind, open_platform, picture, platform_of_texts, walk};
 use crate::view::args::{ShownPathArgs, ViewMap};
 use layout::MapPlan;
 use std::collections::BTreeSet;
@@ -15,10 +15,10 @@ use wayword_run::{error::CommandError, output::CommandOutput, written_files::wri
 
 pub(super) fn write_map(args: &ViewMap, output: &CommandOutput) -> Result<WrittenView, CommandError> {
     let kind = FileKind::one_among(&[FileKind::Svg, FileKind::Png], &args.out)?;
-    kind.check_free(&args.out, args.platform.data.as_deref())?;
-    let platform = open_platform(&args.platform)?;
-    let path =
-        asks_for_path(&args.walk).then(|| walk::choose_path(&args.walk, &args.platform, &*platform)).transpose()?;
+    let asked = platform_of_texts(&args.platform, args.walk.episodes.as_deref());
+    kind.check_free(&args.out, asked.data.as_deref())?;
+    let platform = open_platform(&asked)?;
+    let path = asks_for_path(&args.walk).then(|| walk::choose_path(&args.walk, &asked, &*platform)).transpose()?;
     let scene = match &path {
         Some(path) => path.scene.clone(),
         None => choose_scene(&*platform, args.walk.scan.as_deref())?,

@@ -2,7 +2,7 @@
 
 pub mod film_steps;
 
-use super::{WrittenView, film, open_platform, walk};
+use super::{WrittenView, film, open_platform, platform_of_texts, walk};
 use crate::view::args::ViewPath;
 use film_steps::FilmStep;
 use image::imageops::{self, FilterType};
@@ -29,9 +29,10 @@ pub(super) fn write_path(args: &ViewPath, output: &CommandOutput) -> Result<Writ
     if args.width.is_some_and(|width| !(1..=MAX_WIDTH_PX).contains(&width)) {
         return Err(CommandError::usage("--width is out of range", format!("give a number from 1 to {MAX_WIDTH_PX}")));
     }
-    let place = film::FilmPlace::from_out(&args.out, args.platform.data.as_deref())?;
-    let platform = open_platform(&args.platform)?;
-    let path = walk::choose_path(&args.walk, &args.platform, &*platform)?;
+    let asked = platform_of_texts(&args.platform, args.walk.episodes.as_deref());
+    let place = film::FilmPlace::from_out(&args.out, asked.data.as_deref())?;
+    let platform = open_platform(&asked)?;
+    let path = walk::choose_path(&args.walk, &asked, &*platform)?;
     let mut steps = film_steps::film_steps(&path, args.smooth.unwrap_or(0))?;
     if place.is_strip() && args.fps.is_some() {
         return Err(CommandError::usage("--fps is for a film", "end --out in .gif or .mp4, or leave --fps out"));
