@@ -9,6 +9,7 @@
 //! # Where things are
 //! - `study/plan.rs`, `settings.rs`, `data.rs`: the fixed part of a study, the settings of `study.toml`, and the answers of people.
 //! - `study/texts.toml`, `page_texts.rs`: the words of the pages, and their translations.
+//! - `study/output_guard.rs`: no output lands in a study's folder.
 //! - `study/end_question.rs`, `exclusion.rs`: the researcher's own questions, and the rules that leave out answers.
 //! - `wording`: the questions and scales.
 //! - `store/assign.rs`, `stage.rs`: who gets which item, and what comes next. `store/schema.sql`: the tables.

@@ -157,7 +157,8 @@ Examples:
   wayword study serve STUDY --listen 0.0.0.0:8443 --self-signed --links 1
       For phones in the room: prints a link and a QR code. Browsers warn of the certificate.
 
-Stop it with Ctrl-C, and start it again with the same command: participants go on where they were.")]
+Stop it with Ctrl-C, and start it again with the same command, but without --links: participants go on where they were, and the links that
+were made stay valid.")]
 pub struct StudyServe {
     /// Folder of the study.
     pub study: PathBuf,

@@ -1,6 +1,5 @@
 //! What the consent page has besides its paragraphs: the approval of an ethics committee, and links.
 
-use super::Study;
 use serde::{Deserialize, Serialize};
 
 /// A link on the consent page, a table `[[links]]` of `study.toml`.
@@ -21,15 +20,6 @@ const MAX_PARAGRAPH_CHARS: usize = 5000;
 const MAX_LINKS: usize = 20;
 /// Longest address of a link, bytes.
 const MAX_URL_BYTES: usize = 2000;
-
-impl Study {
-    /// All words of the study that participants read before they consent: those of `study.toml`, and what is recorded beside the answers.
-    pub(crate) fn consent_words(&self) -> Vec<&str> {
-        let mut words = self.settings.consent_words();
-        words.push(self.texts.recorded_words(self.plan.mode));
-        words
-    }
-}
 
 impl ConsentLink {
     fn check(&self) -> Result<(), String> {

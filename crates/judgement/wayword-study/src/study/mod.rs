@@ -7,6 +7,7 @@ mod error;
 mod exclusion;
 mod folder;
 mod item;
+mod output_guard;
 mod page_texts;
 mod plan;
 mod serve_lock;

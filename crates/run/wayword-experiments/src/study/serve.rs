@@ -58,7 +58,7 @@ pub(super) fn run_serve(args: &StudyServe, output: &CommandOutput) -> Result<Exi
     }
     serve_study(study, &listen, started, interrupt::is_interrupted)?;
     announced?;
-    output.say("stopped; the same command goes on");
+    output.say(format_args!("stopped; {}", how_to_go_on(args)));
     Ok(Exit::Done)
 }
 
@@ -108,8 +108,17 @@ fn announce_site(
     {
         output.say("study.toml: `only_study` is empty: links of any study of the recruiter are let in");
     }
-    output.say("Ctrl-C stops it; the same command goes on");
+    output.say(format_args!("Ctrl-C stops it; {}", how_to_go_on(args)));
     Ok(())
+}
+
+/// How the site is started again. The same flags would make further links.
+fn how_to_go_on(args: &StudyServe) -> &'static str {
+    if args.links > 0 {
+        "the same command without --links goes on, with these links"
+    } else {
+        "the same command goes on"
+    }
 }
 
 /// The link for the recruiter, with Prolific's placeholders.

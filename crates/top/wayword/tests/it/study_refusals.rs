@@ -90,7 +90,7 @@ fn a_study_refuses_outputs_in_its_folder_links_after_its_end_and_wrong_flags() {
     assert!(!made.err.contains("earlier"), "{made:?}");
     let again = wayword(folder, &["study", "invite", "ST", "--links", "1"]);
     assert!(again.err.contains("this link is new; 2 earlier links that nobody has used stay valid"), "{again:?}");
-    refuse("study invite ST --links 0", &["0 is not in 1"]);
+    refuse("study invite ST --links 0", &["give a whole number, 1 or more"]);
     // After the end there are none.
     assert_eq!(wayword(folder, &["study", "close", "ST"]).code, Some(0));
     for words in ["study invite ST --links 1", "study serve ST --listen 127.0.0.1:0 --links 1"] {
