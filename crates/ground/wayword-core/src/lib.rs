@@ -13,6 +13,7 @@
 //! - [`verdict`]: the name of each check. The checks themselves are in `wayword-checks`.
 //! - [`failure`]: what decides between missing, broken and lost. [`platform`] and [`model`] do this for their errors.
 //! - [`condition`]: what can be known of a scene before a run.
+//! - [`file_start`]: the kinds of files by their first bytes.
 //! - [`depth`]: how far away a detector's find is.
 //! - [`doubt`]: what a doubt consists of, and how doubts about the same words are put together.
 //! - [`walk_cuts`]: all ways to divide a walk among the parts of a text.
@@ -28,6 +29,7 @@ pub mod detector;
 pub mod doubt;
 pub mod encoder;
 pub mod failure;
+pub mod file_start;
 pub mod graph;
 pub mod ground;
 pub mod heading;
@@ -66,6 +68,7 @@ pub use detector::{
 pub use doubt::{DoubtAlternative, DoubtCause, DoubtGrade, TextDoubt};
 pub use encoder::{PhraseGrounder, TextEncoder};
 pub use failure::FailureKind;
+pub use file_start::{FILE_START_BYTES, FileGroup, FileStart};
 pub use glam::{DMat3, DVec3};
 pub use graph::{ViewpointGraph, ViewpointRoute};
 pub use ground::{GroundCover, GroundIsland, GroundRoute};

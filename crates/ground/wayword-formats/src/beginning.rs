@@ -97,8 +97,8 @@ fn contents_by_item(item: &Map<String, Value>) -> FileContents {
     if has("unobstructed") && has("image_id") {
         return FileContents::Other("the viewpoint graph of a scene");
     }
-    if has("dialog_history") || has("inst_idx") {
-        return FileContents::Other("CVDN's dialogues");
+    if ["dialog_history", "inst_idx", "planner_path", "end_panos"].into_iter().any(has) {
+        return FileContents::Other("CVDN's dialogues (NDH)");
     }
     if is_reverie(item) {
         return FileContents::Dataset(DatasetFormat::Reverie);

@@ -16,6 +16,7 @@ use std::{
     io::{self, BufRead, BufReader, Cursor, Read},
     path::Path,
 };
+use wayword_core::FILE_START_BYTES;
 
 /// Most bytes of a file that are read at a time.
 const BUFFER_BYTES: usize = 1 << 16;
@@ -26,6 +27,9 @@ const MAX_OTHER_FIELDS: usize = 20;
 /// editors put before UTF-8.
 pub(crate) fn open_input(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
     let failed = |source| FormatError::from_io(file, "open", source);
+    if file == Path::new("-") && !file.exists() {
+        return Err(FormatError::for_document(file, "standard input is not read", "give a file"));
+    }
     // Opening a pipe waits until something writes into it, so this is checked first.
     let meta = fs::metadata(file).map_err(failed)?;
     if !meta.is_file() {
@@ -53,7 +57,7 @@ pub(crate) fn open_input(file: &Path) -> Result<Box<dyn BufRead>, FormatError> {
 /// JSON is refused.
 fn checked_beginning(file: &Path, mut input: impl BufRead + 'static) -> Result<Box<dyn BufRead>, FormatError> {
     let mut start = Vec::new();
-    let read = input.by_ref().take(file_kind::LOOKED_AT_BYTES as u64).read_to_end(&mut start);
+    let read = input.by_ref().take(FILE_START_BYTES as u64).read_to_end(&mut start);
     read.map_err(|source| FormatError::from_io(file, "read", source))?;
     file_kind::refuse_other_kinds(file, &start)?;
     if start.starts_with(&[0xef, 0xbb, 0xbf]) {

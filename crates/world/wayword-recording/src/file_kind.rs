@@ -2,7 +2,7 @@
 
 use crate::names::sorted_entries;
 use std::{collections::BTreeMap, fs::File, io::Read, path::Path};
-use wayword_core::PlatformError;
+use wayword_core::{FILE_START_BYTES, FileGroup, FileStart, PlatformError, file_start::head_text};
 #[cfg(any(feature = "mcap", feature = "video"))]
 use wayword_world::files;
 
@@ -20,10 +20,11 @@ const ROS2_BAG_HINT: &str = "convert it: rosbags-convert --src FOLDER --dst OUT 
 const GIT_LFS_HINT: &str = "fetch the file itself: git lfs pull";
 const COPY_AGAIN_HINT: &str = "copy or record it again";
 
-/// Bytes that are read from the beginning of a file to recognise its kind.
-const HEAD_BYTES: u64 = 512;
 /// Most files of a folder that are looked into; the others are ignored.
 const MAX_EXAMINED_FILES: usize = 200;
+
+const RAW_HINT: &str = "make a JPEG of it";
+const DOCUMENT_HINT: &str = "give the file or the folder of the recording";
 
 /// The kind of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,10 +38,6 @@ pub(crate) struct RecordedFileKind {
 }
 
 impl RecordedFileKind {
-    const fn recording_kind(name: &'static str, hint: &'static str) -> Self {
-        Self { name, hint, is_recording: true }
-    }
-
     const fn other_kind(name: &'static str, hint: &'static str) -> Self {
         Self { name, hint, is_recording: false }
     }
@@ -51,7 +48,7 @@ impl RecordedFileKind {
             return None;
         }
         let mut head = Vec::new();
-        File::open(file).ok()?.take(HEAD_BYTES).read_to_end(&mut head).ok()?;
+        File::open(file).ok()?.take(FILE_START_BYTES as u64).read_to_end(&mut head).ok()?;
         Self::from_head(&head)
     }
 
@@ -60,103 +57,32 @@ impl RecordedFileKind {
         if head.is_empty() {
             return Some(EMPTY_KIND);
         }
-        let begins = |at: usize, bytes: &[u8]| head.get(at..).is_some_and(|rest| rest.starts_with(bytes));
-        // Packets of a transport stream are 188 bytes long, and each begins with "G".
-        if [0, 188, 376].iter().all(|at| begins(*at, b"G")) && head_text(head).is_none() {
-            return Some(Self::recording_kind("an MPEG transport stream", ENCODE_HINT));
-        }
-        // Matroska's header, within the first 60 bytes, names the kind of document that follows: `webm` or `matroska`.
-        if begins(0, MATROSKA_MAGIC) && head.windows(4).take(60).any(|four| four == b"webm") {
-            return Some(Self::recording_kind("a WebM video", ENCODE_HINT));
-        }
-        if begins(0, b"BM") && is_bitmap(head) {
-            return Some(Self::recording_kind("a BMP picture", CONVERT_PICTURE_HINT));
-        }
-        // See `KNOWN_STARTS`: at 4 is the type of an MP4 box, and at 8 that of a RIFF file.
-        let start_fits = |at: usize| match at {
-            4 => is_box(head),
-            8 => begins(0, b"RIFF"),
-            _ => true,
+        FileStart::from_bytes(head).map(Self::from_start).or_else(|| kind_of_text_file(head))
+    }
+
+    /// A kind with what its group is good for.
+    const fn from_start(FileStart { name, group }: FileStart) -> Self {
+        let (hint, is_recording) = match group {
+            FileGroup::Png => ("rename it to end in .png", true),
+            FileGroup::Jpeg => ("rename it to end in .jpg", true),
+            FileGroup::Heic => (CONVERT_HEIC_HINT, true),
+            FileGroup::RawPicture => (RAW_HINT, true),
+            FileGroup::Picture => (CONVERT_PICTURE_HINT, true),
+            FileGroup::Mp4 => ("rename it to end in .mp4", true),
+            FileGroup::Video => (ENCODE_HINT, true),
+            FileGroup::Ros1Bag => (ROS1_BAG_HINT, true),
+            FileGroup::Database => (ROS2_BAG_HINT, true),
+            FileGroup::Mcap => ("rename it to end in .mcap", true),
+            FileGroup::Archive => ("unpack it", false),
+            FileGroup::LfsPointer => (GIT_LFS_HINT, false),
+            FileGroup::ProgramData | FileGroup::Document | FileGroup::Utf16 => (DOCUMENT_HINT, false),
         };
-        let known =
-            KNOWN_STARTS.iter().find(|(at, bytes, _)| begins(*at, bytes) && start_fits(*at)).map(|(.., kind)| *kind);
-        known.or_else(|| kind_of_text_file(head))
+        Self { name, hint, is_recording }
     }
 }
 
 /// A file without any bytes: its writer did not finish.
 const EMPTY_KIND: RecordedFileKind = RecordedFileKind::other_kind("empty", COPY_AGAIN_HINT);
-/// EBML's magic number, with which Matroska and WebM begin.
-const MATROSKA_MAGIC: &[u8] = &[0x1a, 0x45, 0xdf, 0xa3];
-const HEIC_KIND: RecordedFileKind = RecordedFileKind::recording_kind("an HEIC picture", CONVERT_HEIC_HINT);
-const MP4_KIND: RecordedFileKind = RecordedFileKind::recording_kind("an MP4 video", "rename it to end in .mp4");
-/// Offset and bytes that show a kind; the first that fits counts. Bytes at offset 4 are the type of an MP4 box, and those
-/// at offset 8 the type of a RIFF file, so the start of the file has to fit as well.
-const KNOWN_STARTS: &[(usize, &[u8], RecordedFileKind)] = &[
-    (0, b"\x89PNG\r\n\x1a\n", RecordedFileKind::recording_kind("a PNG picture", "rename it to end in .png")),
-    (0, &[0xff, 0xd8, 0xff], RecordedFileKind::recording_kind("a JPEG picture", "rename it to end in .jpg")),
-    (0, b"GIF87a", RecordedFileKind::recording_kind("a GIF picture", CONVERT_PICTURE_HINT)),
-    (0, b"GIF89a", RecordedFileKind::recording_kind("a GIF picture", CONVERT_PICTURE_HINT)),
-    (0, b"II*\0", RecordedFileKind::recording_kind("a TIFF or raw picture", CONVERT_PICTURE_HINT)),
-    (0, b"MM\0*", RecordedFileKind::recording_kind("a TIFF or raw picture", CONVERT_PICTURE_HINT)),
-    (8, b"WEBP", RecordedFileKind::recording_kind("a WebP picture", CONVERT_PICTURE_HINT)),
-    (4, b"ftypavif", RecordedFileKind::recording_kind("an AVIF picture", CONVERT_PICTURE_HINT)),
-    (4, b"ftypavis", RecordedFileKind::recording_kind("an AVIF picture", CONVERT_PICTURE_HINT)),
-    (4, b"ftyphei", HEIC_KIND),
-    (4, b"ftyphev", HEIC_KIND),
-    (4, b"ftypmif1", HEIC_KIND),
-    (4, b"ftypmsf1", HEIC_KIND),
-    (4, b"ftypcrx ", RecordedFileKind::recording_kind("a raw picture", "make a JPEG of it")),
-    (4, b"ftyp", MP4_KIND),
-    (4, b"moov", MP4_KIND),
-    (4, b"mdat", MP4_KIND),
-    (4, b"wide", MP4_KIND),
-    (4, b"free", MP4_KIND),
-    (8, b"AVI ", RecordedFileKind::recording_kind("an AVI video", ENCODE_HINT)),
-    (0, MATROSKA_MAGIC, RecordedFileKind::recording_kind("a Matroska video", ENCODE_HINT)),
-    (0, b"FLV\x01", RecordedFileKind::recording_kind("a Flash video", ENCODE_HINT)),
-    (
-        0,
-        &[0x30, 0x26, 0xb2, 0x75, 0x8e, 0x66, 0xcf, 0x11],
-        RecordedFileKind::recording_kind("a Windows Media video", ENCODE_HINT),
-    ),
-    (0, b"OggS", RecordedFileKind::recording_kind("an Ogg video", ENCODE_HINT)),
-    (0, &[0, 0, 1, 0xba], RecordedFileKind::recording_kind("an MPEG video", ENCODE_HINT)),
-    (0, &[0, 0, 0, 1], RecordedFileKind::recording_kind("a bare video stream", ENCODE_HINT)),
-    (0, b"#ROSBAG V", RecordedFileKind::recording_kind("a ROS 1 bag", ROS1_BAG_HINT)),
-    (0, b"SQLite format 3\0", RecordedFileKind::recording_kind("an SQLite file, as ROS 2 bags are", ROS2_BAG_HINT)),
-    (0, b"\x89MCAP0\r\n", RecordedFileKind::recording_kind("an MCAP file", "rename it to end in .mcap")),
-    (0, &[0x1f, 0x8b], RecordedFileKind::other_kind("an archive", "unpack it")),
-    (0, b"PK\x03\x04", RecordedFileKind::other_kind("an archive", "unpack it")),
-    (0, b"version https://git-lfs", RecordedFileKind::other_kind("a pointer of git-lfs", GIT_LFS_HINT)),
-];
-
-/// Whether a file can begin with a box of MP4: its length comes first; 0 means "up to the end", and 1 that the length
-/// follows later.
-fn is_box(head: &[u8]) -> bool {
-    let Some(first) = head.first_chunk::<4>() else { return false };
-    let is_length = matches!(u32::from_be_bytes(*first), 0 | 1 | 8..=0x8000_0000);
-    let is_printable = first.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace());
-    is_length && !is_printable && head_text(head).is_none()
-}
-
-/// Whether a file that begins with "BM" goes on as a bitmap: four zero bytes, and after 14 bytes a header with one of
-/// the known lengths.
-fn is_bitmap(head: &[u8]) -> bool {
-    let number_at = |at: usize| head.get(at..)?.first_chunk::<4>().map(|bytes| u32::from_le_bytes(*bytes));
-    number_at(6) == Some(0) && matches!(number_at(14), Some(12 | 40 | 52 | 56 | 64 | 108 | 124))
-}
-
-/// Bytes as text; `None` where they are not text.
-fn head_text(head: &[u8]) -> Option<&str> {
-    // The last character may be cut.
-    let text = match std::str::from_utf8(head) {
-        Ok(text) => text,
-        Err(error) if error.error_len().is_none() => std::str::from_utf8(head.get(..error.valid_up_to())?).ok()?,
-        Err(_) => return None,
-    };
-    text.chars().all(|c| !c.is_control() || matches!(c, '\n' | '\r' | '\t')).then_some(text)
-}
 
 /// The kind of a file that is text: a web page, or any other text.
 fn kind_of_text_file(head: &[u8]) -> Option<RecordedFileKind> {
@@ -230,55 +156,35 @@ mod tests {
     }
 
     #[test]
-    fn files_are_named_by_their_first_bytes() {
-        // As heif-enc, cwebp and ffmpeg write them.
-        assert_eq!(name(b"\0\0\0\x1cftypheic\0\0\0\0mif1heicmiaf"), "an HEIC picture");
-        assert_eq!(name(b"\0\0\0\x1cftypavif\0\0\0\0avifmif1miaf"), "an AVIF picture");
-        assert_eq!(name(b"\0\0\0\x20ftypisom\0\0\x02\0isomiso2"), "an MP4 video");
-        assert_eq!(name(b"\0\0\0\x01mdat\0\0\0\0\0\0\0\x20"), "an MP4 video");
-        assert_eq!(name(b"RIFF\x24\0\0\0WEBPVP8 "), "a WebP picture");
-        assert_eq!(name(b"RIFF\xdc\x6d\0\0AVI LIST"), "an AVI video");
-        assert_eq!(
-            name(b"\x1a\x45\xdf\xa3\x9fB\x86\x81\x01B\xf7\x81\x01B\xf2\x81\x04B\xf3\x81\x08B\x82\x84webm"),
-            "a WebM video"
-        );
-        assert_eq!(name(b"\x1a\x45\xdf\xa3\xa3B\x86\x81\x01B\xf7\x81\x01B\x82\x88matroska"), "a Matroska video");
+    fn text_and_empty_files_are_named_beside_the_known_kinds() {
         assert_eq!(name(b""), "empty");
         assert_eq!(name("It was no video, but a caf\u{e9}".as_bytes()), "text");
         assert_eq!(name(&"\u{e9}".as_bytes()[..1]), "text", "the last character is cut");
         assert_eq!(name(b"<!DOCTYPE html><title>404"), "a web page");
-        assert_eq!(name(b"version https://git-lfs.github.com/spec/v1\noid"), "a pointer of git-lfs");
-        assert_eq!(name(b"#ROSBAG V2.0\n"), "a ROS 1 bag");
-        assert_eq!(name(b"\x02\x03\x04\x05 nothing"), "?");
-    }
-
-    #[test]
-    fn text_is_not_taken_for_a_recording() {
-        for words in ["The wide hall", "Are free seats", "F\u{fc} wide hall", "The old WEBP files", "The old AVI files"]
-        {
-            assert_eq!(name(words.as_bytes()), "text", "{words}");
-        }
-        assert_eq!(name(b"The wide h\xe4ll"), "?", "Latin-1");
-        assert_eq!(name(b"\0\0\0\x02wide"), "?", "no box is two bytes long");
         assert_eq!(name(b"BM is short for bitmap"), "text");
-        assert_eq!(name("G".repeat(400).as_bytes()), "text");
+        assert_eq!(name(b"The wide h\xe4ll"), "?", "Latin-1");
     }
 
     #[test]
-    fn three_packets_make_a_transport_stream() {
-        let mut packets = vec![0xff; 512];
-        for at in [0, 188] {
-            packets[at] = b'G';
+    fn only_recordings_can_be_used_and_each_kind_has_advice() {
+        let kind = |head: &[u8]| RecordedFileKind::from_head(head).unwrap();
+        for (head, hint) in [
+            (b"\0\0\0\x20ftypisom\0\0\x02\0".as_slice(), "rename it to end in .mp4"),
+            (b"#ROSBAG V2.0\n", "rosbags-convert"),
+            (b"SQLite format 3\0", "rosbags-convert"),
+            (b"OggS", "libx264"),
+        ] {
+            assert!(kind(head).is_recording && kind(head).hint.contains(hint), "{head:?}");
         }
-        assert_eq!(name(&packets), "?");
-        packets[376] = b'G';
-        assert_eq!(name(&packets), "an MPEG transport stream");
+        for head in [b"%PDF-1.4".as_slice(), b"PK\x03\x04", b"\x93NUMPY", b"glTF", b"\xff\xfea\0"] {
+            assert!(!kind(head).is_recording && !kind(head).hint.contains("rename"), "{head:?}");
+        }
     }
 
     #[test]
     fn conversion_commands_encode_videos_again() {
-        for (_, _, kind) in KNOWN_STARTS {
-            assert!(!kind.hint.contains("copy "), "{}", kind.hint);
+        for hint in [ENCODE_HINT, CONVERT_PICTURE_HINT, CONVERT_HEIC_HINT, ROS1_BAG_HINT, ROS2_BAG_HINT] {
+            assert!(!hint.contains("copy "), "{hint}");
         }
     }
 }

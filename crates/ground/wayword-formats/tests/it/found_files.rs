@@ -161,6 +161,13 @@ fn files_that_are_no_datasets_are_named() {
         (json!({"1_0": [["a", 0, 0]]}).to_string().as_bytes(), "what an agent walked"),
         (graph.to_string().as_bytes(), "the viewpoint graph of a scene"),
         (json!([{"inst_idx": 1, "scan": "s"}]).to_string().as_bytes(), "CVDN"),
+        (
+            json!([{"id": 1, "scan": "s", "question": "?", "planner_path": []}]).to_string().as_bytes(),
+            "CVDN's dialogues (NDH)",
+        ),
+        (json!([{"scan": "s", "end_panos": [], "start_pano": {}}]).to_string().as_bytes(), "CVDN's dialogues (NDH)"),
+        (json!([{"scan": "s", "dialog_history": []}]).to_string().as_bytes(), "CVDN's dialogues (NDH)"),
+        (b"name = \"mine\"\n", "it is TOML"),
         (json!({"data": crate::common::items(DatasetFormat::R2r)}).to_string().as_bytes(), "the list is in \"data\""),
         (b"[{\"scan\": \"caf\xe9\"}]", "it is not UTF-8"),
         (b"PK\x03\x04", "a zip archive"),
