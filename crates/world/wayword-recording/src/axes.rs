@@ -178,6 +178,17 @@ impl PoseBody {
     }
 }
 
+/// The length of a quaternion. That of a rotation is 1; without a length above zero it is none.
+pub(crate) fn quaternion_length([x, y, z, w]: [f64; 4]) -> f64 {
+    libm::sqrt(x * x + y * y + z * z + w * w)
+}
+
+/// Whether a quaternion gives a rotation: its length is finite, and not too small.
+pub(crate) fn is_rotation(quaternion: [f64; 4]) -> bool {
+    let length = quaternion_length(quaternion);
+    length.is_finite() && length > 1e-6
+}
+
 /// The columns of the rotation that a quaternion (x, y, z, w) describes; `None` where the quaternion is invalid.
 pub(crate) fn rotation_columns(quaternion: [f64; 4]) -> Option<[DVec3; 3]> {
     Some([
@@ -190,10 +201,10 @@ pub(crate) fn rotation_columns(quaternion: [f64; 4]) -> Option<[DVec3; 3]> {
 /// A vector turned by a quaternion (x, y, z, w), which need not have length 1. `None` if the quaternion's length is
 /// not finite, or too small to give a rotation.
 fn rotate_vector([x, y, z, w]: [f64; 4], vector: DVec3) -> Option<DVec3> {
-    let length = libm::sqrt(x * x + y * y + z * z + w * w);
-    if !(length.is_finite() && length > 1e-6) {
+    if !is_rotation([x, y, z, w]) {
         return None;
     }
+    let length = quaternion_length([x, y, z, w]);
     let (axis, w) = (DVec3::new(x, y, z) / length, w / length);
     let cross = 2.0 * axis.cross(vector);
     Some(vector + w * cross + axis.cross(cross))

@@ -15,7 +15,7 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 use wayword_core::{PlatformError, SceneId};
-use wayword_world::files;
+use wayword_world::{files, picture_end::is_cut_off};
 
 /// Words in the names of pictures that datasets have in addition to photographs.
 const NO_PHOTOGRAPHS: [&str; 6] = ["depth", "disparity", "mask", "normal", "segment", "semantic"];
@@ -29,7 +29,11 @@ const KITTI_TIMES_FILE: &str = "times.txt";
 const MAX_LIST_BYTES: u64 = 64 << 20;
 const MAX_PICTURE_BYTES: u64 = 64 << 20;
 /// Kinds of files that are read as pictures, whatever the endings of their names.
-const PICTURE_KINDS: [&str; 2] = ["a PNG picture", "a JPEG picture"];
+pub(crate) const PICTURE_KINDS: [&str; 2] = ["a PNG picture", "a JPEG picture"];
+const CUT_OFF_HINT: &str = "copy it again, or take it away";
+/// Most pictures of a folder that are looked into once one of them is cut off, and most that are named.
+const MAX_EXAMINED_PICTURES: usize = 2000;
+const MAX_NAMED_PICTURES: usize = 5;
 const PICTURE_HINT: &str = "remove the picture, or replace it with an intact one";
 
 /// A folder of pictures.
@@ -147,6 +151,27 @@ struct FolderReel {
     files: Vec<PathBuf>,
 }
 
+impl FolderReel {
+    /// The error for a picture that cannot be decoded. Where it is cut off, others of the folder may be too, and are named.
+    fn picture_error(&self, file: &Path, bytes: &[u8], reason: String) -> PlatformError {
+        if !is_cut_off(bytes) {
+            return files::file_error(file, reason, PICTURE_HINT);
+        }
+        let read = |other: &Path| files::bytes_if_there(other, MAX_PICTURE_BYTES, PICTURE_HINT).ok().flatten();
+        let others = self.files.iter().take(MAX_EXAMINED_PICTURES).filter(|other| other.as_path() != file);
+        let cut = others.filter(|other| read(other).is_some_and(|bytes| is_cut_off(&bytes)));
+        let cut: Vec<String> =
+            cut.filter_map(|other| Some(other.file_name()?.to_string_lossy().into_owned())).collect();
+        let named = cut.iter().take(MAX_NAMED_PICTURES).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let more = match (cut.len(), cut.len().saturating_sub(MAX_NAMED_PICTURES)) {
+            (0, _) => String::new(),
+            (_, 0) => format!(", like {named}"),
+            (_, more) => format!(", like {named} and {more} more"),
+        };
+        files::file_error(file, format!("{reason}{more}"), CUT_OFF_HINT)
+    }
+}
+
 impl PictureReel for FolderReel {
     fn times_s(&self) -> &[f64] {
         &self.times_s
@@ -165,7 +190,9 @@ impl PictureReel for FolderReel {
             let bytes = bytes.ok_or_else(|| wrong("there is no such file".to_owned()))?;
             let picture = files::decode_picture(&bytes);
             // The error for a file of another kind names that kind.
-            take(*number, picture.map_err(|reason| unfit_picture(file).unwrap_or_else(|| wrong(reason)))?)?;
+            let refuse =
+                |reason: String| unfit_picture(file).unwrap_or_else(|| self.picture_error(file, &bytes, reason));
+            take(*number, picture.map_err(refuse)?)?;
         }
         Ok(())
     }
@@ -339,6 +366,31 @@ mod tests {
         std::fs::write(folder.path().join("2.png"), "no picture").unwrap();
         let error = open(folder.path()).reel.hand_out_pictures(&[1], &mut |_, _| Ok(())).unwrap_err().to_string();
         assert!(error.contains("2.png") && error.contains("is text, neither PNG nor JPEG"), "{error}");
+    }
+
+    #[test]
+    fn pictures_that_are_cut_off_are_named_together() {
+        let folder = tempfile::tempdir().unwrap();
+        let picture = image::RgbImage::from_fn(64, 48, |x, y| image::Rgb([(x * 3) as u8, (y * 5) as u8, 9]));
+        let mut whole = std::io::Cursor::new(Vec::new());
+        picture.write_to(&mut whole, image::ImageFormat::Jpeg).unwrap();
+        let whole = whole.into_inner();
+        for at in 0..12 {
+            let length = if matches!(at, 3 | 5 | 11) { whole.len() / 2 } else { whole.len() };
+            std::fs::write(folder.path().join(format!("{at:06}.jpg")), &whole[..length]).unwrap();
+        }
+        let read = |wanted: &[usize]| open(folder.path()).reel.hand_out_pictures(wanted, &mut |_, _| Ok(()));
+        let error = read(&[0, 3]).unwrap_err().to_string();
+        assert!(
+            error.contains("000003.jpg: is a picture that is cut off, like 000005.jpg, 000011.jpg; copy it"),
+            "{error}"
+        );
+        read(&[0, 1, 2, 4]).unwrap();
+        for number in [5, 11] {
+            std::fs::write(folder.path().join(format!("{number:06}.jpg")), &whole).unwrap();
+        }
+        let error = read(&[3]).unwrap_err().to_string();
+        assert!(error.ends_with("is a picture that is cut off; copy it again, or take it away"), "{error}");
     }
 
     #[test]

@@ -4,7 +4,7 @@
 use crate::describe::RecordingDescription;
 use crate::{
     file_kind::{self, RecordedFileKind, UnreadRecordings},
-    folder::{PictureFolder, is_unread_picture},
+    folder::{PICTURE_KINDS, PictureFolder, is_unread_picture},
     names::{PICTURE_FOLDERS, has_ending, is_video_name, scene_id_for_path, sorted_entries},
     reel::{Recording, RecordingSource},
     shelf::RecordingShelf,
@@ -95,6 +95,11 @@ pub(crate) fn open_source(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Re
 /// The error for a path that is no recording and no folder.
 fn no_recording(path: &Path) -> PlatformError {
     match RecordedFileKind::from_file(path) {
+        Some(kind) if PICTURE_KINDS.contains(&kind.name) => files::file_error(
+            path,
+            "is one picture, and a recording is a folder of them",
+            "give its folder: --data DIR",
+        ),
         Some(kind) => {
             files::file_error(path, format!("is not a recording that can be read: it is {}", kind.name), kind.hint)
         }
@@ -326,6 +331,8 @@ mod tests {
             (&[("walk.avi", b"RIFF\xdc\x6d\0\0AVI LIST")], "walk.avi", &["it is an AVI video", "libx264"]),
             (&[("walk.bag", b"#ROSBAG V2.0\n")], "walk.bag", &["it is a ROS 1 bag", "rosbags-convert"]),
             (&[("notes.txt", b"no video")], "", &["holds no pictures and no recordings", "PNG, JPEG"]),
+            (&[("1.jpg", b"\xff\xd8\xff\xe0")], "1.jpg", &["is one picture", "give its folder: --data DIR"]),
+            (&[("1.JPEG", b"\x89PNG\r\n\x1a\n")], "1.JPEG", &["is one picture", "give its folder: --data DIR"]),
         ] {
             let error = refused(files, path);
             assert!(told.iter().all(|words| error.contains(words)), "{error}");

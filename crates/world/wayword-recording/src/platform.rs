@@ -37,7 +37,7 @@ const USUAL_FOV_RAD: f64 = 70.0 * std::f64::consts::PI / 180.0;
 /// A recording with at most this many frames is one path, however short or long it is.
 pub(crate) const MAX_WHOLE_FRAMES: usize = 12;
 /// Most unreadable recordings that an error lists; it gives the number of the others.
-const MAX_LISTED_ERRORS: usize = 3;
+const MAX_LISTED_ERRORS: usize = 20;
 const INTERVAL_HINT: &str = "record more, or set interval_m or interval_s in a recording.toml (docs/RECORDINGS.md)";
 
 /// Folders of pictures, videos, MCAP files and LeRobot datasets.
@@ -345,9 +345,13 @@ impl SceneFiles for RecordingPlatform {
     /// Opens each recording and reads its first picture, to report all errors before a run meets them item by item.
     fn check_scenes(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
         let all = self.source.scenes();
-        let known = scenes.iter().filter(|scene| all.binary_search(scene).is_ok());
-        let mut wrong: Vec<PlatformError> =
-            known.filter_map(|scene| check_recording(&*self.source, scene).err()).collect();
+        let is_wanted = |scene: &&SceneId| scenes.contains(scene);
+        let check = |scene: &SceneId| check_recording(&*self.source, scene).err();
+        let mut wrong: Vec<PlatformError> = all.iter().filter(is_wanted).filter_map(check).collect();
+        if !wrong.is_empty() {
+            // Who mends one would meet the next with the next run, so all of the folder are told together.
+            wrong.extend(all.iter().filter(|scene| !is_wanted(scene)).filter_map(check));
+        }
         if all.len() < 2 {
             return wrong.pop().map_or(Ok(()), Err);
         }

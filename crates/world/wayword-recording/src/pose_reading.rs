@@ -47,6 +47,14 @@ pub(crate) enum AngleUnit {
 }
 
 impl AngleUnit {
+    /// Its name, as settings have it and as the names of columns end.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Radians => "rad",
+            Self::Degrees => "deg",
+        }
+    }
+
     /// An angle in this unit, in radians.
     pub(crate) fn to_rad(self, angle: f64) -> f64 {
         match self {

@@ -28,7 +28,7 @@ pub(crate) struct CameraTrack {
     tally: PoseTally,
     /// A warning about the fixes for the user, if there is one.
     doubt: Option<String>,
-    /// What of the poses is not read, for the user, if there is something.
+    /// What of the poses is not read or not used, for the user, if there is something.
     unread: Option<String>,
 }
 

@@ -1,5 +1,6 @@
 //! Reads third-party files up to a size limit. An error names the file, the problem, and what to do about it (`hint`).
 
+use crate::picture_end::is_cut_off;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use std::{
     fs::{self, File, Metadata},
@@ -107,11 +108,17 @@ pub fn text_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result<
     decode_utf8(bytes).map(Some).map_err(|reason| file_error(file, reason, hint))
 }
 
+/// A phrase about a picture file that breaks off.
+const CUT_OFF: &str = "is a picture that is cut off";
+
 /// Decodes a JPEG or PNG file, within limits of size and memory.
 ///
 /// # Errors
-/// A phrase about the problem: the picture is too large, or it is no JPEG or PNG picture.
+/// A phrase about the problem: the picture is cut off or too large, or it is no JPEG or PNG picture.
 pub fn decode_picture(bytes: &[u8]) -> Result<Image, String> {
+    if is_cut_off(bytes) {
+        return Err(CUT_OFF.to_owned());
+    }
     // Decoders for other formats may be compiled in for other purposes.
     let format =
         image::guess_format(bytes).ok().filter(|format| matches!(format, ImageFormat::Png | ImageFormat::Jpeg));
@@ -195,6 +202,8 @@ mod tests {
     #[test]
     fn decode_picture_refuses_other_files() {
         assert!(decode_picture(b"GIF89a").unwrap_err().contains("neither PNG nor JPEG"));
-        assert!(decode_picture(b"\x89PNG\r\n\x1a\n").unwrap_err().contains("cannot be decoded as a picture"));
+        assert!(decode_picture(b"\x89PNG\r\n\x1a\n").unwrap_err().contains("is cut off"));
+        let without_header = b"\x89PNG\r\n\x1a\n\0\0\0\0IEND\xae\x42\x60\x82";
+        assert!(decode_picture(without_header).unwrap_err().contains("cannot be decoded as a picture"));
     }
 }

@@ -27,6 +27,7 @@ pub mod levels;
 pub mod object_names;
 pub mod open_ground;
 pub mod output_lines;
+pub mod picture_end;
 pub mod region_letters;
 pub mod seen_from;
 pub mod survey;

@@ -18,6 +18,7 @@ use crate::{
     describe::{self, RecordingDescription},
     names::{plain_files, scene_id_for_path, sorted_entries, unknown_scene},
     pose_plausibility::find_doubt,
+    poses::UnturnedUse,
     reel::{PictureReel, Recording, RecordingSource},
     track::{CameraTrack, TrackFix},
 };
@@ -105,10 +106,14 @@ impl LeRobotDataset {
             files::file_error(table.path(), format!("column {:?}: its yaw {reason}", feature.feature), YAW_UNIT_HINT)
         })?;
         remarks.extend(remark.map(|remark| format!("{}: {remark}", table.path().display())));
-        let fixes = times_s.iter().zip(numbers.chunks_exact(elements.len()));
+        let mut posed: Vec<(f64, &[f64])> = times_s.iter().copied().zip(numbers.chunks_exact(elements.len())).collect();
+        remarks.extend(
+            leave_out_unturned(&feature, &mut posed).map(|remark| format!("{}: {remark}", table.path().display())),
+        );
+        let fixes = posed.iter();
         let fixes: Vec<TrackFix> =
             fixes.filter_map(|(time_s, numbers)| feature.fix_from_numbers(*time_s, numbers, &self.described)).collect();
-        let samples = numbers.chunks_exact(elements.len()).filter_map(|numbers| feature.sample_from_numbers(numbers));
+        let samples = posed.iter().filter_map(|(_, numbers)| feature.sample_from_numbers(numbers));
         let doubt = find_doubt(
             &samples.collect::<Vec<_>>(),
             self.described.axes_or_usual(PoseAxes::for_body(PoseBody::Robot)),
@@ -195,6 +200,22 @@ fn files_below(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, PlatformErro
         }
     }
     Ok(files)
+}
+
+/// Leaves out the poses without a valid orientation, if they are few. Returns what the user is told of them.
+fn leave_out_unturned(feature: &PoseFeature, posed: &mut Vec<(f64, &[f64])>) -> Option<String> {
+    let all = posed.len();
+    let unturned = posed.iter().filter(|(_, numbers)| feature.lacks_facing(numbers)).count();
+    let becomes = UnturnedUse::for_counts(unturned, all);
+    if becomes == UnturnedUse::LeftOut {
+        posed.retain(|(_, numbers)| !feature.lacks_facing(numbers));
+    }
+    (unturned > 0).then(|| {
+        format!(
+            "{unturned} of {all} poses have an orientation that is none, such as 0 0 0 0 or nan: {}",
+            becomes.words()
+        )
+    })
 }
 
 /// The rows of an episode in its file; they must be contiguous.

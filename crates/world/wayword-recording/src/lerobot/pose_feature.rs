@@ -5,7 +5,7 @@ use super::{
     yaw_unit::judge_yaw_unit,
 };
 use crate::{
-    axes::{PoseAxes, PoseBody, WorldUpAxis, rotation_columns},
+    axes::{PoseAxes, PoseBody, WorldUpAxis, is_rotation, rotation_columns},
     describe::RecordingDescription,
     pose_plausibility::PoseSample,
     pose_reading::AngleUnit,
@@ -228,6 +228,15 @@ impl PoseFeature {
             _ => None,
         };
         Some(TrackFix { time_s, position: axes.wayword_from_recorded(recorded), heading })
+    }
+
+    /// Whether the same numbers give an orientation that is none.
+    pub(super) fn lacks_facing(&self, numbers: &[f64]) -> bool {
+        match (self.facing, self.split_numbers(numbers)) {
+            (FeatureFacing::Quaternion(_), Some((_, [x, y, z, w]))) => !is_rotation([*x, *y, *z, *w]),
+            (FeatureFacing::Yaw(..), Some((_, [yaw]))) => !yaw.is_finite(),
+            _ => false,
+        }
     }
 
     /// The pose as it was recorded, from the same numbers.

@@ -1,6 +1,7 @@
 //! Brings poses onto the clock of the pictures: by the pictures that they name or count, else by their times.
 
 use super::rows::{self, PoseKey, PoseRows};
+use crate::track::{CameraTrack, TrackFix};
 
 /// How far the times of poses may stray from those of the pictures that a column `frame` counts, seconds and as a share of the
 /// whole time.
@@ -8,6 +9,16 @@ const MAX_FRAME_STRAY_S: f64 = 0.5;
 const MAX_FRAME_STRAY_SHARE: f64 = 0.02;
 /// Least share of a column `frame` that must be numbers of pictures.
 const LEAST_COUNTED_SHARE: f64 = 0.9;
+
+/// Fewer pictures show no mistake in the unit of the times.
+const LEAST_JUDGED_PICTURES: usize = 4;
+/// How much longer or shorter the poses may last than the pictures, as a factor, apart from the unit of their times: the times of
+/// pictures are often those of one picture per second.
+const MAX_UNIT_STRAY: f64 = 4.0;
+/// Units that may stand in place of the one that was read: their name, the end of a column's name, and how much longer times in
+/// them seem to last.
+const TIME_UNITS: [(&str, &str, f64); 4] =
+    [("milliseconds", "ms", 1e3), ("microseconds", "us", 1e6), ("nanoseconds", "ns", 1e9), ("seconds", "s", 1e-3)];
 
 /// The pictures to which poses belong.
 #[derive(Clone, Copy)]
@@ -82,6 +93,36 @@ impl PictureClock<'_> {
         let strays = |(pose, picture): &(f64, f64)| ((pose - pose_s) - (picture - picture_s)).abs() > slack_s;
         if pairs.iter().any(strays) { FrameCount::Likely } else { FrameCount::Certain }
     }
+}
+
+/// The doubt that the times of poses are in seconds, as the names of their columns say or because they have no unit; `None` if they
+/// may be. Most pictures have no pose then, and would have one in another unit.
+pub(super) fn find_time_unit_doubt(rows: &PoseRows, times_s: &[f64]) -> Option<String> {
+    let fixes = rows.rows.iter().filter_map(|row| match row.key {
+        PoseKey::Time(time_s) => Some(TrackFix { time_s, position: row.position, heading: None }),
+        PoseKey::Picture(_) | PoseKey::Number(_) => None,
+    });
+    let track = CameraTrack::new(fixes.collect())?;
+    let unposed = times_s.iter().filter(|time_s| track.fix_at(**time_s).is_none()).count();
+    let (from_s, to_s) = track.span_s();
+    let (first_s, last_s) = (*times_s.first()?, *times_s.last()?);
+    let ratio = (to_s - from_s) / (last_s - first_s);
+    if times_s.len() < LEAST_JUDGED_PICTURES || !ratio.is_finite() || unposed == 0 {
+        return None;
+    }
+    let (name, unit, _) = TIME_UNITS.into_iter().find(|(_, _, per_s)| {
+        let off = ratio / per_s;
+        (1.0 / MAX_UNIT_STRAY..=MAX_UNIT_STRAY).contains(&off)
+    })?;
+    (unposed * 2 > times_s.len()).then(|| {
+        let or_write = if unit == "s" { "" } else { ", or write seconds" };
+        format!(
+            "{unposed} of {} pictures have no pose: the poses go from {from_s} to {to_s} s, and the pictures from {first_s} to \
+             {last_s} s; are the times {name}? then name the column time_{unit}{or_write}; if they \
+             are right as they are, write pose_time_offset_s = 0 into a recording.toml beside it",
+            times_s.len()
+        )
+    })
 }
 
 /// Why no picture has a pose, and which setting would mend it if both began together.

@@ -28,13 +28,14 @@ enum FacingColumns {
     Nowhere,
     /// x, y, z, w.
     Quaternion([usize; 4]),
+    /// The name is that of a column with a unit.
     Yaw {
         column: usize,
-        per_unit_rad: Option<f64>,
+        name: Option<&'static str>,
     },
     Heading {
         column: usize,
-        per_unit_rad: f64,
+        name: &'static str,
     },
 }
 
@@ -87,7 +88,7 @@ pub(super) fn header_names(line: &str) -> Vec<String> {
 }
 
 /// A name from a file, short and in a form that is safe to show.
-fn clip_name(name: &str) -> String {
+pub(super) fn clip_name(name: &str) -> String {
     name.chars().take(MAX_NAME_CHARS).collect::<String>().escape_debug().to_string()
 }
 
@@ -166,7 +167,16 @@ impl PoseColumns {
 
     /// Whether a yaw has its unit in the column's name.
     pub(super) const fn names_angle_unit(&self) -> bool {
-        !matches!(self.facing, FacingColumns::Yaw { per_unit_rad: None, .. })
+        !matches!(self.facing, FacingColumns::Yaw { name: None, .. })
+    }
+
+    /// The name of the column with an angle, if it names its unit.
+    pub(super) const fn angle_name(&self) -> Option<&'static str> {
+        match self.facing {
+            FacingColumns::Yaw { name, .. } => name,
+            FacingColumns::Heading { name, .. } => Some(name),
+            FacingColumns::Nowhere | FacingColumns::Quaternion(_) => None,
+        }
     }
 
     /// The pose of a row, whose cells `cell` gives. `at` is the number of its line.
@@ -197,10 +207,10 @@ impl PoseColumns {
             FacingColumns::Quaternion([x, y, z, w]) => {
                 PoseFacing::Quaternion([value(x)?, value(y)?, value(z)?, value(w)?])
             }
-            FacingColumns::Yaw { column, per_unit_rad } => {
-                PoseFacing::Yaw(value(column)? * per_unit_rad.unwrap_or(1.0))
+            FacingColumns::Yaw { column, name } => {
+                PoseFacing::Yaw(value(column)? * name.map_or(1.0, rad_per_named_unit))
             }
-            FacingColumns::Heading { column, per_unit_rad } => PoseFacing::Heading(value(column)? * per_unit_rad),
+            FacingColumns::Heading { column, name } => PoseFacing::Heading(value(column)? * rad_per_named_unit(name)),
         };
         Ok(PoseRow { at, key, position, facing })
     }
@@ -209,6 +219,11 @@ impl PoseColumns {
     pub(super) fn read_frame<'a>(&self, cell: &dyn Fn(usize) -> Result<&'a str, String>) -> Option<usize> {
         whole_number(parse_number(cell(self.frame?).ok()?).ok()?)
     }
+}
+
+/// Radians per unit of a column with its unit at the end of its name.
+fn rad_per_named_unit(name: &str) -> f64 {
+    if name.ends_with("_deg") { 1_f64.to_radians() } else { 1.0 }
 }
 
 impl FacingColumns {
@@ -220,17 +235,13 @@ impl FacingColumns {
                 Some(Self::Quaternion([part("x")?, part("y")?, part("z")?, part("w")?]))
             })
         };
-        let rad_per_deg = 1_f64.to_radians();
-        let angle = |name: &str| {
-            let rad = find(&format!("{name}_rad")).map(|column| (column, 1.0));
-            rad.or_else(|| find(&format!("{name}_deg")).map(|column| (column, rad_per_deg)))
-        };
+        let angle = |names: [&'static str; 2]| names.into_iter().find_map(|name| Some((find(name)?, name)));
         let yaw = || {
-            let named = angle("yaw").map(|(column, per_unit_rad)| (column, Some(per_unit_rad)));
+            let named = angle(["yaw_rad", "yaw_deg"]).map(|(column, name)| (column, Some(name)));
             let found = named.or_else(|| find("yaw").or_else(|| find("theta")).map(|column| (column, None)));
-            found.map(|(column, per_unit_rad)| Self::Yaw { column, per_unit_rad })
+            found.map(|(column, name)| Self::Yaw { column, name })
         };
-        let heading = || angle("heading").map(|(column, per_unit_rad)| Self::Heading { column, per_unit_rad });
+        let heading = || angle(["heading_rad", "heading_deg"]).map(|(column, name)| Self::Heading { column, name });
         quaternion().or_else(heading).or_else(yaw).unwrap_or(Self::Nowhere)
     }
 }

@@ -6,6 +6,7 @@ use super::{
     rows::{KnownConventions, PoseRows, parse_number},
 };
 use crate::axes::{PoseAxes, PoseBody, WorldUpAxis};
+use std::borrow::Cow;
 
 const HEADER_HINT: &str = "the header needs a column `time_s` or `image`, and `x`, `y`, `z`; `qx`, `qy`, `qz`, `qw`, \
                       `yaw_rad` or `heading_deg` say where the camera looks";
@@ -29,8 +30,10 @@ pub(super) fn read_csv(text: &str) -> Result<PoseRows, String> {
     }
     let columns = PoseColumns::from_names(&names).ok_or_else(|| format!("line 1: {HEADER_HINT}"))?;
     let (mut rows, mut frames) = (Vec::new(), Some(Vec::new()));
+    let is_by_semicolons = header.contains(';') && !header.contains(',');
     for (at, line) in lines.filter(|(_, line)| !line.starts_with('#')) {
-        let cells = CsvCells::from_line(line);
+        let line = if is_by_semicolons { with_decimal_points(line) } else { Cow::Borrowed(line) };
+        let cells = CsvCells::from_line(&line);
         let cell = |column: usize| cells.get(column);
         rows.push(columns.read_row(at + 1, &cell)?);
         frames = frames.zip(columns.read_frame(&cell)).map(|(mut all, frame)| {
@@ -50,7 +53,25 @@ pub(super) fn read_csv(text: &str) -> Result<PoseRows, String> {
     };
     // The further columns of these formats are known, and no poses.
     let unread = columns.describe_unread(&names).filter(|_| !is_euroc && !is_stray);
-    Ok(PoseRows { frames, unread, ..PoseRows::new(PoseAxes { world, ..PoseAxes::for_body(body) }, known, rows) })
+    let angle_name = columns.angle_name();
+    Ok(PoseRows {
+        frames,
+        unread,
+        angle_name,
+        ..PoseRows::new(PoseAxes { world, ..PoseAxes::for_body(body) }, known, rows)
+    })
+}
+
+/// A line between semicolons, with decimal points in its numbers: some countries' tables have commas there.
+fn with_decimal_points(line: &str) -> Cow<'_, str> {
+    if !line.contains(',') {
+        return Cow::Borrowed(line);
+    }
+    let cells = line.split(';').map(|cell| {
+        let pointed = cell.replacen(',', ".", 1);
+        if parse_number(&pointed).is_ok() { Cow::Owned(pointed) } else { Cow::Borrowed(cell) }
+    });
+    Cow::Owned(cells.collect::<Vec<_>>().join(";"))
 }
 
 /// The cells of a line, up to a quoted cell that contains the separator: all cells after that one would be shifted.
@@ -62,7 +83,8 @@ struct CsvCells<'a> {
 
 impl<'a> CsvCells<'a> {
     fn from_line(line: &'a str) -> Self {
-        let separator = if line.contains(';') && !line.contains(',') { ';' } else { ',' };
+        // A name of a picture may have a comma.
+        let separator = if line.matches(';').count() > line.matches(',').count() { ';' } else { ',' };
         let is_plain = |cell: &&str| !cell.starts_with('"') || (cell.len() > 1 && cell.ends_with('"'));
         let cells = || line.split(separator).map(str::trim);
         let plain: Vec<&str> = cells().take_while(is_plain).map(|cell| cell.trim_matches('"')).collect();

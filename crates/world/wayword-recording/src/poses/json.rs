@@ -27,7 +27,13 @@ pub(super) fn read_json(text: &str) -> Result<PoseRows, String> {
         return read_items(poses, RowKind::Pose, (arkit, KnownConventions::ALL), &read_record3d);
     }
     let known = KnownConventions { angle_unit: true, ..KnownConventions::BODY_ONLY };
-    read_items(poses, RowKind::Pose, (PoseAxes::for_body(PoseBody::Robot), known), &read_pose)
+    let rows = read_items(poses, RowKind::Pose, (PoseAxes::for_body(PoseBody::Robot), known), &read_pose)?;
+    let angle_name = rows.rows.iter().find_map(|row| match row.facing {
+        PoseFacing::Yaw(_) => Some("yaw_rad"),
+        PoseFacing::Heading(_) => Some("heading_deg"),
+        PoseFacing::Unknown | PoseFacing::Quaternion(_) | PoseFacing::Columns(_) => None,
+    });
+    Ok(PoseRows { angle_name, ..rows })
 }
 
 /// Reads the items of a list, with the conventions of their format. The error names the item.

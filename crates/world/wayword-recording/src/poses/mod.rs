@@ -8,6 +8,7 @@ mod find;
 mod frame_files;
 mod json;
 mod matrix;
+mod orientations;
 mod row_faults;
 mod rows;
 mod scale;
@@ -17,6 +18,8 @@ mod unread;
 #[cfg(any(feature = "video", test))]
 pub(crate) use find::find_pose_file;
 pub(crate) use find::{PicturePlace, PoseSource};
+#[cfg(feature = "lerobot")]
+pub(crate) use orientations::UnturnedUse;
 pub(crate) use unread::describe_unread;
 
 use crate::{
@@ -27,6 +30,7 @@ use crate::{
     track::{CameraTrack, PoseTally, TrackFix},
 };
 use clock::{FrameCount, PictureClock};
+use columns::clip_name;
 use rows::{PoseFacing, PoseKey, PoseRow, PoseRows};
 use std::path::Path;
 use wayword_core::PlatformError;
@@ -128,12 +132,16 @@ impl TrackMaker<'_> {
         if let Some(reason) = row_faults::find_no_rotation(&self.rows) {
             return Err(files::file_error(self.origin, reason, row_faults::ROTATION_HINT));
         }
+        let oriented = orientations::settle_orientations(&mut self.rows);
         let late = if self.frame_count() == FrameCount::Other {
             let late = row_faults::count_late_rows(&self.rows);
             late.map_err(|reason| files::file_error(self.origin, reason, row_faults::RESTART_HINT))?
         } else {
             0
         };
+        if self.frame_count() == FrameCount::Other && self.described.pose_time_offset_s.is_none() {
+            self.ask(clock::find_time_unit_doubt(&self.rows, self.clock.times_s))?;
+        }
         if !self.rows.known.unit && self.described.unit.is_none() && metres_per_unit == 1.0 {
             self.ask(scale::find_unit_doubt(&self.rows, self.described.world.is_none()))?;
         }
@@ -141,7 +149,9 @@ impl TrackMaker<'_> {
         if !axes.world.has_yaw() && self.rows.has_facing(|facing| matches!(facing, PoseFacing::Yaw(_))) {
             return Err(self.wrong("a yaw turns about z, so `world` must be z-up, unity, unreal or ned".into()));
         }
-        let unread = self.rows.unread.take().map(|unread| format!("{}: {unread}", self.origin.display()));
+        let unread: Vec<String> =
+            self.rows.unread.take().into_iter().chain(oriented).chain(self.absent_pictures()).collect();
+        let unread = (!unread.is_empty()).then(|| format!("{}: {}", self.origin.display(), unread.join("; ")));
         let track = self.place_in_time((numbers, axes, metres_per_unit))?.with_unread(unread);
         if let Some(PoseDoubt::Misread(reason)) = doubt {
             return Err(self.question(reason));
@@ -183,8 +193,15 @@ impl TrackMaker<'_> {
         Ok(())
     }
 
-    /// Turns a yaw without a unit into radians.
+    /// Turns a yaw without a unit into radians, and asks about one with a named unit that cannot be right.
     fn apply_angle_unit(&mut self, axes: PoseAxes) -> Result<(), PlatformError> {
+        if let Some(name) = self.rows.angle_name.filter(|_| self.rows.known.angle_unit) {
+            return match self.described.angle_unit {
+                None => self.ask(scale::find_named_angle_doubt(&self.rows, axes, name)),
+                Some(unit) if name.ends_with(unit.name()) => Ok(()),
+                Some(_) => Err(self.question(format!("{name} names its unit itself, so leave out `angle_unit`"))),
+            };
+        }
         if self.rows.known.angle_unit {
             return Ok(());
         }
@@ -254,6 +271,24 @@ impl TrackMaker<'_> {
         }
     }
 
+    /// A line about poses of pictures that are not here, with the first of them and a picture that is.
+    fn absent_pictures(&self) -> Option<String> {
+        let times = self.clock.times_of_rows(&self.rows, 0.0, false);
+        let absent = self.rows.rows.iter().zip(times).filter_map(|(row, time_s)| match &row.key {
+            PoseKey::Picture(picture) if time_s.is_none() => Some((self.rows.name_row(row), picture)),
+            _ => None,
+        });
+        let absent: Vec<(String, &String)> = absent.collect();
+        let (row, picture) = absent.first()?;
+        let here = if self.clock.times_s.is_empty() { String::new() } else { (self.clock.name)(0) };
+        Some(format!(
+            "{} of {} poses are of pictures that are not here: {row} names {:?}, and the first picture here is {here:?}",
+            absent.len(),
+            self.rows.rows.len(),
+            clip_name(picture),
+        ))
+    }
+
     fn meets_pictures(&self, track: &CameraTrack) -> bool {
         self.clock.times_s.iter().any(|time_s| track.fix_at(*time_s).is_some())
     }
@@ -269,9 +304,8 @@ impl TrackMaker<'_> {
             return Err(files::file_error(self.origin, reason, row_faults::LEAP_HINT));
         }
         CameraTrack::new(fixes.into_iter().map(|(_, fix)| fix).collect()).ok_or_else(|| {
-            let why_none =
-                "has no usable pose: the pictures that it names or counts are not here, or its positions are not valid";
-            self.wrong(why_none.into())
+            let why_none = "the pictures that it counts are not here, or its positions are not valid".to_owned();
+            self.wrong(format!("has no usable pose: {}", self.absent_pictures().unwrap_or(why_none)))
         })
     }
 }

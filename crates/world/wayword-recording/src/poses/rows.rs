@@ -23,6 +23,8 @@ pub(super) struct PoseRows {
     pub(super) mounting: Option<CameraMounting>,
     /// The columns that are not read, for the user, if there are any.
     pub(super) unread: Option<String>,
+    /// The name of the column or field that gives the direction as an angle with its unit: `yaw_rad`.
+    pub(super) angle_name: Option<&'static str>,
 }
 
 /// What the rows of a file are, for messages that name one of them.
@@ -140,7 +142,7 @@ impl PoseRows {
     /// Rows of a format with usual axes and nothing else to say.
     pub(super) fn new(usual: PoseAxes, known: KnownConventions, rows: Vec<PoseRow>) -> Self {
         let (usual_numbers, kind) = (NumberReading::default(), RowKind::Line);
-        Self { usual, usual_numbers, known, kind, rows, frames: None, mounting: None, unread: None }
+        Self { usual, usual_numbers, known, kind, rows, frames: None, mounting: None, unread: None, angle_name: None }
     }
 
     /// A row in words: `line 5`.
@@ -155,16 +157,20 @@ impl PoseRows {
 
     /// Removes the rows without a valid place or time, and returns how many these are.
     pub(super) fn remove_invalid(&mut self, metres_per_unit: f64) -> usize {
-        let is_valid = |row: &PoseRow| {
+        self.retain_rows(|row| {
             let is_time = !matches!(row.key, PoseKey::Time(time_s) if !time_s.is_finite());
             is_time && is_valid_place(row.position * metres_per_unit)
-        };
+        })
+    }
+
+    /// Removes the rows that are not wanted, and returns how many these are.
+    pub(super) fn retain_rows(&mut self, is_wanted: impl Fn(&PoseRow) -> bool) -> usize {
         let all = self.rows.len();
-        let mut valid = self.rows.iter().map(is_valid);
+        let mut wanted = self.rows.iter().map(&is_wanted);
         if let Some(frames) = &mut self.frames {
-            frames.retain(|_| valid.next().unwrap_or(false));
+            frames.retain(|_| wanted.next().unwrap_or(false));
         }
-        self.rows.retain(is_valid);
+        self.rows.retain(is_wanted);
         all - self.rows.len()
     }
 

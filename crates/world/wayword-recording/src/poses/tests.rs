@@ -89,7 +89,7 @@ fn pose_file_errors_name_the_line() {
         ("poses.json", "{", "line 1"),
         ("poses.json", "{}", "expected `transforms.json`"),
         ("poses.tum", "", "holds no poses"),
-        ("poses.csv", "image,x,y\nother.png,1,2\n", "the pictures that it names or counts are not here"),
+        ("poses.csv", "image,x,y\nother.png,1,2\n", "pictures that are not here: line 2 names \"other.png\""),
     ] {
         let error = read(name, text, 0.0, &usual).unwrap_err();
         assert!(error.contains(told), "{name} {text:?}: {error}");

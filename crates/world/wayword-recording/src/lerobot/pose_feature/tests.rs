@@ -45,6 +45,18 @@ fn speeds_beside_a_pose_do_not_hide_it() {
 }
 
 #[test]
+fn an_orientation_that_is_none_is_known() {
+    let feature = |names: &[&str]| find(&[("observation.state", names)], Some("observation.state")).unwrap().unwrap();
+    let quaternion = feature(&["x", "y", "z", "qx", "qy", "qz", "qw"]);
+    assert!(!quaternion.lacks_facing(&[0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]));
+    assert!(quaternion.lacks_facing(&[0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]));
+    assert!(quaternion.lacks_facing(&[0.0, 1.0, 0.0, 0.0, 0.0, f64::NAN, 1.0]));
+    let yaw = feature(&["x", "y", "theta"]);
+    assert!(yaw.lacks_facing(&[0.0, 1.0, f64::NAN]) && !yaw.lacks_facing(&[0.0, 1.0, 2.0]));
+    assert!(!feature(&["x", "y"]).lacks_facing(&[0.0, 1.0]));
+}
+
+#[test]
 fn describe_unclear_names_two_elements_that_may_be_one() {
     let told = |key, names| PoseFeature::describe_unclear(&info(&[(key, names)]));
     for names in [&["x", "x", "theta"][..], &["left.x", "left.y", "right.x", "right.y"], &["x", "y", "pos_y", "yaw"]] {
