@@ -296,7 +296,7 @@ impl<'a> FollowedPath<'a> {
         let routed = judge_route(guide, known, self.walk_prior(), FeatureWeights::fitted(), GainThresholds::default());
         let apart = |route: &RouteVerdict| match route.ends.split_first() {
             Some((own, others)) if !others.is_empty() => {
-                known.building.distinguishing_name(*own, others).map(str::to_owned)
+                known.building.distinguishing_name(*own, others, &guide.end_names()).map(str::to_owned)
             }
             _ => None,
         };

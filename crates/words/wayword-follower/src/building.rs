@@ -10,7 +10,7 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{DVec3, ObjectLabel, ViewpointSurvey};
-use wayword_language::lexicon::{find_thing, normalise_name};
+use wayword_language::lexicon::{find_thing, names_agree, normalise_name};
 
 /// The known part of a building. Positions are metres, z up, in any one frame of reference.
 #[derive(Debug, Default)]
@@ -171,16 +171,20 @@ impl KnownBuilding {
     }
 
     /// A name that distinguishes a viewpoint from others: its room if none of the others lies in a room of that name,
-    /// or else an object that is seen from there alone.
+    /// or else an object that is seen from there alone. `told` are names that the text gives already: a thing does not tell which of
+    /// its own kind is meant.
     #[must_use]
-    pub fn distinguishing_name(&self, viewpoint: usize, others: &[usize]) -> Option<&str> {
+    pub fn distinguishing_name(&self, viewpoint: usize, others: &[usize], told: &[&str]) -> Option<&str> {
+        let is_new = |name: &&str| !told.iter().any(|told| names_agree(told, name));
         let room = |at: usize| self.viewpoints[at].room.as_deref();
-        let own_room = room(viewpoint).filter(|room_here| others.iter().all(|other| room(*other) != Some(*room_here)));
+        let own_room = room(viewpoint)
+            .filter(is_new)
+            .filter(|room_here| others.iter().all(|other| room(*other) != Some(*room_here)));
         let sees =
             |at: usize, name: &str| self.things.iter().any(|thing| thing.name == name && thing.seen_from.contains(&at));
         let here = self.things.iter().filter(|thing| thing.seen_from.contains(&viewpoint));
         own_room.or_else(|| {
-            let names = here.map(|thing| thing.name.as_str());
+            let names = here.map(|thing| thing.name.as_str()).filter(is_new);
             let mut unique: Vec<&str> = names.filter(|name| others.iter().all(|other| !sees(*other, name))).collect();
             unique.sort_by_key(|name| (Reverse(find_thing(name).map_or(0, |thing| thing.salience)), *name));
             unique.first().copied()

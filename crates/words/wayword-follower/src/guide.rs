@@ -142,6 +142,14 @@ impl Guide {
         Self::from_reading(&read_instruction(text, &BTreeSet::new()))
     }
 
+    /// The names of the places at which the text ends: those of its last step that stops, or else of its last step.
+    #[must_use]
+    pub fn end_names(&self) -> Vec<&str> {
+        let end = self.steps.iter().rev().find(|step| step.step.stops).or(self.steps.last());
+        let mentions = end.into_iter().flat_map(|step| &step.mentions);
+        mentions.flat_map(|mention| &mention.meanings).map(|meaning| meaning.name.as_str()).collect()
+    }
+
     /// The guide of an instruction that was read before.
     #[must_use]
     pub fn from_reading(reading: &TextReading) -> Self {

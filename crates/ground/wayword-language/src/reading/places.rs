@@ -220,6 +220,7 @@ fn unnamed_place_at(tokens: TokenSlice<'_>, at: usize, known: &BTreeSet<String>)
             || goes_on
             || is_turn
             || v::BREAKERS.contains(&word(end))
+            || (end > at + 1 && v::AFTER_NOUN.contains(&first))
             || named_place_at(tokens, end, known).is_some()
     };
     let mut to = at + 1;
@@ -231,6 +232,9 @@ fn unnamed_place_at(tokens: TokenSlice<'_>, at: usize, known: &BTreeSet<String>)
     let last = word(to - 1);
     let tells_nothing = v::ABSTRACT.contains(&normal_word(last).as_str())
         || v::ADJECTIVES.contains(&last)
+        // "A sharp turn", "the way forward".
+        || v::BEFORE_SIDE.contains(&last)
+        || v::ONWARD.contains(&last)
         || last.ends_with("ly")
         || is_unit(tokens, to - 1)
         || is_pace(tokens, to - 1)
@@ -272,4 +276,39 @@ pub(super) fn first(text: &str) -> PlaceMention {
     let mut place =
         places.filter_map(|event| if let EventContent::Place(place) = event.what { Some(place) } else { None });
     place.next().unwrap_or_else(|| panic!("{text} names no place"))
+}
+
+#[cfg(test)]
+mod unnamed_tests {
+    use crate::reading::{EventContent, read_instruction};
+    use std::collections::BTreeSet;
+
+    /// The names of the places that a text names.
+    fn places(text: &str) -> Vec<String> {
+        let events = read_instruction(text, &BTreeSet::new()).events.into_iter();
+        let places = events
+            .filter_map(|event| if let EventContent::Place(place) = event.what { Some(place.name) } else { None });
+        places.collect()
+    }
+
+    #[test]
+    fn words_about_a_turn_or_a_way_are_no_places() {
+        for text in [
+            "Make a sharp turn right.",
+            "Make a hard turn left and wait.",
+            "Take the one all the way to the left.",
+            "Go the way forward.",
+        ] {
+            assert_eq!(places(text), Vec::<String>::new(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_name_ends_before_the_verb_that_goes_on() {
+        assert_eq!(places("Exit the room using the frobnicator."), ["frobnicator"]);
+        assert_eq!(places("Leave the room via the frobnicator."), ["frobnicator"]);
+        assert_eq!(places("Stop by the gizmo holding a frobnicator."), ["gizmo", "frobnicator"]);
+        assert_eq!(places("Stop by the room divider."), ["room divider"]);
+        assert_eq!(places("Stop by the wooden flooring."), ["wooden flooring"]);
+    }
 }

@@ -91,12 +91,16 @@ fn distinguishing_name_prefers_the_room_and_then_the_most_striking_thing() {
     add_thing(&mut building, "lamp", [0.0, 0.0, 1.0], &[0]);
     add_thing(&mut building, "piano", [0.0, 0.0, 1.0], &[0, 1]);
     add_thing(&mut building, "sofa", [0.0, 0.0, 1.0], &[0, 2]);
-    assert_eq!(building.distinguishing_name(0, &[1]), Some("attic"));
-    assert_eq!(building.distinguishing_name(0, &[]), Some("attic"));
-    assert_eq!(building.distinguishing_name(0, &[1, 2]), Some("lamp"));
-    assert_eq!(building.distinguishing_name(0, &[2]), Some("piano"), "one notices a piano before a lamp");
-    assert_eq!(building.distinguishing_name(2, &[0]), None);
-    assert_eq!(building.distinguishing_name(3, &[0]), None);
+    assert_eq!(building.distinguishing_name(0, &[1], &[]), Some("attic"));
+    assert_eq!(building.distinguishing_name(0, &[], &[]), Some("attic"));
+    assert_eq!(building.distinguishing_name(0, &[1, 2], &[]), Some("lamp"));
+    assert_eq!(building.distinguishing_name(0, &[2], &[]), Some("piano"), "one notices a piano before a lamp");
+    assert_eq!(building.distinguishing_name(2, &[0], &[]), None);
+    assert_eq!(building.distinguishing_name(3, &[0], &[]), None);
+    // A thing beside itself tells nothing.
+    assert_eq!(building.distinguishing_name(0, &[2], &["piano"]), Some("lamp"));
+    assert_eq!(building.distinguishing_name(0, &[2], &["table lamp", "grand piano"]), None);
+    assert_eq!(building.distinguishing_name(0, &[1], &["attic"]), Some("sofa"));
 }
 
 #[test]

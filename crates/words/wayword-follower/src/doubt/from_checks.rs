@@ -4,7 +4,11 @@ use crate::guide::Guide;
 use wayword_core::{
     CheckFinding, CheckKind, DoubtAlternative, DoubtCause, DoubtGrade, TextAmbiguity, TextDoubt, Verdict,
 };
-use wayword_language::{lexicon::is_room, reading::TextReading, rewording::TokenisedText};
+use wayword_language::{
+    lexicon::{is_room, names_agree},
+    reading::TextReading,
+    rewording::TokenisedText,
+};
 
 /// The doubts from the findings of checks. Findings about form, copying and unknown words are left out, because they do
 /// not concern the path.
@@ -42,6 +46,8 @@ pub fn doubts_from_ambiguity(
     let spelt = TokenisedText::from_reading(text, reading);
     if let Some((ends, span)) = ambiguity.ends.filter(|ends| *ends > 1).zip(end_words(&spelt, guide)) {
         let apart = ambiguity.told_apart_by.as_deref().zip(text.get(span[0]..span[1]));
+        // "The stairs by the stairs".
+        let apart = apart.filter(|(by, words)| !names_agree(by, words));
         let apart = apart.map(|(by, words)| {
             let joined = if is_room(by) { "in" } else { "by" };
             DoubtAlternative { words: Some(format!("{words} {joined} the {by}")), gain: None }

@@ -418,6 +418,12 @@ fn doubts_from_ambiguity_mark_the_last_step_where_no_step_stops() {
         named("sofa", "sofa by the piano")
     );
     assert_eq!(doubts("Walk to the lamp.", Some(3), Some("attic")), named("lamp", "lamp in the attic"));
+    for (text, by) in
+        [("Walk to the stairs.", "stairs"), ("Stop at the chair.", "dining chair"), ("Wait in the attic.", "attic")]
+    {
+        let told = doubts(text, Some(3), Some(by));
+        assert!(told.len() == 1 && told[0].1.is_empty(), "{told:?}");
+    }
     assert_eq!(doubts("Walk to the lamp.", None, Some("attic")), []);
     assert_eq!(doubts("Walk to the lamp.", Some(1), Some("attic")), []);
 }

@@ -209,7 +209,10 @@ impl<'a> TurnText<'a> {
         let is_way = verb == "way" && from > 2 && self.word_at(from - 2) == "your" && {
             matches!(self.word_at(from - 3), "make" | "making" | "work" | "find" | "wind" | "continue")
         };
-        (v::GOING.contains(&verb) || is_way)
+        // "Move right the shower curtain": something is moved, and nobody walks.
+        let moves_thing = verb == "move" && v::DETERMINERS.contains(&self.word_at(at + 1));
+        !moves_thing
+            && (v::GOING.contains(&verb) || is_way)
             && (skipped.clone().any(|word| word == "to")
                 || skipped.all(|word| matches!(word, "immediately" | "slightly" | "slight" | "then" | "back")))
     }

@@ -159,6 +159,8 @@ fn a_side_of_a_place_is_no_turn() {
         "Continue right along the rug.",
         "Take two steps right in front of the rug.",
         "Take the staircase on the right.",
+        "Move right the shower curtain.",
+        "Go to the bathroom and move left a chair.",
     ] {
         assert_eq!(turns(text), [], "{text}");
     }
