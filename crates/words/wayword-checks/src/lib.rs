@@ -17,6 +17,7 @@
 //! - `walk_coverage`: which decisions of a walk a text tells.
 //! - `align`, `order`, `goal`: the order and the end of a text where `walk_claims` does not judge them.
 //! - `mentioned_parts`: the parts of a text by its mentions alone, where the motion along its path is unknown.
+//! - `straights`: claims to go straight on over sharp turns, where frames lie far apart.
 //! - `one_place`: a path that goes nowhere, as in a test split, decides nothing.
 //! - `coverage`: what was not understood. `leak`: what was copied from a style's references.
 //! - `world`: whether a text is held against a closed or an open world.
@@ -40,6 +41,7 @@ pub mod open;
 mod order;
 mod sides;
 mod stop_marks;
+mod straights;
 mod task;
 mod testimony;
 #[cfg(test)]
@@ -170,7 +172,7 @@ fn check_against(
     from_captions_alone: bool,
 ) -> TextFindings {
     let reading = whole.clone().into_claims();
-    let mut findings = form::check_form(text, whole, &subject.style.constraints);
+    let mut findings = form::check_form(text, whole, subject.style);
     let ends_in_task = subject.style.constraints.ends_in_task;
     if ends_in_task {
         findings.push(task::check_task(&reading, subject));
@@ -180,6 +182,10 @@ fn check_against(
     let places = landmarks::check_landmarks(&reading, subject, object, from_captions_alone);
     let on_walk = check_on_walk(&reading, subject, object, from_captions_alone);
     let walk = order::check_order(&reading, subject.evidence, &places.shown);
+    let lies_far_apart = on_walk.is_none() && subject.evidence.motion.is_known();
+    let false_straight = lies_far_apart
+        .then(|| straights::find_false_straight(&reading, subject.evidence, &walk.frames, subject.world))
+        .flatten();
     let (mut frames, mut parts) = (walk.frames, Vec::new());
     match (subject.world, on_walk) {
         (CheckWorld::Closed, on_walk) => {
@@ -207,6 +213,7 @@ fn check_against(
         }
         (CheckWorld::Open, _) => findings.extend(open::check_open(whole, &reading, subject)),
     }
+    false_straight.into_iter().for_each(|wrong| add_worse(&mut findings, wrong));
     if !subject.evidence.goes_anywhere() {
         one_place::leave_path_undecided(&mut findings);
     }

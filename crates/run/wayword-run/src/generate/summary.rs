@@ -11,7 +11,9 @@ use crate::{
 };
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::{collections::BTreeMap, fmt, path::Path};
-use wayword_core::{FormOutcome, FrameObservation, SceneLack, TextAmbiguity, TextProvenance, Verdict};
+use wayword_core::{
+    CheckFinding, CheckKind, FormOutcome, FrameObservation, SceneLack, TextAmbiguity, TextProvenance, Verdict,
+};
 
 /// The summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -30,6 +32,12 @@ pub struct RunSummary {
     pub finished_by_rules: usize,
     /// Instructions that may mean several places, or several objects. They are rejected only with --reject-ambiguous.
     pub ambiguous: usize,
+    /// Instructions that are far from each number of words that their style asks for.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub far_lengths: usize,
+    /// The reason of the first of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub first_far_length: Option<String>,
     /// Instructions that could not be followed.
     pub unfollowed: usize,
     /// The reason of the first of them.
@@ -103,8 +111,13 @@ pub(super) fn summarise_run(
 ) -> Result<RunSummary, CommandError> {
     let (mut passed, mut unverified, mut finished, mut roles) = (0, 0, 0, None);
     let (mut ambiguous, mut unfollowed, mut why_unfollowed) = (0, 0, None);
+    let (mut far_lengths, mut first_far_length) = (0, None);
     lines::each_line(&folder.join(file::INSTRUCTIONS), |line| {
-        let InstructionLine { verdict, provenance, ambiguity } = line.parse()?;
+        let InstructionLine { verdict, provenance, ambiguity, findings } = line.parse()?;
+        if let Some(far) = findings.into_iter().find(is_far_length) {
+            far_lengths += 1;
+            first_far_length.get_or_insert(far.reason);
+        }
         passed += usize::from(verdict == Verdict::Pass);
         unverified += usize::from(verdict == Verdict::Unverified);
         finished += usize::from(provenance.finished_for.is_some());
@@ -130,6 +143,8 @@ pub(super) fn summarise_run(
         unverified,
         finished_by_rules: finished,
         ambiguous,
+        far_lengths,
+        first_far_length,
         unfollowed,
         why_unfollowed,
         asked_again,
@@ -194,6 +209,13 @@ struct InstructionLine {
     provenance: TextProvenance,
     #[serde(default)]
     ambiguity: Option<TextAmbiguity>,
+    #[serde(default)]
+    findings: Vec<CheckFinding>,
+}
+
+/// Whether a finding says that a text is far from the lengths of its style. A broken rule of the style is a failure.
+fn is_far_length(finding: &CheckFinding) -> bool {
+    (finding.check, finding.verdict) == (CheckKind::Form, Verdict::Unverified)
 }
 
 /// The fields of a walk's line that the summary counts.
@@ -266,6 +288,14 @@ impl fmt::Display for RunSummary {
                 f,
                 "ambiguous: {} may mean several places or objects",
                 count_phrase(self.ambiguous, "instruction")
+            )?;
+        }
+        if let Some(reason) = &self.first_far_length {
+            writeln!(
+                f,
+                "far from the length that the style asks for: {}; the first: {}",
+                count_phrase(self.far_lengths, "instruction"),
+                tame_text(reason)
             )?;
         }
         if let (Some(why), 1..) = (&self.why_unfollowed, self.unfollowed) {
