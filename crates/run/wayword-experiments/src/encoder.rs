@@ -8,9 +8,12 @@ use wayword_run::{error::CommandError, interrupt, output::CommandOutput};
 /// Number of texts that the encoder gets at once.
 const ENCODER_BATCH_TEXTS: usize = 128;
 
+/// The encoder that counts words, without a model.
+pub(crate) const WORD_ENCODER: &str = "words";
+
 /// Opens an encoder by its name. `words` counts words, without a model.
 pub fn open_encoder(name: &str) -> Result<Box<dyn TextEncoder>, CommandError> {
-    if name == "words" { Ok(Box::new(HashedWordEncoder)) } else { in_process(name) }
+    if name == WORD_ENCODER { Ok(Box::new(HashedWordEncoder)) } else { in_process(name) }
 }
 
 #[cfg(feature = "local")]

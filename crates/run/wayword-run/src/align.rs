@@ -9,6 +9,7 @@ use crate::{
     pipeline::path_panoramas,
     platforms::{self, RememberingPlatform},
     settings::{AskedPlatform, AskedSettings},
+    text_language::warn_of_foreign,
 };
 use clap::Args;
 use rayon::prelude::*;
@@ -77,6 +78,7 @@ pub fn align_file(args: &AlignArgs, output: &CommandOutput) -> Result<AlignRepor
     let settings = AskedSettings::from(args.platform.clone()).resolve()?;
     let platform = platforms::open_platform(&settings)?;
     let walks = read_path_texts(&args.file, platform.as_ref())?;
+    warn_of_foreign("", walks.iter().flat_map(|walk| &walk.texts).map(|text| text.words.as_str()), output);
     let scenes = KnownScenes::new();
     let bar = output.progress_bar(walks.len(), "paths");
     let align = |walk: &PathTexts| {

@@ -2,7 +2,7 @@
 
 use crate::error::CommandError;
 use std::path::Path as FilePath;
-use wayword_core::{Path, PathMotion, Platform, PlatformError};
+use wayword_core::{ObjectId, Path, PathMotion, Platform, PlatformError};
 use wayword_formats::Episode;
 use wayword_world::{episode_path::target_for_object, frames_over_floor, path_over_viewpoints};
 
@@ -21,6 +21,22 @@ pub fn path_for_episode(platform: &dyn Platform, episode: &Episode) -> Result<Pa
         _ => None,
     };
     Ok(Path { id: episode.id.clone(), scene: scene.clone(), frames, motion: PathMotion::Known, target })
+}
+
+/// The object of an episode that its scene lacks, where the scene lists objects. `object` is what the file gives for `path`.
+///
+/// # Errors
+/// When the platform's data cannot be read.
+pub(crate) fn missing_object(
+    platform: &dyn Platform,
+    path: &Path,
+    object: Option<&ObjectId>,
+) -> Result<Option<ObjectId>, PlatformError> {
+    let Some(object) = object.filter(|_| path.target.is_none()) else { return Ok(None) };
+    let listed = platform.catalogue().listed_objects(&path.scene)?;
+    // Where no object is listed, none can be missing.
+    let is_missing = !listed.is_empty() && listed.iter().all(|placed| placed.object != *object);
+    Ok(is_missing.then(|| object.clone()))
 }
 
 /// The error of a path that does not fit its scene, with its file and its item. Other errors stay as they are.

@@ -1,7 +1,7 @@
 //! The items of a run: episodes of a dataset, or random paths, which are drawn only when their turn comes.
 
 use crate::{
-    episode_paths::path_for_episode,
+    episode_paths::{missing_object, path_for_episode},
     error::CommandError,
     settings::{RunSettings, houses},
 };
@@ -104,15 +104,17 @@ fn episode_items(
 }
 
 fn random_items(settings: &RunSettings, platform: &dyn Platform) -> Result<Vec<RunItem>, CommandError> {
+    let named = settings.scan.iter().filter(|name| !settings.left_out.contains_key(*name)).map(|name| {
+        SceneId::new(name.as_str())
+            .map_err(|error| CommandError::usage(format!("--scan {name}: {error}"), "give the name of a scene"))
+    });
+    let named = named.collect::<Result<Vec<SceneId>, _>>()?;
+    // All scenes that cannot be read are told together.
+    platform.files().check_scenes(&named.iter().collect())?;
     let mut scenes = Vec::new();
-    for name in &settings.scan {
-        let scene = SceneId::new(name.as_str())
-            .map_err(|error| CommandError::usage(format!("--scan {name}: {error}"), "give the name of a scene"))?;
-        if settings.left_out.contains_key(name) {
-            continue;
-        }
-        platform.graph_for_scene(&scene)?;
-        scenes.push(platform.files().canonical_scene(&scene));
+    for scene in &named {
+        platform.graph_for_scene(scene)?;
+        scenes.push(platform.files().canonical_scene(scene));
     }
     if settings.scan.is_empty() {
         scenes = match houses::asked_houses(settings)? {
@@ -204,14 +206,9 @@ impl RunItem {
             }
             Self::Episode(episode) => {
                 let path = path_for_episode(platform, episode)?;
-                match &episode.target_object {
-                    // Where no object is listed, none can be missing.
-                    Some(object)
-                        if path.target.is_none() && !platform.catalogue().listed_objects(&path.scene)?.is_empty() =>
-                    {
-                        Err(PlatformError::UnknownObject { scene: path.scene, object: object.clone() })
-                    }
-                    _ => Ok(path),
+                match missing_object(platform, &path, episode.target_object.as_ref())? {
+                    Some(object) => Err(PlatformError::UnknownObject { scene: path.scene, object }),
+                    None => Ok(path),
                 }
             }
             Self::Walk(path) => Ok((**path).clone()),

@@ -60,6 +60,7 @@ pub mod styles;
 pub mod team;
 pub mod terms;
 pub mod text_file;
+pub mod text_language;
 mod toml_message;
 pub mod walk_ranking;
 pub mod watch;

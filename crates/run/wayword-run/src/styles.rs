@@ -1,9 +1,11 @@
 //! Finds the styles that a run names: built-in ones, TOML files, and the texts of datasets.
 
-use crate::{error::CommandError, similar::did_you_mean, text_file, toml_message::plain_toml_message};
-use std::{collections::BTreeSet, path::Path};
+use crate::{
+    error::CommandError, similar::did_you_mean, text_file, text_language::ForeignTexts,
+    toml_message::plain_toml_message,
+};
+use std::path::Path;
 use wayword_core::{InstructionStyle, StyleConstraints};
-use wayword_language::{Language, reading::read_instruction};
 use wayword_synthesis::style::{
     StyleError, StyleProfile, built_in, built_in_names, hash_style, parse_style_with, validate_style,
 };
@@ -19,23 +21,30 @@ pub struct MeasuredStyle {
     pub hash: String,
 }
 
-/// Number of reference texts by which the language of a style is judged.
-const JUDGED_REFERENCES: usize = 20;
-
 impl MeasuredStyle {
-    /// The language of its reference texts, if most of those at the beginning are not English.
+    /// Its reference texts, if most of those at the beginning are not English.
     #[must_use]
-    pub(crate) fn foreign_language(&self) -> Option<&'static str> {
-        let judged = self.style.references.iter().take(JUDGED_REFERENCES);
-        let number = judged.len();
-        let foreign: Vec<&'static str> = judged
-            .filter_map(|text| match read_instruction(text, &BTreeSet::new()).language {
-                Language::Other(name) => Some(name),
-                Language::English | Language::Partly(_) => None,
-            })
-            .collect();
-        foreign.first().copied().filter(|_| foreign.len() * 2 > number)
+    pub(crate) fn foreign_references(&self) -> Option<ForeignTexts> {
+        ForeignTexts::find(self.style.references.iter().map(String::as_str))
     }
+}
+
+/// Refuses styles in another language where rules write: they put English into the shape of its texts. `names` are the styles as
+/// they were given.
+///
+/// # Errors
+/// When most of the references of one are not English.
+pub(crate) fn refuse_foreign_styles(names: &[String], styles: &[MeasuredStyle]) -> Result<(), CommandError> {
+    for (name, style) in names.iter().zip(styles) {
+        if let Some(ForeignTexts { language, example }) = style.foreign_references() {
+            let problem =
+                format!("{name}: its reference texts are in {language}, such as {example:?}, and rules write English");
+            let hint =
+                "give a style with English texts, or a model that writes (--write); the checks read English only";
+            return Err(CommandError::usage(problem, hint));
+        }
+    }
+    Ok(())
 }
 
 /// The name of a style as a flag takes it: a built-in style, a TOML file, or NAME=DATASET.
@@ -193,20 +202,21 @@ mod tests {
     }
 
     #[test]
-    fn style_of_another_language_is_known_by_most_of_its_texts() {
-        let style = |references: &[&str]| {
-            let references = references.iter().map(|text| (*text).to_owned()).collect();
-            let style = InstructionStyle { name: "x".into(), references, ..InstructionStyle::default() };
-            MeasuredStyle { profile: StyleProfile::for_style(&style), hash: String::new(), style }.foreign_language()
+    fn style_in_another_language_is_refused_with_its_file_and_a_text() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("german.toml");
+        let refusal = |references: &str| {
+            fs::write(&path, format!("name = \"x\"\nreferences = [{references}]")).unwrap();
+            let names = [path.display().to_string()];
+            let styles = find_styles(&names).unwrap();
+            refuse_foreign_styles(&names, &styles).err().map(|error| error.to_string())
         };
-        let (german, english) = ("Gehe an der Lampe vorbei und warte am Schreibtisch.", "Walk past the lamp and wait.");
-        assert_eq!(style(&[german]), Some("German"));
-        assert_eq!(style(&[german, english]), None);
-        assert_eq!(
-            style(&["Gire a la izquierda y espere en la cocina.", "Camine hasta la puerta.", english]),
-            Some("Spanish")
-        );
-        assert_eq!(style(&["चलो और दरवाजे पर रुको।"]), Some("Hindi"));
+        let (german, english) = ("\"Gehe an der Lampe vorbei und warte am Schreibtisch.\"", "\"Walk past the lamp.\"");
+        let told = refusal(german).unwrap();
+        assert!(told.contains("german.toml: its reference texts are in German, such as \"Gehe an der Lampe"), "{told}");
+        assert!(told.contains("--write"), "{told}");
+        assert_eq!(refusal(english), None);
+        assert_eq!(refusal(&format!("{english}, {german}")), None);
     }
 
     #[test]

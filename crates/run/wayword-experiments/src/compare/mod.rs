@@ -43,6 +43,7 @@ use wayword_run::{
     run_folder::Journal,
     settings::RolePlayer,
     settings_file,
+    text_language::warn_of_foreign,
 };
 
 pub(crate) use outputs::followed_set;
@@ -93,6 +94,10 @@ pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit
     let platform = config.open_platform()?;
     let demands = PlatformDemands::new(platform.as_ref());
     let (items, sizes, episode_count) = instruction_sets::load_items(&config, platform.as_ref(), &demands)?;
+    for (set, _) in &config.instructions {
+        let texts = items.iter().flat_map(|item| &item.texts).filter(|text| text.set == *set);
+        warn_of_foreign(&format!(" of set {set}"), texts.map(|text| text.text.as_str()), output);
+    }
     let judge = WalkJudge::new(&config, &items, &demands, args.rule.map(Into::into))?;
     if let Some(item) = judge.without_object.filter(|_| args.rule.is_none()) {
         output.say(format_args!(

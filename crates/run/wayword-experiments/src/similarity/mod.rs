@@ -2,11 +2,12 @@
 
 pub mod args;
 mod java;
+mod language;
 mod metrics;
 mod pictures;
 
 use crate::{
-    encoder,
+    encoder::{self, WORD_ENCODER},
     similarity::args::{SimilarityArgs as Args, TextPairing},
     text_sets::{self, TextSet},
 };
@@ -41,12 +42,15 @@ pub fn run_similarity(args: &Args, output: &CommandOutput) -> Result<Exit, Comma
     if args.pictured.clip.is_some() && !args.metrics {
         return Err(CommandError::usage("--clip is a metric, and none are asked for", "give --metrics too"));
     }
+    let sides = [(args.a.as_str(), &a), (args.b.as_str(), &b)];
     if args.metrics {
+        language::refuse_other_languages(sides, true, output)?;
         let report = metrics::measure_texts(args, (&a, &b), output)?;
         output.print_result(&report, &report);
         return Ok(Exit::Done);
     }
     let encoder = encoder::open_encoder(&args.encoder)?;
+    language::refuse_other_languages(sides, encoder.name() == WORD_ENCODER, output)?;
     let all = a.values().chain(b.values()).flat_map(|item| item.texts.iter().map(String::as_str));
     let vectors = encoder::encode_texts(encoder.as_ref(), all, output)?;
     let drawing = ResamplingOptions { resamples: args.resamples as usize, level: CONFIDENCE_LEVEL, seed: args.seed };
@@ -119,7 +123,7 @@ fn format_percent(estimate: &MeanEstimate) -> String {
 impl fmt::Display for SimilarityReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write_sides(f, [&self.a, &self.b])?;
-        let is_model = self.encoder != "words";
+        let is_model = self.encoder != WORD_ENCODER;
         writeln!(f, "encoder: {}{}", self.encoder, if is_model { "" } else { " (word counts, no model)" })?;
         let SetSimilarity { figure, same_item, random_pairs, only_in_a, only_in_b, single_in_b } = &self.similarity;
         let interval = format!("{:.0} % interval", self.level * 100.0);

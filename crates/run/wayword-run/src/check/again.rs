@@ -121,8 +121,16 @@ fn read_written(run: &FilePath) -> Result<WrittenTexts, CommandError> {
         let key = RunPathKey::Id(path.id.clone());
         let origin = Some((platform, provenance));
         let name = name_of_record(&path.id, &style.name, number);
-        let text =
-            FileText { at: line.number(), path: path.id, name, words: text, tag: None, style: Some(style), origin };
+        let text = FileText {
+            at: line.number(),
+            path: path.id,
+            name,
+            words: text,
+            tag: None,
+            style: Some(style),
+            origin,
+            missing_object: None,
+        };
         written.texts.push(RunText { text, path: key });
         Ok(())
     })?;

@@ -72,7 +72,7 @@ pub struct CheckDetectorArgs {
     pub detector_figures: Option<PathBuf>,
     /// The evidence that counts: labels, detector, or both separated by a comma (the detector where there are no labels).
     /// [default: labels,detector]
-    #[arg(long, value_name = "SOURCES", requires = "detector")]
+    #[arg(long, value_name = "SOURCES", conflicts_with = "run")]
     pub evidence: Option<EvidenceSources>,
     /// Device that it runs on: cpu, cuda, cuda:1 or metal. [default: cpu]
     #[arg(long, value_name = "DEVICE", requires = "detector")]

@@ -3,7 +3,7 @@
 use super::path_texts::PathTexts;
 use crate::{
     calls::ModelCalls, check::args::CheckDetectorArgs, error::CommandError, lookout::DetectorLookout,
-    output::CommandOutput, plan::JobModels, run_folder::fresh_id,
+    output::CommandOutput, plan::JobModels, run_folder::fresh_id, settings::EvidenceSources,
 };
 use std::collections::BTreeSet;
 use wayword_checks::Evidence;
@@ -13,6 +13,24 @@ use wayword_language::{
     reading::{EventContent, read_instruction},
 };
 use wayword_synthesis::detection::seek_claims;
+
+/// The sources of evidence that the flags choose.
+///
+/// # Errors
+/// When they choose a source that `check` does not have: captions, or a detector that is not named.
+pub(super) fn chosen_sources(args: &CheckDetectorArgs) -> Result<EvidenceSources, CommandError> {
+    let sources = args.evidence.unwrap_or(EvidenceSources::usual_sources(true));
+    let is_detector_named = args.detector.is_some();
+    let hint = "give --evidence labels, or --detector MODEL with --evidence detector or labels,detector";
+    if args.evidence.is_some() && sources.names_captions() {
+        let problem = "--evidence captions: without --run there are no captions to check against";
+        return Err(CommandError::usage(problem, format!("{hint}; or check the texts of a run with --run DIR")));
+    }
+    if args.evidence.is_some() && sources.detector && !is_detector_named {
+        return Err(CommandError::usage("--evidence detector: no detector is named", hint));
+    }
+    Ok(sources)
+}
 
 /// Opens the detector that the flags name; `None` if they name none.
 pub(super) fn open_lookout(
@@ -48,4 +66,39 @@ fn named_things(text: &str) -> Vec<String> {
         _ => None,
     });
     places.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sources_that_a_check_lacks_are_refused() {
+        let chosen = |sources: Option<&str>, detector: Option<&str>| {
+            let args = CheckDetectorArgs {
+                evidence: sources.map(|sources| sources.parse().unwrap()),
+                detector: detector.map(str::to_owned),
+                ..CheckDetectorArgs::default()
+            };
+            chosen_sources(&args).map_err(|error| error.to_string())
+        };
+        for (sources, detector) in [
+            (None, None),
+            (None, Some("hf/a/b")),
+            (Some("labels"), None),
+            (Some("labels"), Some("hf/a/b")),
+            (Some("detector"), Some("hf/a/b")),
+            (Some("labels,detector"), Some("hf/a/b")),
+        ] {
+            assert!(chosen(sources, detector).is_ok(), "{sources:?} {detector:?}");
+        }
+        assert!(!chosen(Some("labels"), Some("hf/a/b")).unwrap().detector);
+        for sources in ["captions", "captions,detector"] {
+            let told = chosen(Some(sources), Some("hf/a/b")).unwrap_err();
+            assert!(told.contains("there are no captions") && told.contains("--run DIR"), "{told}");
+        }
+        for sources in ["detector", "labels,detector"] {
+            assert!(chosen(Some(sources), None).unwrap_err().contains("no detector is named"), "{sources}");
+        }
+    }
 }

@@ -22,6 +22,7 @@ use crate::{
     pipeline::path_panoramas,
     platforms::{self, RememberingPlatform},
     settings::{AskedSettings, EvidenceSources, RunSettings},
+    text_language::warn_of_foreign,
 };
 use path_texts::{FileText, PathTexts, read_path_texts};
 use rayon::prelude::*;
@@ -74,8 +75,8 @@ pub fn check_texts(args: &Args, output: &CommandOutput) -> Result<CheckReport, C
         return run_texts::check_file(&args.file, run, how, output);
     }
     let settings = AskedSettings::from(args.platform.clone()).resolve()?;
+    let sources = detecting::chosen_sources(&args.detecting)?;
     let lookout = detecting::open_lookout(&args.detecting, output)?;
-    let sources = args.detecting.evidence.unwrap_or(EvidenceSources::usual_sources(true));
     check_with_lookout(&args.file, &settings, how, (lookout.as_ref(), sources), output)
 }
 
@@ -201,6 +202,7 @@ impl<'a> TextChecker<'a> {
     fn check_walks(&self, walks: &[PathTexts], output: &CommandOutput) -> Result<CheckReport, CommandError> {
         let calibration = self.how.calibration.map(|file| file.display().to_string());
         let mut report = CheckReport { calibration, ..CheckReport::default() };
+        warn_of_foreign("", walks.iter().flat_map(|walk| &walk.texts).map(|text| text.words.as_str()), output);
         for text in walks.iter().flat_map(|walk| &walk.texts) {
             self.styles.count_text(text, &mut report);
         }
@@ -295,6 +297,7 @@ impl<'a> TextChecker<'a> {
             }
             let ambiguity = follower.as_ref().map(|follower| follower.text_ambiguity(&text.words, &evidence));
             checked.add_findings(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(ambiguity_rejection));
+            checked.add_findings(text.missing_object_finding(&walk.path.scene));
             let mut shown = CheckedText::from_text(text, &checked);
             // A text that is not understood leaves nothing out.
             if let Some(Ok((followed, (_, reading)))) = &read {

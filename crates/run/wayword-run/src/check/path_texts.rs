@@ -2,12 +2,14 @@
 
 use crate::{
     count::count_phrase,
-    episode_paths::{path_for_episode, unusable_path},
+    episode_paths::{missing_object, path_for_episode, unusable_path},
     error::CommandError,
     run_folder::{number_of_text, text_label},
 };
 use std::{collections::BTreeMap, path::Path as FilePath};
-use wayword_core::{Path, Platform, PlatformError, SceneId, TextProvenance, ViewpointId};
+use wayword_core::{
+    CheckFinding, CheckKind, ObjectId, Path, Platform, PlatformError, SceneId, TextProvenance, Verdict, ViewpointId,
+};
 use wayword_formats::{
     DatasetFormat,
     jsonl::{self, InstructionRecord},
@@ -37,12 +39,22 @@ pub(crate) struct FileText {
     pub(crate) tag: Option<String>,
     /// Its platform and provenance, if the file has them.
     pub(crate) origin: Option<(String, TextProvenance)>,
+    /// The object that its item names, if the scene has none of that id.
+    pub(crate) missing_object: Option<ObjectId>,
 }
 
 impl FileText {
     /// A text of a dataset, which has no provenance.
     fn from_dataset(path: &Path, name: String, words: String, tag: Option<String>) -> Self {
-        Self { at: 0, path: path.id.clone(), name, words, style: None, tag, origin: None }
+        let path = path.id.clone();
+        Self { at: 0, path, name, words, style: None, tag, origin: None, missing_object: None }
+    }
+
+    /// The finding on an object of its item that the scene lacks: nothing can be known of a task about it.
+    pub(crate) fn missing_object_finding(&self, scene: &SceneId) -> Option<CheckFinding> {
+        let object = self.missing_object.as_ref()?;
+        let reason = format!("the item {} names the object {object}, and scene {scene} has none of that id", self.path);
+        Some(CheckFinding { check: CheckKind::Task, verdict: Verdict::Fail, reason, span: None })
     }
 }
 
@@ -68,7 +80,9 @@ pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
             if made_on != platform.name() {
                 refuse_other_platform(file, (made_on.as_str(), &path.scene), platform)?;
             }
+            let object = path.target.as_ref().map(|target| target.object.clone());
             let path = with_platform_poses(platform, path).map_err(unusable_path(file, &id))?;
+            let missing_object = missing_object(platform, &path, object.as_ref())?;
             let text = FileText {
                 at: 0,
                 path: path.id.clone(),
@@ -80,6 +94,7 @@ pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
                     hash: instruction.provenance.style_hash.clone(),
                 }),
                 origin: Some((made_on, instruction.provenance)),
+                missing_object,
             };
             walks.add_text(path, text);
         }
@@ -89,11 +104,13 @@ pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
     for episode in wayword_formats::read_any_format(file)? {
         // The check ends with an error at the first missing scene.
         let path = path_for_episode(platform, &episode).map_err(unusable_path(file, &episode.id))?;
+        let missing = missing_object(platform, &path, episode.target_object.as_ref())?;
         items += 1;
         for (at, words) in episode.instructions.iter().enumerate() {
             let tag = episode.language_of(at).map(str::to_owned);
             let name = instr_id(&episode, at);
-            walks.add_text(path.clone(), FileText::from_dataset(&path, name, words.clone(), tag));
+            let text = FileText::from_dataset(&path, name, words.clone(), tag);
+            walks.add_text(path.clone(), FileText { missing_object: missing.clone(), ..text });
         }
     }
     walks.expect_texts(file, items)

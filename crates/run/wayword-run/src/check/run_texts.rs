@@ -214,7 +214,16 @@ fn read_texts(file: &FilePath) -> Result<Vec<RunText>, CommandError> {
             let style = StyleReference { name: instruction.style, hash: instruction.provenance.style_hash.clone() };
             let (words, made) = (instruction.text, Some((platform, instruction.provenance)));
             let name = name_of_record(&path.id, &style.name, number);
-            let text = FileText { at, path: path.id.clone(), name, words, tag: None, style: Some(style), origin: made };
+            let text = FileText {
+                at,
+                path: path.id.clone(),
+                name,
+                words,
+                tag: None,
+                style: Some(style),
+                origin: made,
+                missing_object: None,
+            };
             all.push(RunText { text, path: RunPathKey::Id(path.id) });
         }
         return Ok(all);
@@ -230,6 +239,7 @@ fn read_texts(file: &FilePath) -> Result<Vec<RunText>, CommandError> {
                 tag,
                 style: None,
                 origin: None,
+                missing_object: None,
             };
             let path = RunPathKey::Way {
                 scene: episode.scene.clone(),

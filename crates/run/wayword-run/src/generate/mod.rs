@@ -127,11 +127,10 @@ fn say_house_spread(plan: &RunPlan<'_>, output: &CommandOutput) {
 /// could be free.
 fn warn_of_styles(settings: &RunSettings, styles: &[MeasuredStyle], output: &CommandOutput) {
     for style in styles {
-        if let Some(language) = style.foreign_language() {
+        if let Some(foreign) = style.foreign_references() {
             output.say(format_args!(
-                "warning: the reference texts of style {} are in {language}; rules write English, and the checks read English \
-                 only, so other texts stay unverified",
-                style.style.name
+                "warning: the reference texts of style {} are in {}; the checks read English only, so texts in it stay unverified",
+                style.style.name, foreign.language
             ));
         }
     }

@@ -57,6 +57,9 @@ impl<'a> RunPlan<'a> {
     /// model is not known.
     pub fn for_writing(job: &'a RunJob, platform: &'a dyn Platform) -> Result<Self, CommandError> {
         let styles = styles::find_styles(&job.settings.style)?;
+        if job.settings.roles.write.model_name().is_none() {
+            styles::refuse_foreign_styles(&job.settings.style, &styles)?;
+        }
         lookout::check_detector_files(&job.settings, &styles)?;
         let items = run_items(&job.settings, platform)?;
         check_names(&items)?;

@@ -25,10 +25,14 @@ impl EvidenceSources {
         Self { labels: true, captions: true, detector: has_detector }
     }
 
+    /// Whether captions are a source of their own. `labels` alone implies them where there are no labels, so they need not be named.
+    #[must_use]
+    pub fn names_captions(&self) -> bool {
+        self.captions && (!self.labels || self.detector)
+    }
+
     fn source_names(&self) -> Vec<&'static str> {
-        // `labels` alone implies captions where there are no labels, so they need not be named.
-        let captions = self.captions && (!self.labels || self.detector);
-        let all = [(self.labels, "labels"), (captions, "captions"), (self.detector, "detector")];
+        let all = [(self.labels, "labels"), (self.names_captions(), "captions"), (self.detector, "detector")];
         all.into_iter().filter(|(is_used, _)| *is_used).map(|(_, name)| name).collect()
     }
 }

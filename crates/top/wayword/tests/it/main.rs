@@ -47,6 +47,7 @@ mod robustness;
 mod robustness_elsewhere;
 mod scene_placement;
 mod settings_examples;
+mod silent_inputs;
 mod similarity;
 mod similarity_pictures;
 mod spans;

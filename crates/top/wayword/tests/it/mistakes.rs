@@ -103,8 +103,6 @@ fn numbers_out_of_their_range_are_repeated() {
 #[test]
 fn settings_without_effect_are_named() {
     let building = Building::new();
-    let german = "Gehe an der Lampe vorbei und warte am Schreibtisch.";
-    building.write("german.toml", format!("name = \"de\"\nreferences = [{german:?}]"));
     let episodes = ["--episodes", EPISODES, "--limit", "1", "--style", "r2r", "--no-pictures"];
     let told = |out: &str, more: &[&str]| building.generate(out, &[&episodes[..], more].concat()).err;
     assert_eq!(told("plain", &[]), "");
@@ -112,7 +110,6 @@ fn settings_without_effect_are_named() {
         ("a", ["--hops", "2..3"], "--hops and --metres have no effect with --episodes"),
         ("b", ["--target", "free"], "--target free has no effect, because no style of this run ends in a task"),
         ("c", ["--finish", "nobody"], "these settings have no effect: --finish"),
-        ("d", ["--style", "german.toml"], "the reference texts of style de are in German"),
     ] {
         let told = told(out, &more);
         assert!(told.contains("warning: ") && told.contains(word), "{more:?}: {told}");
