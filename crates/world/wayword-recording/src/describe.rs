@@ -92,13 +92,37 @@ impl RecordingDescription {
         Ok(described)
     }
 
-    /// Reads the description of a file from the same folder.
+    /// Reads the description of a file: `NAME.toml` for `NAME.mp4`, and `recording.toml` in the same folder for what that leaves open.
     ///
     /// # Errors
     /// As [`RecordingDescription::read`].
-    #[cfg(feature = "video")]
+    #[cfg(any(feature = "mcap", feature = "video"))]
     pub(crate) fn read_beside(recording: &Path) -> Result<Self, PlatformError> {
-        Self::read(&Self::file_beside(recording))
+        let [own, of_folder] = Self::files_beside(recording);
+        Ok(Self::read(&own)?.filled_from(Self::read(&of_folder)?))
+    }
+
+    /// This description, with the settings of another where it has none.
+    #[cfg(any(feature = "mcap", feature = "video"))]
+    fn filled_from(self, other: Self) -> Self {
+        Self {
+            horizontal_fov_deg: self.horizontal_fov_deg.or(other.horizontal_fov_deg),
+            camera: self.camera.or(other.camera),
+            poses: self.poses.or(other.poses),
+            world: self.world.or(other.world),
+            orientation: self.orientation.or(other.orientation),
+            mount_deg: self.mount_deg.or(other.mount_deg),
+            clock: self.clock.or(other.clock),
+            part: self.part.or(other.part),
+            quaternion: self.quaternion.or(other.quaternion),
+            transform: self.transform.or(other.transform),
+            unit: self.unit.or(other.unit),
+            angle_unit: self.angle_unit.or(other.angle_unit),
+            pose_time_offset_s: self.pose_time_offset_s.or(other.pose_time_offset_s),
+            pictures_per_s: self.pictures_per_s.or(other.pictures_per_s),
+            interval_m: self.interval_m.or(other.interval_m),
+            interval_s: self.interval_s.or(other.interval_s),
+        }
     }
 
     /// The same description, for a recording whose poses are not in a file of their own.
@@ -123,11 +147,10 @@ impl RecordingDescription {
         }
     }
 
-    /// The path of a file's description: `NAME.toml` for `NAME.mp4` if it exists, else `recording.toml` in the same folder.
+    /// The paths of a file's descriptions: `NAME.toml` for `NAME.mp4`, and `recording.toml` in the same folder.
     #[cfg(any(feature = "mcap", feature = "video"))]
-    pub(crate) fn file_beside(recording: &Path) -> PathBuf {
-        let same_stem_file = recording.with_extension("toml");
-        if same_stem_file.is_file() { same_stem_file } else { recording.with_file_name(FOLDER_FILE) }
+    pub(crate) fn files_beside(recording: &Path) -> [PathBuf; 2] {
+        [recording.with_extension("toml"), recording.with_file_name(FOLDER_FILE)]
     }
 
     /// The axes of poses: the user's settings, and for the others `usual`, those of the format. A world that has a body of its own
@@ -202,5 +225,16 @@ mod tests {
             RecordingDescription::read(Path::new("/nowhere/recording.toml")).unwrap(),
             RecordingDescription::default()
         );
+    }
+
+    #[cfg(any(feature = "mcap", feature = "video"))]
+    #[test]
+    fn settings_of_the_folder_fill_those_of_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("walk.toml"), "poses = \"walk.tum\"\ninterval_m = 2").unwrap();
+        std::fs::write(folder.path().join("recording.toml"), "pose_time_offset_s = -3\ninterval_m = 1").unwrap();
+        let described = RecordingDescription::read_beside(&folder.path().join("walk.mp4")).unwrap();
+        assert_eq!(described.poses.as_deref(), Some("walk.tum"));
+        assert_eq!((described.interval_m, described.pose_time_offset_s), (Some(2.0), Some(-3.0)));
     }
 }

@@ -5,7 +5,7 @@ use crate::describe::RecordingDescription;
 use crate::{
     file_kind::{self, RecordedFileKind, UnreadRecordings},
     folder::{PICTURE_KINDS, PictureFolder, is_unread_picture},
-    names::{PICTURE_FOLDERS, has_ending, is_video_name, scene_id_for_path, sorted_entries},
+    names::{PICTURE_FOLDERS, has_ending, is_video_name, scene_id_for_path, sorted_entries, unknown_scene},
     reel::{Recording, RecordingSource},
     shelf::RecordingShelf,
 };
@@ -45,7 +45,11 @@ pub(crate) fn open_source(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Re
                 None => sources.push(Box::new(folder) as Box<dyn RecordingSource>),
             },
             Ok(Some(RecordingEntry::Other(source))) => sources.push(source),
-            Ok(None) => unknown_entries.push(entry),
+            Ok(None) => match lone_recording(&path.join(&entry)) {
+                Ok(Some(source)) => sources.push(source),
+                Ok(None) => unknown_entries.push(entry),
+                Err(error) => broken.push((entry, error)),
+            },
             Err(error) => broken.push((entry, error)),
         }
     }
@@ -71,7 +75,9 @@ pub(crate) fn open_source(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Re
     }
     for entry in unknown_entries {
         let file = path.join(&entry);
-        if let Some(UnreadRecordings { what, hint }) = file_kind::find_unread(&file, &PICTURE_FOLDERS)? {
+        if file.is_dir() && recording_files(&file)?.len() > 1 {
+            hear(&format!("{entry} is skipped: it holds several recordings itself; give --data {}", file.display()));
+        } else if let Some(UnreadRecordings { what, hint }) = file_kind::find_unread(&file, &PICTURE_FOLDERS)? {
             let why = if file.is_dir() { what } else { format!("it is {what}") };
             hear(&format!("{entry} is skipped: {why}, which cannot be read as it is; {hint}"));
         }
@@ -90,6 +96,52 @@ pub(crate) fn open_source(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Re
         return Err(files::file_error(path, reason, "give one of them another name, or name the file itself"));
     }
     Ok(Box::new(RecordingShelf { sources }))
+}
+
+/// The recording in a folder that holds one video or MCAP file: a robot writes a folder for each of its walks. The folder names it, because
+/// the files in several such folders are often called alike.
+fn lone_recording(folder: &Path) -> Result<Option<Box<dyn RecordingSource>>, PlatformError> {
+    if !folder.is_dir() {
+        return Ok(None);
+    }
+    let names = recording_files(folder)?;
+    let [name] = names.as_slice() else { return Ok(None) };
+    let Some(RecordingEntry::Other(inner)) = open_one(&folder.join(name))? else { return Ok(None) };
+    Ok(Some(Box::new(FolderRecording { scene: scene_id_for_path(folder)?, inner })))
+}
+
+/// The names of the video and MCAP files in a folder.
+fn recording_files(folder: &Path) -> Result<Vec<String>, PlatformError> {
+    let is_shown = |name: &String| !name.starts_with('.') && is_recording_file(name);
+    Ok(sorted_entries(folder)?.into_iter().filter(is_shown).collect())
+}
+
+/// The only recording of a folder, under the name of the folder.
+struct FolderRecording {
+    scene: SceneId,
+    inner: Box<dyn RecordingSource>,
+}
+
+impl FolderRecording {
+    /// The recording's own name.
+    fn own_name(&self, scene: &SceneId) -> Result<SceneId, PlatformError> {
+        let own = self.inner.scenes().into_iter().next().filter(|_| *scene == self.scene);
+        own.ok_or_else(|| unknown_scene(scene, &self.scenes()))
+    }
+}
+
+impl RecordingSource for FolderRecording {
+    fn scenes(&self) -> Vec<SceneId> {
+        vec![self.scene.clone()]
+    }
+
+    fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError> {
+        self.inner.open(&self.own_name(scene)?)
+    }
+
+    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        self.inner.files(&self.own_name(scene)?)
+    }
 }
 
 /// The error for a path that is no recording and no folder.
@@ -224,8 +276,9 @@ fn open_video(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
 
 #[cfg(feature = "mcap")]
 fn open_mcap(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
-    let file = RecordingDescription::file_beside(path);
-    let described = RecordingDescription::read(&file)?.refuse_pose_file_settings(&file)?;
+    let [own, of_folder] = RecordingDescription::files_beside(path);
+    let described = RecordingDescription::read_beside(path)?;
+    let described = described.refuse_pose_file_settings(if own.is_file() { &own } else { &of_folder })?;
     Ok(Box::new(crate::mcap::McapFile::open(path, described)?))
 }
 
@@ -279,6 +332,25 @@ mod tests {
         std::fs::write(shelf.path().join("._a.mp4"), "").unwrap();
         let scenes = open_source(shelf.path(), &|_| ()).map(|source| source.scenes()).unwrap();
         assert_eq!(scenes.iter().map(SceneId::as_str).collect::<Vec<_>>(), ["a", "b"]);
+    }
+
+    #[cfg(feature = "mcap")]
+    #[test]
+    fn open_names_a_folder_with_one_file_after_the_folder() {
+        let made = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/mcap/poses_zstd.mcap");
+        let shelf = shelf(&["run_1/rgb/1.png", "several/a.mcap", "several/b.mcap"]);
+        for run in ["run_2", "run_3"] {
+            std::fs::create_dir(shelf.path().join(run)).unwrap();
+            std::fs::copy(&made, shelf.path().join(run).join("front.mcap")).unwrap();
+        }
+        let heard = std::cell::RefCell::new(Vec::new());
+        let source = open_source(shelf.path(), &|line| heard.borrow_mut().push(line.to_owned())).unwrap();
+        let scenes = source.scenes();
+        assert_eq!(scenes.iter().map(SceneId::as_str).collect::<Vec<_>>(), ["run_1", "run_2", "run_3"]);
+        assert!(heard.borrow()[0].starts_with("several is skipped: it holds several recordings itself"), "{heard:?}");
+        assert!(source.open(&scenes[1]).is_ok());
+        assert!(source.files(&scenes[1]).unwrap()[0].ends_with("run_2/front.mcap"));
+        assert!(source.open(&SceneId::new("front").unwrap()).is_err());
     }
 
     #[test]

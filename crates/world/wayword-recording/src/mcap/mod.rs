@@ -240,7 +240,7 @@ impl RecordingSource for McapFile {
         let described = if self.path.is_dir() {
             vec![self.path.join(describe::FOLDER_FILE), self.path.join(bag::METADATA_FILE)]
         } else {
-            vec![RecordingDescription::file_beside(&self.path)]
+            RecordingDescription::files_beside(&self.path).to_vec()
         };
         Ok(names::plain_files(self.files.iter().cloned().chain(described)))
     }

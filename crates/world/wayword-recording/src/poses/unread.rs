@@ -55,8 +55,8 @@ pub(crate) fn describe_unread(data: &Path, files: &[PathBuf]) -> Vec<String> {
                 format!("{} looks like poses and is not read; give the folder above as --data", file.display())
             } else {
                 format!(
-                    "{name} looks like poses and is not read; if it holds those of the camera, name it in {toml}: \
-                     poses = \"{name}\""
+                    "{name} looks like poses and is not read; if it holds those of the camera or of the robot, name it in {toml}: \
+                     poses = \"{name}\" (for a robot's base, add orientation = \"robot\")"
                 )
             });
         }

@@ -66,8 +66,9 @@ impl RecordingSource for FilmFile {
         if *scene != self.scene {
             return Err(unknown_scene(scene, &self.scenes()));
         }
-        let own_files = [self.path.clone(), RecordingDescription::file_beside(&self.path)];
-        Ok(plain_files(own_files.into_iter().chain(poses::find_pose_file(&self.path, &self.described)?)))
+        let described = RecordingDescription::files_beside(&self.path);
+        let own_files = [self.path.clone()].into_iter().chain(described);
+        Ok(plain_files(own_files.chain(poses::find_pose_file(&self.path, &self.described)?)))
     }
 }
 
