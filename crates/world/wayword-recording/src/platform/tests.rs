@@ -189,7 +189,7 @@ fn files_of_a_video_include_its_poses_and_description() {
         std::fs::write(shelf.path().join(name), "").unwrap();
     }
     let (platform, ..) = open(&shelf);
-    assert_eq!(files(&platform, "walk"), ["walk.csv", "walk.mp4", "walk.toml"]);
+    assert_eq!(files(&platform, "walk"), ["recording.toml", "walk.csv", "walk.mp4", "walk.toml"]);
     assert_eq!(files(&platform, "hall"), ["hall.mp4", "recording.toml"]);
     assert_eq!(files(&platform, "bag"), ["bag.mcap", "recording.toml"]);
 }
