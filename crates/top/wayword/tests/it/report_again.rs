@@ -35,7 +35,7 @@ fn an_edited_text_is_checked_again_and_comes_first() {
     let ran = building.wayword(&["report", "--run", "run", "--json"]);
     assert_eq!((ran.code, &ran.json()["wrong"]), (Some(0), &json!(1)), "{ran:?}");
     let row = first_row(&building);
-    for told in ["✗ fails now", "changed after the run; checked again", "grand piano"] {
+    for told in ["✗ fails a check now", "changed after the run; checked again", "grand piano"] {
         assert!(row.contains(told), "{told}: {row}");
     }
 
@@ -48,7 +48,7 @@ fn an_edited_text_is_checked_again_and_comes_first() {
     write_lines(&building, &edited);
     building.wayword(&["report", "--run", "run"]);
     let row = first_row(&building);
-    assert!(row.contains("✗ fails now") && !row.contains("changed after the run"), "{row}");
+    assert!(row.contains("✗ fails a check now") && !row.contains("changed after the run"), "{row}");
 }
 
 #[test]
