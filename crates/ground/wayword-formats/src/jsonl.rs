@@ -4,7 +4,11 @@
 //! core instruction: `text`, `style`, `mentions`, `verdict`, `findings`, `provenance`, and `ambiguity` where it is
 //! known. `path_id` names the path in its dataset, where several items may share it. Unknown fields are kept.
 
-use crate::{DatasetItem, Episode, FormatError, input, item, limits, output, read_tally::ReadTally};
+use crate::{
+    DatasetItem, Episode, FormatError, input, item, limits, output,
+    read_tally::ReadTally,
+    text_hash::{HASH_FIELD, hash_of_text},
+};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 use std::{
@@ -199,6 +203,16 @@ fn take_instruction(item: &mut DatasetItem<'_>, frames: usize) -> Result<Instruc
         ambiguity: item.take_optional("ambiguity").map(|value| item.parse_value("ambiguity", value)).transpose()?,
         provenance: take_parsed(item, "provenance")?,
     };
+    if instruction.text.trim().is_empty() {
+        return Err(item.wrong_field("text", "it is empty", "write the instruction, or take the line away"));
+    }
+    let written = item.peek_field(HASH_FIELD).and_then(Value::as_str);
+    if written.is_some_and(|written| written != hash_of_text(&instruction.text)) {
+        // Somebody edited the text, so what points into it may point at other words.
+        instruction.mentions.clear();
+        instruction.parts.clear();
+        instruction.findings.iter_mut().for_each(|finding| finding.span = None);
+    }
     let fits = |[from, to]: [usize; 2]| instruction.text.get(from..to).is_some();
     let (mentions, findings) = (&instruction.mentions, &instruction.findings);
     if let Some(index) = mentions.iter().position(|mention| !fits(mention.span) || mention.frame >= frames) {
@@ -251,7 +265,7 @@ impl DatasetMembers {
             return Err(RecordClash {
                 field: "path",
                 problem,
-                hint: "merge only runs whose paths have different names",
+                hint: "merge only runs whose paths have different names: the seed of a run is in the names of its random paths (--seed)",
             });
         }
         if self.texts.contains(&text_key(record)) {

@@ -58,6 +58,7 @@ mod strict_json;
 pub mod submission;
 #[cfg(feature = "parquet")]
 pub mod table;
+pub mod text_hash;
 pub mod trajectories;
 pub mod vlnce;
 pub mod vlnce_actions;

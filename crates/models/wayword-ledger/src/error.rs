@@ -100,7 +100,7 @@ pub enum LedgerError {
         reason: &'static str,
     },
     /// A line of a recording cannot be read.
-    #[error("{}: line {line}: {reason}\nhint: record the calls again with --record, or use the version that recorded them", path.display())]
+    #[error("{}: line {line}: {reason}\nhint: give a file that --record or `wayword ledger export` wrote; if it is one, use the version that wrote it, or record again", path.display())]
     Recording {
         /// The file.
         path: PathBuf,

@@ -36,6 +36,9 @@ impl TextTokenizer {
         if metadata.len() > MAX_TOKENIZER_BYTES {
             return Err(wrong(format!("it is too long for a tokenizer: {} bytes", metadata.len())));
         }
+        if file.extension().is_none_or(|ending| ending != "json") {
+            return Err(wrong("it is no tokenizer.json; a vocabulary alone does not say how words are cut".to_owned()));
+        }
         let read = || tokenizers::Tokenizer::from_file(&file).map_err(|error| error.to_string());
         let mut inner = run_decoder(read).map_err(wrong)?;
         inner.with_padding(None);

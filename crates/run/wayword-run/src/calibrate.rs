@@ -7,13 +7,17 @@ use crate::{
     own_format,
     people::{ClaimSample, LabelNames, belongs_to_case, is_known, read_people_walks, sample_claims},
     platforms,
-    settings::{AskedPlatform, AskedSettings},
-    written_files::{find_output_place, write_file},
+    settings::{AskedPlatform, AskedSettings, RolePlayer},
+    written_files::{find_output_place, refuse_over_input, write_file},
 };
 use clap::Args;
 use serde::Serialize;
-use std::{collections::BTreeMap, path::PathBuf};
+use std::{
+    collections::BTreeMap,
+    path::{Path as FilePath, PathBuf},
+};
 use wayword_checks::open::{Calibration, ClaimCase, ClaimObservation, SilenceWeights};
+use wayword_formats::{DatasetFormat, detect_format, jsonl};
 
 /// `wayword calibrate`.
 #[derive(Debug, Args)]
@@ -39,6 +43,8 @@ pub struct CalibrateArgs {
 /// When the platform cannot be opened, the texts cannot be read, or the file cannot be written.
 pub fn run_calibrate(args: &CalibrateArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     let output = &output.beside_data(&find_output_place(&args.out)?);
+    refuse_over_input("--out", &args.out, [args.from.clone()])?;
+    refuse_own_texts(&args.from)?;
     let platform = platforms::open_platform(&AskedSettings::from(args.platform.clone()).resolve()?)?;
     let (walks, surveys) = read_people_walks(platform.as_ref(), &args.from)?;
     let texts = walks.iter().map(|walk| walk.texts.len()).sum();
@@ -66,6 +72,23 @@ pub fn run_calibrate(args: &CalibrateArgs, output: &CommandOutput) -> Result<Exi
     let summary = CalibrationSummary { names: calibration.names.len(), texts, claims: observed.len() };
     output.print_result(&summary, format!("{} names from {} claims of {texts} texts", summary.names, summary.claims));
     Ok(Exit::Done)
+}
+
+/// Refuses texts that rules wrote from labels: labels would be compared with themselves.
+fn refuse_own_texts(file: &FilePath) -> Result<(), CommandError> {
+    if detect_format(file)? != DatasetFormat::Wayword {
+        return Ok(());
+    }
+    let records = jsonl::read_records(file)?;
+    if records.iter().any(|record| record.instruction.provenance.writer == RolePlayer::Rules.as_str()) {
+        let problem =
+            format!("{}: rules wrote its texts from labels, so they say nothing about people's words", file.display());
+        return Err(CommandError::usage(
+            problem,
+            "give texts that people wrote, such as R2R's or REVERIE's train split",
+        ));
+    }
+    Ok(())
 }
 
 /// The numbers that the command prints: of fitted names, of texts, and of claims that the labels lack.

@@ -26,6 +26,11 @@ pub fn read_settings(path: Option<&Path>) -> Result<AskedSettings, CommandError>
             "write lines as in paths = 20, with the names of `wayword generate --help`",
         ));
     }
+    let is_style = |table: &toml::Table| table.contains_key("references") || table.contains_key("constraints");
+    if text.parse::<toml::Table>().is_ok_and(|table| is_style(&table)) {
+        let problem = format!("{}: it is a style, and --config takes settings", path.display());
+        return Err(CommandError::usage(problem, format!("give it as --style {}", path.display())));
+    }
     toml::from_str(&text).map_err(|error| {
         let told = error.to_string();
         let problem = format!("{}: {}", path.display(), plain_toml_message(&told));

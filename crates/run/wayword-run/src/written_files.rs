@@ -24,7 +24,20 @@ pub fn write_file(out: &Path, bytes: impl AsRef<[u8]>) -> Result<(), CommandErro
 /// # Errors
 /// When the name leads to a folder, a socket or a block device.
 pub fn find_output_place(out: &Path) -> Result<OutputPlace, CommandError> {
+    refuse_tilde(out)?;
     OutputPlace::for_name(out).map_err(CommandError::io(out, "write"))
+}
+
+/// Refuses a name in the home folder that the shell did not replace, as in quotes: it would make a folder that is called `~`.
+fn refuse_tilde(out: &Path) -> Result<(), CommandError> {
+    if out.starts_with("~") && !Path::new("~").exists() {
+        let problem = format!("--out {}: the shell has not replaced the ~ by your home folder", out.display());
+        return Err(CommandError::usage(
+            problem,
+            "write it without quotes, or with $HOME; ./~ is a folder of that name",
+        ));
+    }
+    Ok(())
 }
 
 /// Refuses an output that would take the place of a file that the command reads. `flag` names the output, as in `--out`.
@@ -56,6 +69,7 @@ pub fn expect_output_folder(folder: &Path) -> Result<(), CommandError> {
         let problem = "--out -: this command writes several files, and standard output takes only one";
         return Err(CommandError::usage(problem, "give the name of a folder"));
     }
+    refuse_tilde(folder)?;
     let failed = CommandError::io(folder, "make the folder");
     match fs::metadata(folder) {
         Ok(about) if about.is_dir() => Ok(()),

@@ -6,6 +6,7 @@ use crate::{
     file_kind::{self, RecordedFileKind, UnreadRecordings},
     folder::{PICTURE_KINDS, PictureFolder, is_unread_picture},
     names::{PICTURE_FOLDERS, has_ending, is_video_name, scene_id_for_path, sorted_entries, unknown_scene},
+    photographs::NoPhotographs,
     reel::{Recording, RecordingSource},
     shelf::RecordingShelf,
 };
@@ -25,6 +26,9 @@ const EUROC_FOLDER: &str = "mav0";
 /// Opens a path: one recording, or a folder with several. `hear` gets a line for each file that is skipped.
 pub(crate) fn open_source(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn RecordingSource>, PlatformError> {
     if let Some(found) = open_one(path)? {
+        if let RecordingEntry::Pictures(folder) = &found {
+            hear_of_no_photographs(path, folder.no_photographs(), hear);
+        }
         return Ok(found.into_source());
     }
     if !path.is_dir() {
@@ -57,6 +61,7 @@ pub(crate) fn open_source(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Re
     let is_alone = sources.is_empty() && broken.is_empty();
     for (entry, what, folder) in no_photographs {
         if is_alone {
+            hear_of_no_photographs(&path.join(&entry), Some(what), hear);
             sources.push(Box::new(folder));
         } else {
             hear(&format!("{entry} is skipped: it holds {}, and photographs or a video lie beside it", what.words()));
@@ -96,6 +101,16 @@ pub(crate) fn open_source(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Re
         return Err(files::file_error(path, reason, "give one of them another name, or name the file itself"));
     }
     Ok(Box::new(RecordingShelf { sources }))
+}
+
+/// Says that pictures are no photographs. They are used all the same, because the user named them, and a drawing may look like a mask.
+fn hear_of_no_photographs(path: &Path, found: Option<NoPhotographs>, hear: &dyn Fn(&str)) {
+    if let Some(what) = found {
+        let (path, what) = (path.display(), what.words());
+        hear(&format!(
+            "warning: {path} holds {what}, in which a model sees little; if there are colour pictures, give their folder"
+        ));
+    }
 }
 
 /// The recording in a folder that holds one video or MCAP file: a robot writes a folder for each of its walks. The folder names it, because

@@ -265,7 +265,8 @@ impl Platform for RecordingPlatform {
             let (request, hint) = match opened.motion() {
                 _ if opened.graph.viewpoints().count() < 2 => (
                     format!("2 frames, because it has only {}", opened.graph.viewpoints().count()),
-                    "record while moving, or set a smaller interval_m or interval_s in recording.toml",
+                    "if all poses lie in one place, the camera stood still or the file of poses is another's; else record while moving, or \
+                     set a smaller interval_m or interval_s in recording.toml",
                 ),
                 PathMotion::Known => (
                     format!("{} to {} metres", length_m.start(), length_m.end()),

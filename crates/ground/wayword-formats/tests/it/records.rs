@@ -112,6 +112,25 @@ fn merge_refuses_records_that_cannot_be_together() {
 }
 
 #[test]
+fn what_points_into_a_text_is_dropped_once_somebody_edits_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = records(folder.path(), "house", &[1]);
+    let mut written = jsonl::read_records(&file).unwrap();
+    let text = written[0].instruction.text.clone();
+    add_text_hash(&mut written[0].extra, &text);
+    jsonl::write_records(&file, &written).unwrap();
+    assert_eq!(jsonl::read_records(&file).unwrap()[0].instruction, written[0].instruction);
+    let whole = std::fs::read_to_string(&file).unwrap();
+    assert!(!written[0].instruction.mentions.is_empty());
+    std::fs::write(&file, whole.replace(&text, "Go on.")).unwrap();
+    let edited = &jsonl::read_records(&file).unwrap()[0].instruction;
+    assert_eq!((edited.text.as_str(), edited.mentions.len(), edited.parts.len()), ("Go on.", 0, 0));
+    std::fs::write(&file, whole.replace(&text, " ")).unwrap();
+    let empty = jsonl::read_records(&file).unwrap_err().to_string();
+    assert!(empty.contains("field \"text\": it is empty"), "{empty}");
+}
+
+#[test]
 fn a_record_of_a_later_format_is_refused_with_the_version_that_wrote_it() {
     let folder = tempfile::tempdir().unwrap();
     let file = records(folder.path(), "house", &[1]);

@@ -153,7 +153,11 @@ fn read_recruiter_list(file: &Path) -> Result<(BTreeMap<String, String>, BTreeSe
         })
     };
     let (Some(person), Some(status)) = (column(&PERSON_COLUMN_NAMES), column(&STATUS_COLUMN_NAMES)) else {
-        return Err(wrong("it has no column of participants, or none of their status".to_owned()));
+        let is_by_semicolons = headers.len() == 1 && headers.iter().any(|header| header.contains(';'));
+        return Err(wrong(match is_by_semicolons {
+            true => "semicolons separate its columns, and CSV has commas: save it with commas".to_owned(),
+            false => "it has no column of participants, or none of their status".to_owned(),
+        }));
     };
     let (mut statuses, mut repeated) = (BTreeMap::<String, String>::new(), BTreeSet::new());
     for row in reader.records() {

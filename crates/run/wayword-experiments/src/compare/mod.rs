@@ -101,7 +101,7 @@ pub fn run_comparison(args: &CompareArgs, output: &CommandOutput) -> Result<Exit
     let judge = WalkJudge::new(&config, &items, &demands, args.rule.map(Into::into))?;
     if let Some(item) = judge.without_object.filter(|_| args.rule.is_none()) {
         output.say(format_args!(
-            "success is judged by distance, because item {item} names no object whose place is known"
+            "success is judged by distance, because not every item names an object whose place is known, such as {item}"
         ));
     }
     let agents = WalkingAgent::all_for_comparison(&config, args.prior.unwrap_or_default());

@@ -112,9 +112,12 @@ pub(super) fn measure_texts(
         not_judged += texts.len() - 1;
         items.push(CaptionItem { id, cluster, text, references: references.iter().collect() });
     }
-    let diversity_of_side = |items: &[(&str, &str, Vec<NumberedText>)]| {
+    // A set with more texts has fewer new words in each, so only the items of both sets are compared.
+    let is_in_both = |id: &str| items.binary_search_by_key(&id, |item| item.id).is_ok();
+    let diversity_of_side = |side: &[(&str, &str, Vec<NumberedText>)]| {
+        let both = side.iter().filter(|(id, ..)| is_in_both(id));
         let all: Vec<(&str, &NumberedText)> =
-            items.iter().flat_map(|(_, path, texts)| texts.iter().map(move |text| (*path, text))).collect();
+            both.flat_map(|(_, path, texts)| texts.iter().map(move |text| (*path, text))).collect();
         measure_diversity(&all, args.seed)
     };
     let sets = CaptionRowSets::from_items(&items, args.seed);

@@ -43,6 +43,10 @@ pub fn run_similarity(args: &Args, output: &CommandOutput) -> Result<Exit, Comma
         return Err(CommandError::usage("--clip is a metric, and none are asked for", "give --metrics too"));
     }
     let sides = [(args.a.as_str(), &a), (args.b.as_str(), &b)];
+    let words = |set: &TextSet| -> Vec<Vec<String>> { set.values().map(|item| item.texts.clone()).collect() };
+    if words(&a) == words(&b) {
+        output.say("warning: A and B are the same texts, so the figures are as high as they can be");
+    }
     if args.metrics {
         language::refuse_other_languages(sides, true, output)?;
         let report = metrics::measure_texts(args, (&a, &b), output)?;

@@ -73,7 +73,11 @@ fn missing_paths(asked: u32, routes: usize, has_practice: bool) -> String {
     } else {
         "none for practice".to_owned()
     };
-    format!("--items {asked}: only {fit} {verb} a text of every condition: {practice}")
+    let wanted = asked + u32::from(has_practice);
+    format!(
+        "--items {asked}: only {fit} {verb} a text of every condition: {practice}; a run of {wanted} or more such paths, and another --out, \
+         give {asked}"
+    )
 }
 
 pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), CommandError> {

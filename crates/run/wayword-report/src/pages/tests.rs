@@ -422,9 +422,12 @@ fn a_text_that_fails_when_it_is_checked_again_comes_first_with_the_reason() {
     assert!(written.to_string().ends_with("; 1 text of the dataset fails a check"), "{written}");
     let page = fs::read_to_string(out).unwrap();
     let row = page.split("<li class=\"row ").nth(1).unwrap();
-    for told in
-        ["wrong\" data-kinds=\"wrong look\"", "✗ fails a check now", "item-2", "no frame of the path shows &quot;mirror&quot;"]
-    {
+    for told in [
+        "wrong\" data-kinds=\"wrong look\"",
+        "✗ fails a check now",
+        "item-2",
+        "no frame of the path shows &quot;mirror&quot;",
+    ] {
         assert!(row.contains(told), "{told}: {row}");
     }
     assert!(row.contains("<span class=\"flaw\">mirror</span>"), "{row}");

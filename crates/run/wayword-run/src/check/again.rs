@@ -10,7 +10,7 @@ use super::{
 use crate::{
     error::CommandError,
     output::CommandOutput,
-    run_folder::{file, hash_of_text, lines, read_run_settings},
+    run_folder::{file, lines, read_run_settings},
 };
 use serde::Deserialize;
 use std::{
@@ -18,6 +18,7 @@ use std::{
     path::Path as FilePath,
 };
 use wayword_core::TextProvenance;
+use wayword_formats::text_hash::hash_of_text;
 
 /// The texts of a run as they were checked again.
 #[derive(Debug, Default)]

@@ -288,6 +288,7 @@ impl<'a> TextChecker<'a> {
             // The texts of a run are checked as they were when it wrote them.
             let mut checked =
                 if self.is_own_run { check_own_text(&text.words, subject) } else { check_text(&text.words, subject) };
+            self.styles.leave_out_unasked(text, &mut checked);
             if let Some(follower) = &follower {
                 follower.add_to(&mut checked);
             }

@@ -112,6 +112,8 @@ pub struct CheckedText {
 pub struct DoubtedText {
     /// The id of its path.
     pub path: String,
+    /// Its name in the file, as in a submission.
+    pub name: String,
     /// The style that it was written in, if the file names it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub style: Option<String>,
@@ -130,8 +132,9 @@ pub struct DoubtedText {
 
 impl DoubtedText {
     fn from_checked(text: &CheckedText, TextDoubts { doubts, unfollowed }: TextDoubts) -> Self {
-        let (path, style, words) = (text.path.clone(), text.style.clone(), text.text.clone());
-        Self { path, style, text: words, verdict: text.verdict, world: text.world, unfollowed, doubts }
+        let (path, name) = (text.path.clone(), text.name.clone());
+        let (style, words) = (text.style.clone(), text.text.clone());
+        Self { path, name, style, text: words, verdict: text.verdict, world: text.world, unfollowed, doubts }
     }
 
     /// Whether it has a doubt of this grade.

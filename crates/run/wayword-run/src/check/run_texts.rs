@@ -143,6 +143,7 @@ fn check_by_captions(
             let subject = subject.with_copies(&check_style.copies);
             let subject = CheckSubject { tag: text.tag.as_deref(), turns: follower.turns, ..subject };
             let mut checked = check_own_text(&text.words, subject);
+            styles.leave_out_unasked(text, &mut checked);
             if !how.without_route {
                 follower.add_to(&mut checked);
             }

@@ -7,8 +7,8 @@ use crate::{
     styles::{self, MeasuredStyle},
 };
 use std::sync::Arc;
-use wayword_checks::ReferenceRuns;
-use wayword_core::InstructionStyle;
+use wayword_checks::{ReferenceRuns, TextFindings};
+use wayword_core::{CheckKind, InstructionStyle, Verdict};
 use wayword_synthesis::style::{built_in, built_in_names, hash_style};
 
 /// The styles that texts are checked against.
@@ -70,6 +70,14 @@ impl CheckStyles {
     /// The style of a text, or one without constraints.
     pub(super) fn style_or_any(&self, text: &FileText) -> &CheckStyle {
         self.find_style(text).unwrap_or(&self.any)
+    }
+
+    /// Leaves out the checks that passed because no style is known, which sets what they check.
+    pub(super) fn leave_out_unasked(&self, text: &FileText, checked: &mut TextFindings) {
+        if self.find_style(text).is_none() {
+            let is_of_style = |check| matches!(check, CheckKind::Form | CheckKind::Leak);
+            checked.findings.retain(|finding| !is_of_style(finding.check) || finding.verdict != Verdict::Pass);
+        }
     }
 
     /// The style that was asked for, else the one that the text names, else the only one of its run.

@@ -5,11 +5,11 @@ use crate::{
     item::RunItem,
     pictures,
     pipeline::{MadeItem, RunPlatform},
-    run_folder::{FailedItem, PathMap, RejectedText, RunFolder, WalkRecord, add_text_hash, extra_fields},
+    run_folder::{FailedItem, PathMap, RejectedText, RunFolder, WalkRecord, extra_fields},
     styles::MeasuredStyle,
 };
 use wayword_core::FailureKind;
-use wayword_formats::jsonl::InstructionRecord;
+use wayword_formats::{jsonl::InstructionRecord, text_hash::add_text_hash};
 use wayword_synthesis::repair::WritingOutcome;
 use wayword_world::mask_credentials;
 

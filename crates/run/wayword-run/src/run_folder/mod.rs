@@ -16,7 +16,6 @@ mod line_check;
 pub mod lines;
 mod record;
 mod setting_differences;
-mod text_hash;
 mod world_data;
 
 use crate::{
@@ -44,8 +43,6 @@ pub use line_check::{refuse_edited_lines, refuse_repeated_lines, refuse_torn_lin
 pub use record::{FailedItem, PathMap, RejectedText, WalkRecord};
 pub use record::{extra_fields, number_of_text, text_file_name, text_label, text_name};
 pub use setting_differences::setting_differences;
-pub(crate) use text_hash::add_text_hash;
-pub use text_hash::hash_of_text;
 pub use world_data::WorldData;
 pub(crate) use world_data::scene_hashes;
 

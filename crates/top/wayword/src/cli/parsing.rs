@@ -91,6 +91,8 @@ fn with_words(error: &Error, more: &str) -> Error {
     let text = error.render().to_string();
     let text = text.strip_prefix("error: ").unwrap_or(&text);
     let (first, rest) = text.split_once('\n').unwrap_or((text, ""));
+    // Clap takes an unknown flag for a value that begins with hyphens.
+    let rest: String = rest.split_inclusive('\n').filter(|line| !line.contains("tip: to pass '")).collect();
     // Rust's words about a number add nothing.
     let first = match std::error::Error::source(error) {
         Some(source) => first.strip_suffix(&format!(": {source}")).unwrap_or(first),

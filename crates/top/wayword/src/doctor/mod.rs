@@ -172,7 +172,9 @@ impl PlatformExamination {
             RolePlayer::Model(name) if !picture => {
                 Some(format!("{name} needs pictures: add them to the data folder, or use --see labels"))
             }
-            RolePlayer::Labels if !labels => Some("name a model that sees: --see provider/model".to_owned()),
+            RolePlayer::Labels if !labels => {
+                Some("it is read, but without labels a model has to see: name one with --see provider/model".to_owned())
+            }
             _ => None,
         };
         let state = if hint.is_some() { DoctorGrade::Problem } else { DoctorGrade::Ok };

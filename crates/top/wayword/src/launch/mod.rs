@@ -59,6 +59,7 @@ fn launch_slurm(args: &LaunchSlurm, output: &CommandOutput) -> Result<Exit, Comm
 
 fn launch_kubernetes(args: &LaunchKubernetes, output: &CommandOutput) -> Result<Exit, CommandError> {
     warn_of_idle_workers(&args.arguments, args.workers, output)?;
+    refuse_unshared_folder(args)?;
     let secret = |typed: &str, flag: &str| {
         let (secret, key) = typed.split_once('/').ok_or_else(|| {
             CommandError::usage(format!("{flag}: there is no slash between the secret and its key"), "write SECRET/KEY")
@@ -125,6 +126,22 @@ fn parse_worker_command(arguments: &[String]) -> Result<GenerateArgs, CommandErr
         args.asked.clone().or_file(file).resolve()?;
     }
     Ok(*args)
+}
+
+/// Refuses pods that would write into their own file systems, which end with them.
+fn refuse_unshared_folder(args: &LaunchKubernetes) -> Result<(), CommandError> {
+    let out = parse_worker_command(&args.arguments)?.out;
+    let Some(out) = out.filter(|out| !out.to_string_lossy().contains("://")) else { return Ok(()) };
+    let problem = match &args.shared_claim {
+        None => {
+            "the workers share no folder, so each would write into its own file system, which ends with it".to_owned()
+        }
+        Some(shared) if !out.starts_with(&shared.right) => {
+            format!("--out {} is not in the folder that the workers share, {}", out.display(), shared.right)
+        }
+        Some(_) => return Ok(()),
+    };
+    Err(CommandError::usage(problem, "give --shared-claim CLAIM=/DIR, and the workers --out /DIR/NAME"))
 }
 
 /// Warns if the run has fewer chunks than workers, as far as this machine can know.

@@ -61,7 +61,7 @@ pub(crate) fn run_ledger(args: &Args, output: &CommandOutput) -> Result<Exit, Co
             let rows = if *changed { ledger.prune_changed()? } else { ledger.prune_calls(&filter)? };
             let done = LedgerOutcome { ledger: path.display().to_string(), rows };
             let consequence = if rows == 0 {
-                "the ledger holds none that match"
+                "the ledger holds none that match (--model takes a whole name, as `wayword ledger show` prints it)"
             } else {
                 "a run that needs them again pays for them again"
             };

@@ -137,6 +137,30 @@ fn folder_with_files_of_the_user_takes_no_output() {
 }
 
 #[test]
+fn input_of_another_kind_is_told_where_it_belongs() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    building.write("mine.toml", "name = \"mine\"\nreferences = [\"Walk past the lamp. Wait at the desk.\"]");
+    let calibrate =
+        |from: &'static str, out: &'static str| [&["calibrate", "--from", from, "--out", out], &WORLD[..]].concat();
+    let pods = ["launch", "kubernetes", "--workers", "2", "--image", "i"];
+    let work = ["--", "generate", "--paths", "9", "--out", "/shared/x"];
+    let claimed = [&pods[..], &["--shared-claim", "runs=/other"]].concat();
+    refuse_all(
+        &building,
+        &[
+            (&calibrate("run/instructions.jsonl", "c.toml"), &["rules wrote its texts from labels", "people wrote"]),
+            (&calibrate(EPISODES, EPISODES), &["--out would overwrite", "which this command reads"]),
+            (&["doctor", "--config", "mine.toml"], &["it is a style", "--style mine.toml"]),
+            (&["generate", "--paths", "1", "--out", "~/run"], &["has not replaced the ~", "$HOME"]),
+            (&[&pods[..], &work].concat(), &["share no folder", "--shared-claim CLAIM=/DIR"]),
+            (&[&claimed[..], &work].concat(), &["--out /shared/x is not in the folder that the workers share, /other"]),
+        ],
+    );
+    assert!(!building.path("~").exists());
+}
+
+#[test]
 fn command_of_workers_is_read_before_it_is_handed_to_them() {
     let building = Building::new();
     let launch = ["launch", "slurm", "--workers", "4", "--time", "1:00:00", "--"];

@@ -10,6 +10,9 @@ use std::borrow::Cow;
 
 const HEADER_HINT: &str = "the header needs a column `time_s` or `image`, and `x`, `y`, `z`; `qx`, `qy`, `qz`, `qw`, \
                       `yaw_rad` or `heading_deg` say where the camera looks";
+/// Columns of positions on the earth.
+const GPS_COLUMNS: [&str; 5] = ["lat", "latitude", "lon", "lng", "longitude"];
+const GPS_HINT: &str = "latitudes and longitudes are degrees: convert them into metres (UTM, or a local frame), and name the columns `x`, `y`, `z`";
 /// The columns of the file that Stray Scanner (a phone's app) writes beside a video: ARKit's world, and an optical frame.
 const STRAY_COLUMNS: [&str; 9] = ["timestamp", "frame", "x", "y", "z", "qx", "qy", "qz", "qw"];
 
@@ -28,7 +31,11 @@ pub(super) fn read_csv(text: &str) -> Result<PoseRows, String> {
         // Numbers without a header, as in a TUM file.
         return matrix::read_matrix(text);
     }
-    let columns = PoseColumns::from_names(&names).ok_or_else(|| format!("line 1: {HEADER_HINT}"))?;
+    let is_gps = names.iter().any(|name| GPS_COLUMNS.contains(&name.as_str()));
+    let columns = PoseColumns::from_names(&names).ok_or_else(|| match is_gps {
+        true => format!("line 1: {GPS_HINT}"),
+        false => format!("line 1: {HEADER_HINT}"),
+    })?;
     let (mut rows, mut frames) = (Vec::new(), Some(Vec::new()));
     let is_by_semicolons = header.contains(';') && !header.contains(',');
     for (at, line) in lines.filter(|(_, line)| !line.starts_with('#')) {

@@ -284,7 +284,7 @@ fn text_view(text: &DoubtedText) -> Value {
             context! { words, doubt => view }
         })
         .collect();
-    let DoubtedText { path, style, world, unfollowed, .. } = text;
+    let DoubtedText { name, style, world, unfollowed, .. } = text;
     let length = text.text.chars().count();
-    context! { path, style, world, unfollowed, parts, length, kind => text_kind(text), doubts => number }
+    context! { name, style, world, unfollowed, parts, length, kind => text_kind(text), doubts => number }
 }

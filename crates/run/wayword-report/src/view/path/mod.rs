@@ -64,7 +64,7 @@ pub(super) fn write_path(args: &ViewPath, output: &CommandOutput) -> Result<Writ
     let Some((width, height)) = size else {
         let problem =
             format!("path {}: there is no picture for any of its {}", path.id, count_phrase(steps.len(), "frame"));
-        let hint = "`wayword platforms` says which platforms have pictures, and what they need";
+        let hint = "`wayword view map` draws the way without pictures; `wayword platforms` says which platforms have them, and what they need";
         return Err(CommandError::usage(problem, hint));
     };
     if frames < steps.len() {

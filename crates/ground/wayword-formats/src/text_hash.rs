@@ -5,7 +5,7 @@ use sha2::{Digest, Sha256};
 use wayword_core::hex_text;
 
 /// The field of a record that has the hash of its text.
-const HASH_FIELD: &str = "text_hash";
+pub(crate) const HASH_FIELD: &str = "text_hash";
 /// Digits of the hash: 64 bits. It tells of changes, and is no protection against forgery.
 const HASH_DIGITS: usize = 16;
 
@@ -18,7 +18,7 @@ pub fn hash_of_text(text: &str) -> String {
 }
 
 /// Adds the hash of a text to the additional fields of its record.
-pub(crate) fn add_text_hash(extra: &mut JsonMap<String, Value>, text: &str) {
+pub fn add_text_hash(extra: &mut JsonMap<String, Value>, text: &str) {
     extra.insert(HASH_FIELD.to_owned(), hash_of_text(text).into());
 }
 
