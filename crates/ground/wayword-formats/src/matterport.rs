@@ -63,7 +63,7 @@ pub(crate) fn path_field(file: &Path, episode: &Episode) -> Result<Value, Format
         return Err(FormatError::for_document(
             file,
             problem,
-            "only Matterport3D's have them; write it as vlnce, wayword, parquet, hf or steps",
+            "houses have none; write it as vlnce, wayword, parquet, hf or steps",
         ));
     }
     Ok(episode.viewpoints.iter().map(ViewpointId::as_str).collect())

@@ -299,8 +299,7 @@ impl Platform for RecordingPlatform {
                 None,
             ));
         }
-        let described = opened.recording.described.horizontal_fov_deg.map(f64::to_radians);
-        let fov_rad = described.or(opened.recording.horizontal_fov_rad).unwrap_or(USUAL_FOV_RAD);
+        let (fov_rad, _) = view_width(&opened.recording);
         let picture = self.frame_picture(scene, &opened, at)?;
         Ok(View::new(Pose::looking_level(from.pose.position, looking), fov_rad, Some(picture), None))
     }
@@ -413,6 +412,16 @@ fn scale_down(image: &Image) -> Image {
     small.and_then(|small| Image::new(wide, high, small.into_raw()).ok()).unwrap_or_else(|| image.clone())
 }
 
+/// The horizontal field of view of a recording's pictures, radians, and where it is from.
+fn view_width(recording: &Recording) -> (f64, &'static str) {
+    let described = recording.described.horizontal_fov_deg.map(f64::to_radians);
+    match (described, recording.horizontal_fov_rad) {
+        (Some(fov_rad), _) => (fov_rad, "as recording.toml sets it"),
+        (None, Some(fov_rad)) => (fov_rad, "as the recording says"),
+        (None, None) => (USUAL_FOV_RAD, "assumed (horizontal_fov_deg in recording.toml sets it)"),
+    }
+}
+
 /// A line with the number of frames that were chosen, and of those that were left out, with the reasons.
 fn describe_choice(scene: &SceneId, recording: &Recording, choice: &FrameChoice) -> String {
     let count = |count: usize, what: &str| if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") };
@@ -420,7 +429,9 @@ fn describe_choice(scene: &SceneId, recording: &Recording, choice: &FrameChoice)
         0 => String::new(),
         places => format!("; {} left out because {why}", count(places, "possible frame")),
     };
-    let poses = if recording.track.is_some() { "" } else { "; no poses, so no turns and distances" };
+    let poses = if recording.track.is_some() { ", with poses" } else { "; no poses, so no turns and distances" };
+    let (fov_rad, whence) = view_width(recording);
+    let view = format!("; a view of {:.0} degrees, {whence}", fov_rad.to_degrees());
     let without_pose = match choice.without_pose {
         0 => String::new(),
         pictures => format!("; {} without a pose", count(pictures, "picture")),
@@ -435,7 +446,7 @@ fn describe_choice(scene: &SceneId, recording: &Recording, choice: &FrameChoice)
         gaps => format!("; {} that no path crosses", count(gaps, "gap")),
     };
     format!(
-        "recording {scene}: {}, {}{poses}{}{}{}{without_pose}{}{}{}{gaps}",
+        "recording {scene}: {}, {}{poses}{}{}{}{without_pose}{}{}{}{gaps}{view}",
         count(recording.reel.times_s().len(), "picture"),
         count(choice.stops.len(), "frame"),
         poses_that(tally.invalid, "left out because the place or the time is not a valid number"),

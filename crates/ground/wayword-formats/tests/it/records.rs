@@ -12,6 +12,7 @@ use wayword_formats::{
     DatasetFormat,
     jsonl::{self, DatasetSplit, InstructionRecord},
     split_by_scene,
+    text_hash::add_text_hash,
 };
 
 fn records(folder: &Path, platform: &str, scenes: &[usize]) -> PathBuf {

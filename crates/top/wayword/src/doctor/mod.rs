@@ -9,7 +9,7 @@ use crate::doctor::args::DoctorArgs;
 use serde::Serialize;
 use std::fmt;
 use wayword_checks::Evidence;
-use wayword_core::{Path, SceneCondition, ViewGaze};
+use wayword_core::{Path, Platform, SceneCondition, SceneId, ViewGaze};
 use wayword_remote::CheckLevel;
 use wayword_run::{
     calls::ModelCalls,
@@ -23,6 +23,9 @@ use wayword_run::{
     settings_file,
     team::settings_prompts,
 };
+
+/// Most recordings of a folder that are opened.
+const MAX_OPENED_RECORDINGS: usize = 50;
 
 /// The severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -92,7 +95,7 @@ pub(crate) fn run_doctor(args: &DoctorArgs, output: &CommandOutput) -> Result<Ex
         }
         Ok(Some(calls)) => {
             for model in job.settings.roles.model_names() {
-                output.say(format_args!("asking {model} ..."));
+                output.say(format_args!("asking {model} (if no answer comes, it is asked again a few times) ..."));
                 let sees = job.settings.roles.see.is_named(model);
                 findings.extend(calls.check_model(model, sees).into_iter().map(|found| DoctorFinding {
                     state: match found.level {
@@ -127,27 +130,38 @@ fn problem_finding(about: &str, error: &CommandError) -> DoctorFinding {
 /// Opens the platform and takes one view. In a world of another program, turns around there too.
 fn world_findings(settings: &RunSettings) -> Vec<DoctorFinding> {
     let about = format!("platform {}", settings.platform);
-    let look = || -> Result<(PlatformExamination, Option<DoctorFinding>), CommandError> {
+    let look = || -> Result<(PlatformExamination, Vec<DoctorFinding>), CommandError> {
         let platform = platforms::open_platform(settings)?;
         let first_only = RunSettings { limit: Some(1), ..settings.clone() };
         let items = run_items(&first_only, platform.as_ref())?;
         let path = items[0].find_path(settings, platform.as_ref())?;
         let frame = &path.frames[0];
         let view = platform.look_from(&path.scene, frame, ViewGaze::quarter_view(frame.pose.heading))?;
-        let turning = if settings.platform == "process" {
-            turning::turning_finding(platform.as_ref(), &path.scene, frame)?
-        } else {
-            None
+        let more = match settings.platform.as_str() {
+            "process" => turning::turning_finding(platform.as_ref(), &path.scene, frame)?.into_iter().collect(),
+            "recording" => unreadable_recordings(platform.as_ref())?,
+            _ => Vec::new(),
         };
         let picture = view.image.is_some();
         let first_stop = Path { frames: vec![frame.clone()], ..path.clone() };
         let labels = Evidence::from_labels(&first_stop, &[vec![view]]).is_some();
-        Ok((PlatformExamination { scenes: platform.list_scenes()?.len(), picture, labels }, turning))
+        Ok((PlatformExamination { scenes: platform.list_scenes()?.len(), picture, labels }, more))
     };
     match look() {
         Err(error) => vec![problem_finding(&about, &error)],
-        Ok((seen, turning)) => std::iter::once(seen.to_finding(about, settings)).chain(turning).collect(),
+        Ok((seen, more)) => std::iter::once(seen.to_finding(about, settings)).chain(more).collect(),
     }
+}
+
+/// A problem for each recording of a folder that cannot be opened. The first ones are opened; of each that can, the platform says what it
+/// holds.
+fn unreadable_recordings(platform: &dyn Platform) -> Result<Vec<DoctorFinding>, CommandError> {
+    let scenes = platform.list_scenes()?;
+    let problem = |scene: &SceneId| {
+        let error = platform.graph_for_scene(scene).err()?;
+        Some(problem_finding(&format!("recording {scene}"), &error.into()))
+    };
+    Ok(scenes.iter().take(MAX_OPENED_RECORDINGS).filter_map(problem).collect())
 }
 
 /// The result of trying out a platform: the number of scenes, and whether the first view has a picture and labels.

@@ -18,6 +18,7 @@ fn doubt(span: [usize; 2], grade: DoubtGrade, alternatives: &[Option<&str>]) -> 
 fn highlights(text: &str, doubts: Vec<TextDoubt>) -> DoubtHighlights {
     let text = DoubtedText {
         path: "7_<img src=x>".into(),
+        name: "7_<img src=x>".into(),
         style: Some("r2r".into()),
         text: text.into(),
         verdict: Verdict::Unverified,
