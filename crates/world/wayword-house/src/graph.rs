@@ -6,7 +6,7 @@
 
 use super::{
     ground::{GroundCell, HouseGround},
-    model::{House, HouseRoom, RoomKind},
+    model::{HALF_WALL_CM, House, HouseRoom, RoomKind},
     open_line::OpenFloor,
     standing_places::{HouseRoadMap, standing_places},
 };
@@ -63,6 +63,28 @@ pub(super) fn graph_over_places(
     into_graph(ground, &map.nodes, &edges)
 }
 
+/// The lengths of the shortest ways from a place to all over those that are kept, metres (Dijkstra 1959).
+fn lengths_over(joined: &[Vec<(usize, f64)>], start: usize, is_kept: &[bool]) -> Vec<f64> {
+    let mut lengths = vec![f64::INFINITY; joined.len()];
+    lengths[start] = 0.0;
+    // Whole micrometres, because floating-point numbers have no order.
+    let micrometres = |length_m: f64| std::cmp::Reverse((length_m * 1e6) as u64);
+    let mut open = BinaryHeap::from([(micrometres(0.0), start)]);
+    while let Some((length, at)) = open.pop() {
+        if length > micrometres(lengths[at]) {
+            continue;
+        }
+        for (next, length_m) in joined[at].iter().filter(|(next, _)| is_kept[*next]) {
+            let through_m = lengths[at] + length_m;
+            if through_m < lengths[*next] {
+                lengths[*next] = through_m;
+                open.push((micrometres(through_m), *next));
+            }
+        }
+    }
+    lengths
+}
+
 /// The place in the middle between the long walls of a hallway, for a place of it, if one can walk there.
 fn middle_of_hallway(
     house: &House,
@@ -97,16 +119,21 @@ struct WalkableJoins {
 
 impl WalkableJoins {
     fn new(house: &House, ground: &HouseGround, nodes: Vec<(GroundCell, DVec3)>) -> Self {
-        let room =
-            |(cell, place): &(GroundCell, DVec3)| house.rooms.iter().position(|room| is_in_room(room, *cell, *place));
-        let rooms: Vec<Option<usize>> = nodes.iter().map(room).collect();
+        // A place in an opening is in the rooms on both sides of it.
+        let is_at_room = |room: &HouseRoom, cell: GroundCell, place: DVec3| {
+            cell.layer == room.floor as usize && room.outline.inset(-HALF_WALL_CM).holds_m(place.x, place.y)
+        };
+        let rooms_of = |(cell, place): &(GroundCell, DVec3)| -> Vec<usize> {
+            (0..house.rooms.len()).filter(|room| is_at_room(&house.rooms[*room], *cell, *place)).collect()
+        };
+        let rooms: Vec<Vec<usize>> = nodes.iter().map(rooms_of).collect();
         let storeys = house.rooms.iter().map(|room| room.floor as usize + 1).max().unwrap_or_default();
         let floors: Vec<OpenFloor> = (0..storeys).map(|storey| OpenFloor::for_storey(house, storey)).collect();
         let mut joins = Self { joined: vec![Vec::new(); nodes.len()], nodes, floors };
         for a in 0..joins.nodes.len() {
             for b in a + 1..joins.nodes.len() {
                 let (from, to) = (joins.nodes[a], joins.nodes[b]);
-                let is_one_room = rooms[a].is_some() && rooms[a] == rooms[b];
+                let is_one_room = rooms[a].iter().any(|room| rooms[b].contains(room));
                 if from.1.distance(to.1) <= MAX_EDGE_M
                     && (is_nearly_straight(ground, from, to) || is_one_room && is_round_furniture(ground, from.1, to.1))
                     && joins.is_clear(a, b)
@@ -193,31 +220,9 @@ impl WalkableJoins {
         without[gone] = false;
         let neighbours: Vec<(usize, f64)> = self.joined[gone].iter().copied().filter(|(at, _)| is_kept[*at]).collect();
         neighbours.iter().all(|(from, first_m)| {
-            let lengths = self.lengths_from(*from, &without);
+            let lengths = lengths_over(&self.joined, *from, &without);
             neighbours.iter().all(|(to, last_m)| lengths[*to] <= MAX_MERGE_DETOUR_FACTOR * (first_m + last_m))
         })
-    }
-
-    /// The lengths of the shortest ways from a place to all over those that are kept, metres (Dijkstra 1959).
-    fn lengths_from(&self, start: usize, is_kept: &[bool]) -> Vec<f64> {
-        let mut lengths = vec![f64::INFINITY; self.nodes.len()];
-        lengths[start] = 0.0;
-        // Whole micrometres, because floating-point numbers have no order.
-        let micrometres = |length_m: f64| std::cmp::Reverse((length_m * 1e6) as u64);
-        let mut open = BinaryHeap::from([(micrometres(0.0), start)]);
-        while let Some((length, at)) = open.pop() {
-            if length > micrometres(lengths[at]) {
-                continue;
-            }
-            for (next, length_m) in self.joined[at].iter().filter(|(next, _)| is_kept[*next]) {
-                let through_m = lengths[at] + length_m;
-                if through_m < lengths[*next] {
-                    lengths[*next] = through_m;
-                    open.push((micrometres(through_m), *next));
-                }
-            }
-        }
-        lengths
     }
 
     /// The edges among some places, as indices into `kept`, the shortest first. An edge that leads past a third place is left out.
@@ -342,6 +347,32 @@ mod tests {
         assert!(100 * short <= edges, "{short} of {edges}");
         assert!(near > 500 && 100 * arrived >= 93 * near, "{arrived} of {near}");
         assert!(close > 50 && 100 * joined >= 98 * close, "{joined} of {close}");
+    }
+
+    #[test]
+    fn no_way_between_near_places_leads_a_long_way_round() {
+        // In house 704 a dining table stands behind the door of its room.
+        for seed in [704, 701, 702, 703, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9] {
+            let house = generate_house(seed);
+            let ground = HouseGround::for_house(&house);
+            let graph = viewpoint_graph(&house, &ground).unwrap();
+            let feet = |id: &ViewpointId| graph.position_of(id).unwrap() - DVec3::Z * EYE_M;
+            for a in graph.viewpoints() {
+                let over_graph = graph.distances_from(a).unwrap();
+                let is_near = |b: &&ViewpointId| {
+                    *b > a && (feet(*b).z - feet(a).z).abs() < 0.5 && feet(*b).distance(feet(a)) < 4.0
+                };
+                for b in graph.viewpoints().filter(is_near) {
+                    let ground_m = ground.shortest_route(feet(a), feet(b)).unwrap().length_m;
+                    let bound_m = 2.0 * ground_m + 3.0;
+                    assert!(
+                        ground_m > 5.0 || over_graph[b] <= bound_m,
+                        "house {seed}: {a} to {b}: {} m",
+                        over_graph[b]
+                    );
+                }
+            }
+        }
     }
 
     #[test]
