@@ -1,15 +1,9 @@
 //! Checks storeys and stairs: climbs that the path does not make, and storeys that it does not pass.
 
-use super::{findings_or_pass, memory::find_flights, new_finding};
+use super::{findings_or_pass, new_finding};
 use crate::evidence::Evidence;
 use wayword_core::{CheckFinding, CheckKind, ClimbDirection, PathMotion, Verdict};
-use wayword_language::{
-    lexicon::{ThingClass, find_thing},
-    reading::{EventContent, StoreyMention, TextEvent, TextReading},
-};
-
-/// A flight that rises or falls by less than this is no way to another storey, metres.
-const STOREY_M: f64 = 2.0;
+use wayword_language::reading::{EventContent, StoreyMention, TextEvent, TextReading};
 
 /// The findings about the stairs and storeys of a text: a pass if all of them fit the path.
 pub(super) fn check_floors(reading: &TextReading, evidence: &Evidence) -> Vec<CheckFinding> {
@@ -31,24 +25,6 @@ pub(super) fn check_floors(reading: &TextReading, evidence: &Evidence) -> Vec<Ch
         (verdict != Verdict::Pass).then(|| new_finding(CheckKind::Floors, verdict, reason, Some(event.span)))
     });
     findings_or_pass(CheckKind::Floors, stairs.chain(wrong_floors(reading, evidence)).collect())
-}
-
-/// A flight of stairs from one storey to another that a text about the way leaves out altogether.
-pub(super) fn find_untold_flight(reading: &TextReading, evidence: &Evidence) -> Option<CheckFinding> {
-    let names_climb = |event: &TextEvent| match &event.what {
-        EventContent::Climb(_) | EventContent::Steps(_) | EventContent::Storey(_) | EventContent::Floor(_) => true,
-        EventContent::Place(place) => find_thing(&place.name).is_some_and(|thing| thing.class == ThingClass::Stairs),
-        _ => false,
-    };
-    if reading.events.iter().any(names_climb) {
-        return None;
-    }
-    let flight = find_flights(evidence).into_iter().find(|flight| {
-        let rise_m: f64 = evidence.moves[flight.from..flight.to].iter().map(|step| step.rise_m).sum();
-        rise_m.abs() >= STOREY_M
-    })?;
-    let reason = format!("the path goes {} a flight of stairs, and the text does not say so", way_word(flight.climb));
-    Some(new_finding(CheckKind::Floors, Verdict::Fail, reason, None))
 }
 
 /// The first storey of a text that is wrong or cannot be checked.

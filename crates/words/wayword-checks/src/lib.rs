@@ -201,10 +201,6 @@ fn check_against(
                 findings.extend(walk.findings.into_iter().filter(is_left));
             }
             findings.extend(floors::check_floors(&reading, subject.evidence));
-            if on_walk.is_none() && !ends_in_task {
-                let untold = floors::find_untold_flight(&reading, subject.evidence);
-                untold.into_iter().for_each(|wrong| add_worse(&mut findings, wrong));
-            }
             if let Some(on_walk) = on_walk {
                 on_walk.findings.into_iter().for_each(|finding| add_worse(&mut findings, finding));
                 findings.extend(open::repeats::check_repeats(&reading, subject));

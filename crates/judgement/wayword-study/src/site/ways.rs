@@ -198,7 +198,7 @@ mod tests {
         let behind_each_other = [[0.0, 3.0, 0.0], [0.1, 1.5, 0.0]];
         assert_eq!(words(&behind_each_other), told(&[("0", "ahead, the farther one"), ("1", "ahead, the nearer one")]));
         let four = [[1.0, 1.2, 0.0], [1.0, 0.9, 0.0], [1.0, 2.0, 0.0], [1.0, 1.5, 0.0]];
-        let ordinals = [1, 2, 3, 4].map(|one| format!("slightly to the right, number {one} from the left"));
+        let ordinals = [1, 2, 3, 4].map(|one| format!("slightly to the right, spot {one} from the left"));
         assert_eq!(words(&four).into_iter().map(|(_, words)| words).collect::<Vec<_>>(), ordinals);
     }
 

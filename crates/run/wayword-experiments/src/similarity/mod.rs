@@ -43,13 +43,10 @@ pub fn run_similarity(args: &Args, output: &CommandOutput) -> Result<Exit, Comma
         return Err(CommandError::usage("--clip is a metric, and none are asked for", "give --metrics too"));
     }
     let sides = [(args.a.as_str(), &a), (args.b.as_str(), &b)];
-    let words = |set: &TextSet| -> Vec<Vec<String>> { set.values().map(|item| item.texts.clone()).collect() };
-    if words(&a) == words(&b) {
-        output.say("warning: A and B are the same texts, so the figures are as high as they can be");
-    }
     if args.metrics {
         language::refuse_other_languages(sides, true, output)?;
         let report = metrics::measure_texts(args, (&a, &b), output)?;
+        warn_of_same_texts(&a, &b, output);
         output.print_result(&report, &report);
         return Ok(Exit::Done);
     }
@@ -65,8 +62,16 @@ pub fn run_similarity(args: &Args, output: &CommandOutput) -> Result<Exit, Comma
         level: CONFIDENCE_LEVEL,
         similarity: compare_sets(&vectors_by_item(&a, &vectors), &vectors_by_item(&b, &vectors), &drawing),
     };
+    warn_of_same_texts(&a, &b, output);
     output.print_result(&report, &report);
     Ok(Exit::Done)
+}
+
+/// Warns of a set that is compared with itself.
+fn warn_of_same_texts(a: &TextSet, b: &TextSet, output: &CommandOutput) {
+    if a.values().map(|item| &item.texts).eq(b.values().map(|item| &item.texts)) {
+        output.say("warning: A and B are the same texts, so the figures are as high as they can be");
+    }
 }
 
 fn vectors_by_item<'a>(items: &'a TextSet, vectors: &'a BTreeMap<&str, Vec<f32>>) -> BTreeMap<String, ItemVectors<'a>> {

@@ -43,7 +43,7 @@ pub(super) fn keep_settings(folder: &Path, settings: &RunSettings) -> Result<(),
     }
     let before: RunSettings = read_config(folder)?;
     if before.raised_to(settings) != *settings {
-        let as_many = RunSettings { paths: settings.paths, ..before.clone() };
+        let as_many = RunSettings { paths: settings.paths, houses: settings.houses, ..before.clone() };
         let has_fewer_alone = settings.paths < before.paths && as_many.raised_to(settings) == *settings;
         return Err(match has_fewer_alone {
             true => fewer_paths(folder, &before, settings)?,

@@ -49,11 +49,12 @@ fn runs_within(folder: &Path) -> Vec<String> {
 /// # Errors
 /// As [`expect_own_folder`].
 pub fn expect_run_place(folder: &Path) -> Result<(), CommandError> {
-    if is_begun(folder) {
+    if is_begun(folder) || folder.join(wayword_queue::PLAN).exists() {
         return expect_output_folder(folder);
     }
+    // What a command leaves that was killed before it wrote the settings or the plan.
     let of_run = |name: &str| files_of_run(Path::new("")).any(|file| file == Path::new(name));
-    expect_own_folder(folder, |name| of_run(name) || [wayword_queue::PLAN, "chunks"].contains(&name))
+    expect_own_folder(folder, |name| of_run(name) || ["chunks", "workers", "workers.json"].contains(&name))
 }
 
 /// Refuses what is not the folder of a run with texts, and names the one that the user may mean. A folder with the texts alone is

@@ -236,7 +236,7 @@ fn bad_combinations_are_refused_with_what_to_do() {
         (&["--run", "run", "--style", "r2r", "--format", "r2r", "--val-share", "0.1"], "no splits", "--format wayword"),
         (&["--run", "run", "--format", "wayword", "--val-share", "1.5"], "is not a share", "from 0 to 1"),
         (&["--run", "run", "--format", "wayword", "--val-share", "nan"], "is not a share", "from 0 to 1"),
-        (&["--run", "run", "--format", "wayword", "--split", "val"], "--split puts all texts", "--val-share"),
+        (&["--run", "run", "--format", "wayword", "--split", "val"], "have a split only with", "--val-share"),
         (&["--run", "run", "--style", "r2r", "--format", "r2r", "--tokenizer", "x"], "--format duet", "leave them out"),
         (
             &["--run", "run", "--style", "r2r", "--format", "r2r", "--split", "a/b"],

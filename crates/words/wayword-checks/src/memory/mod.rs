@@ -10,7 +10,6 @@ mod things;
 
 pub(crate) use openings::{IN_DOOR_M, frames_at_doors, is_any_door, is_door};
 pub use openings::{RoomOpening, is_way_through, leads_through_a_door};
-pub(crate) use stays_and_bends::find_flights;
 pub use stays_and_bends::{RoomStay, StairFlight, WalkBend};
 pub use things::{AHEAD_FRAMES, RememberedThing, ThingGlimpse, ThingPassing};
 

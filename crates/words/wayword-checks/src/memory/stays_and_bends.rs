@@ -207,7 +207,7 @@ pub(super) fn split_at_doors(bends: &[WalkBend], moves: &[PathMove], doors: &BTr
 const LANDING_M: f64 = 2.5;
 
 /// The flights of stairs, in order. Those that a landing joins are one.
-pub(crate) fn find_flights(evidence: &Evidence) -> Vec<StairFlight> {
+pub(super) fn find_flights(evidence: &Evidence) -> Vec<StairFlight> {
     let (mut flights, mut at) = (Vec::<StairFlight>::new(), 0);
     while at < evidence.moves.len() {
         let Some((last, climb)) = motion::flight_from(&evidence.moves, at) else {

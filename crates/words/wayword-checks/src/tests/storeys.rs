@@ -125,16 +125,3 @@ fn storeys_of_a_text_come_in_the_order_of_the_path() {
     assert_eq!(verdict("Walk to the second floor from the first floor.", &[1, 2]), Verdict::Pass);
     assert_eq!(verdict("Walk to the second floor from the first floor.", &[2, 1]), Verdict::Fail);
 }
-
-#[test]
-fn a_flight_to_another_storey_has_to_be_told() {
-    let path = by_stairs(1, 2);
-    let reason = "the path goes up a flight of stairs, and the text does not say so";
-    finds(CheckKind::Floors, Verdict::Fail, "", reason, "Walk down the hallway and stop in the bedroom.", &path);
-    for told in
-        ["Go up the stairs.", "Walk past the stairs.", "Stop on the second floor.", "Take the bedroom upstairs."]
-    {
-        has_no_mistake(CheckKind::Floors, told, &path);
-    }
-    has_no_mistake(CheckKind::Floors, "Walk down the hallway and stop.", &flat(1));
-}

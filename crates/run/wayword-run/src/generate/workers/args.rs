@@ -1,6 +1,5 @@
 //! The flags of a run that many workers make.
 
-use super::work_spread::even_chunk;
 use clap::Args;
 use std::{num::NonZeroUsize, time::Duration};
 use wayword_queue::ShardPart;
@@ -57,4 +56,12 @@ impl AskedWorkers {
             .unwrap_or(wayword_queue::HEARTBEAT_LEASE)
             .max(Duration::from_millis(500))
     }
+}
+
+/// The largest chunk with which each worker has one: of one item, if there are fewer items than workers.
+pub(super) fn even_chunk(items: usize, workers: usize) -> usize {
+    let fits = |chunk: &usize| items.div_ceil(*chunk) >= workers;
+    Some(items.div_ceil(workers.max(1)))
+        .filter(|chunk| *chunk > 0 && fits(chunk))
+        .unwrap_or((items / workers.max(1)).max(1))
 }

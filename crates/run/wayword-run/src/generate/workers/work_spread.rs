@@ -1,5 +1,6 @@
 //! Finds out beforehand that some workers of a run would have nothing to do.
 
+use super::args::even_chunk;
 use crate::{count::count_phrase, error::CommandError, generate::args::GenerateArgs, settings_file::read_settings};
 use wayword_queue::ChunkPlan;
 
@@ -76,14 +77,6 @@ impl ChunkedItems {
             ),
         })
     }
-}
-
-/// The largest chunk with which each worker has one: of one item, if there are fewer items than workers.
-pub(super) fn even_chunk(items: usize, workers: usize) -> usize {
-    let fits = |chunk: &usize| items.div_ceil(*chunk) >= workers;
-    Some(items.div_ceil(workers.max(1)))
-        .filter(|chunk| *chunk > 0 && fits(chunk))
-        .unwrap_or((items / workers.max(1)).max(1))
 }
 
 #[cfg(test)]
