@@ -39,9 +39,9 @@ fn highlights_html(highlights: &DoubtHighlights) -> Result<String, CommandError>
 
 #[test]
 fn the_most_doubtful_texts_come_first_and_all_are_on_pages() {
-    let text = |path: &str, doubts: Vec<TextDoubt>| {
+    let text = |name: &str, doubts: Vec<TextDoubt>| {
         let mut texts = highlights(TEXT, doubts).texts;
-        texts[0].path = path.into();
+        texts[0].name = name.into();
         texts.remove(0)
     };
     let doubted = vec![
