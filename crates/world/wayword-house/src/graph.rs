@@ -359,9 +359,8 @@ mod tests {
             let feet = |id: &ViewpointId| graph.position_of(id).unwrap() - DVec3::Z * EYE_M;
             for a in graph.viewpoints() {
                 let over_graph = graph.distances_from(a).unwrap();
-                let is_near = |b: &&ViewpointId| {
-                    *b > a && (feet(*b).z - feet(a).z).abs() < 0.5 && feet(*b).distance(feet(a)) < 4.0
-                };
+                let is_near =
+                    |b: &&ViewpointId| *b > a && (feet(b).z - feet(a).z).abs() < 0.5 && feet(b).distance(feet(a)) < 4.0;
                 for b in graph.viewpoints().filter(is_near) {
                     let ground_m = ground.shortest_route(feet(a), feet(b)).unwrap().length_m;
                     let bound_m = 2.0 * ground_m + 3.0;
