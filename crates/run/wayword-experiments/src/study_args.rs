@@ -162,7 +162,7 @@ were made stay valid.")]
 pub struct StudyServe {
     /// Folder of the study.
     pub study: PathBuf,
-    /// Address and port to listen on, as 127.0.0.1:8080 or [::1]:8080.
+    /// Address and port to listen on, as 127.0.0.1:8080 or 0.0.0.0:8080.
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:8080", value_parser = listen_address)]
     pub listen: SocketAddr,
     /// The address that participants open, where another server passes requests on to this one.
