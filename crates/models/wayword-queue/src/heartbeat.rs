@@ -31,7 +31,7 @@ pub const HEARTBEAT_LEASE: Duration = Duration::from_secs(60);
 const BEATS_PER_LEASE: u32 = 6;
 
 /// The folder of the heartbeat files, in a run folder.
-const WORKERS_FOLDER: &str = "workers";
+pub const WORKERS_FOLDER: &str = "workers";
 
 /// The content of a heartbeat file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

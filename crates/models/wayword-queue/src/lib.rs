@@ -36,10 +36,12 @@ pub use board::{ChunkBoard, ChunkClaim, RemainingChunks};
 pub use chunk_files::{CompareDepth, FileDifference, FileMark, FileMarks, compare_files, mark_files};
 pub use error::QueueError;
 pub use folder::{put_new, put_whole, sync_tree};
-pub use heartbeat::{HEARTBEAT_LEASE, HeartbeatEntry, HeartbeatThread, WorkerHeartbeat, read_heartbeats, worker_name};
+pub use heartbeat::{
+    HEARTBEAT_LEASE, HeartbeatEntry, HeartbeatThread, WORKERS_FOLDER, WorkerHeartbeat, read_heartbeats, worker_name,
+};
 pub use marks::{
-    ChunkRecord, chunk_folder, dead_path, done_path, failing_chunks, read_dead_mark, read_done_mark, reopen_chunks,
-    set_files_aside,
+    CHUNKS_FOLDER, ChunkRecord, chunk_folder, chunk_of_folder, dead_path, done_path, failing_chunks, read_dead_mark,
+    read_done_mark, reopen_chunks, set_files_aside,
 };
 pub use plan::{ChunkPlan, PLAN_FILE as PLAN, WORKERS_FILE};
 pub use process_identity::ProcessIdentity;

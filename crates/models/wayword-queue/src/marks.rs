@@ -10,7 +10,7 @@ use std::{
 };
 
 /// The folder of chunks and their marks in a run folder.
-pub(crate) const CHUNKS_FOLDER: &str = "chunks";
+pub const CHUNKS_FOLDER: &str = "chunks";
 /// Largest mark that is read, bytes. A larger file is an error.
 const MAX_MARK_BYTES: u64 = 1 << 20;
 
@@ -70,6 +70,16 @@ pub(crate) fn tries_path(folder: &Path, chunk: usize) -> PathBuf {
 pub fn chunk_folder(folder: &Path, chunk: usize, epoch: i64) -> PathBuf {
     let name = if epoch == 0 { format!("{chunk:06}") } else { format!("{chunk:06}.{epoch}") };
     folder.join(CHUNKS_FOLDER).join(name)
+}
+
+/// The chunk whose results a folder of this name holds, as [`chunk_folder`] makes it. `None` for every other name in the folder of chunks.
+#[must_use]
+pub fn chunk_of_folder(name: &str) -> Option<usize> {
+    let mut words = name.split('.').map(|word| word.parse::<usize>());
+    match (words.next(), words.next()) {
+        (Some(Ok(chunk)), None | Some(Ok(_))) => Some(chunk),
+        _ => None,
+    }
 }
 
 impl ChunkRecord {

@@ -7,6 +7,7 @@ use crate::{
     written_files::{expect_output_folder, expect_own_folder},
 };
 use std::{fs, path::Path};
+use wayword_queue::{CHUNKS_FOLDER, PLAN, WORKERS_FILE, WORKERS_FOLDER};
 
 /// Most runs below a folder that an error names.
 const MAX_NAMED_ITEMS: usize = 3;
@@ -49,12 +50,13 @@ fn runs_within(folder: &Path) -> Vec<String> {
 /// # Errors
 /// As [`expect_own_folder`].
 pub fn expect_run_place(folder: &Path) -> Result<(), CommandError> {
-    if is_begun(folder) || folder.join(wayword_queue::PLAN).exists() {
+    if is_begun(folder) || folder.join(PLAN).exists() {
         return expect_output_folder(folder);
     }
     // What a command leaves that was killed before it wrote the settings or the plan.
     let of_run = |name: &str| files_of_run(Path::new("")).any(|file| file == Path::new(name));
-    expect_own_folder(folder, |name| of_run(name) || ["chunks", "workers", "workers.json"].contains(&name))
+    let of_workers = [CHUNKS_FOLDER, WORKERS_FOLDER, WORKERS_FILE];
+    expect_own_folder(folder, |name| of_run(name) || of_workers.contains(&name))
 }
 
 /// Refuses what is not the folder of a run with texts, and names the one that the user may mean. A folder with the texts alone is

@@ -56,7 +56,7 @@ impl DamagedRun {
                 run.display()
             ),
             RetryPlace::Store { address, folder } => {
-                let chunks = folder.join("chunks");
+                let chunks = folder.join(wayword_queue::CHUNKS_FOLDER);
                 format!(
                     "remove their folders in {} and merge again, which fetches them anew; if they are still damaged, make them \
                      again: `wayword runs retry {} --chunk {}`, then start workers with the same command as before",

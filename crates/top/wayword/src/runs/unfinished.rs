@@ -6,20 +6,18 @@ use std::{
     io::ErrorKind,
     path::Path,
 };
+use wayword_queue::{CHUNKS_FOLDER, chunk_of_folder};
 use wayword_run::{
     error::CommandError,
     run_folder::{file, lines},
 };
-
-/// The folder of the chunks, within that of the run.
-const CHUNKS: &str = "chunks";
 
 /// The number of items that are made in chunks which are not finished. Of several tries of a chunk, the one that came farthest counts.
 ///
 /// # Errors
 /// When a folder or a file of walks cannot be read.
 pub(super) fn items_in_unfinished(run: &Path, finished: &BTreeSet<usize>) -> Result<usize, CommandError> {
-    let folder = run.join(CHUNKS);
+    let folder = run.join(CHUNKS_FOLDER);
     let entries = match fs::read_dir(&folder) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(0),
         entries => entries.map_err(CommandError::io(&folder, "look into"))?,
@@ -27,10 +25,7 @@ pub(super) fn items_in_unfinished(run: &Path, finished: &BTreeSet<usize>) -> Res
     let mut made: BTreeMap<usize, usize> = BTreeMap::new();
     for entry in entries {
         let entry = entry.map_err(CommandError::io(&folder, "look into"))?;
-        // NUMBER, or NUMBER.EPOCH; the files of a damaged chunk are set aside under another name.
-        let name = entry.file_name().to_string_lossy().into_owned();
-        let mut words = name.split('.').map(|word| word.parse::<usize>());
-        let (Some(Ok(chunk)), None | Some(Ok(_))) = (words.next(), words.next()) else { continue };
+        let Some(chunk) = chunk_of_folder(&entry.file_name().to_string_lossy()) else { continue };
         if !finished.contains(&chunk) {
             let mut items = 0;
             lines::each_line(&entry.path().join(file::WALKS), |_| {
@@ -60,11 +55,11 @@ mod tests {
             ("000002.damaged-1", "{}\n"),
             ("000003", "{}\n"),
         ] {
-            let chunk = run.path().join(CHUNKS).join(name);
+            let chunk = run.path().join(CHUNKS_FOLDER).join(name);
             fs::create_dir_all(&chunk).unwrap();
             fs::write(chunk.join(file::WALKS), walks).unwrap();
         }
-        fs::write(run.path().join(CHUNKS).join("000000.done"), "").unwrap();
+        fs::write(run.path().join(CHUNKS_FOLDER).join("000000.done"), "").unwrap();
         assert_eq!(items_in_unfinished(run.path(), &BTreeSet::from([0])).unwrap(), 3);
     }
 }

@@ -38,7 +38,7 @@ pub(super) fn write_plan(
     settings: &RunSettings,
     asked: &AskedWorkers,
 ) -> Result<(), CommandError> {
-    fs::create_dir_all(out.join("chunks")).map_err(CommandError::io(out, "make the run folder"))?;
+    fs::create_dir_all(out.join(wayword_queue::CHUNKS_FOLDER)).map_err(CommandError::io(out, "make the run folder"))?;
     let items: Vec<String> = plan.items.iter().map(RunItem::id).collect();
     let chunk = asked.chunk_items(items.len(), None);
     let mut new = wayword_queue::ChunkPlan::new(fresh_id("run"), chunk, config_text(settings)?, items);
