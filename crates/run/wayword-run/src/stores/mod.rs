@@ -19,7 +19,8 @@ use wayword_queue::cloud::CloudRun;
 use crate::error::CommandError;
 
 /// The address of an object store, if the path is one and not a folder.
-fn store_address(path: &Path) -> Option<&str> {
+#[must_use]
+pub fn store_address(path: &Path) -> Option<&str> {
     path.to_str().filter(|text| text.contains("://"))
 }
 

@@ -23,6 +23,7 @@ use wayword_run::{
     generate::{ChunkedItems, args::GenerateArgs},
     output::{CommandOutput, mask_credentials},
     settings_file::read_settings,
+    stores::store_address,
 };
 
 pub(crate) fn run_launch(args: &LaunchArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
@@ -33,7 +34,7 @@ pub(crate) fn run_launch(args: &LaunchArgs, output: &CommandOutput) -> Result<Ex
 }
 
 fn launch_slurm(args: &LaunchSlurm, output: &CommandOutput) -> Result<Exit, CommandError> {
-    warn_of_idle_workers(&args.arguments, args.workers, output)?;
+    warn_of_idle_workers(&parse_worker_command(&args.arguments)?, args.workers, output)?;
     let worker = make_worker(&args.program, &args.arguments, args.workers)?;
     let text = write_script(&SlurmJob {
         name: args.name.clone(),
@@ -58,8 +59,9 @@ fn launch_slurm(args: &LaunchSlurm, output: &CommandOutput) -> Result<Exit, Comm
 }
 
 fn launch_kubernetes(args: &LaunchKubernetes, output: &CommandOutput) -> Result<Exit, CommandError> {
-    warn_of_idle_workers(&args.arguments, args.workers, output)?;
-    refuse_unshared_folder(args)?;
+    let command = parse_worker_command(&args.arguments)?;
+    warn_of_idle_workers(&command, args.workers, output)?;
+    refuse_unshared_folder(&command, args.shared_claim.as_ref().map(|shared| shared.right.as_str()))?;
     let secret = |typed: &str, flag: &str| {
         let (secret, key) = typed.split_once('/').ok_or_else(|| {
             CommandError::usage(format!("{flag}: there is no slash between the secret and its key"), "write SECRET/KEY")
@@ -129,15 +131,14 @@ fn parse_worker_command(arguments: &[String]) -> Result<GenerateArgs, CommandErr
 }
 
 /// Refuses pods that would write into their own file systems, which end with them.
-fn refuse_unshared_folder(args: &LaunchKubernetes) -> Result<(), CommandError> {
-    let out = parse_worker_command(&args.arguments)?.out;
-    let Some(out) = out.filter(|out| !out.to_string_lossy().contains("://")) else { return Ok(()) };
-    let problem = match &args.shared_claim {
+fn refuse_unshared_folder(command: &GenerateArgs, shared: Option<&str>) -> Result<(), CommandError> {
+    let Some(out) = command.out.as_ref().filter(|out| store_address(out).is_none()) else { return Ok(()) };
+    let problem = match shared {
         None => {
             "the workers share no folder, so each would write into its own file system, which ends with it".to_owned()
         }
-        Some(shared) if !out.starts_with(&shared.right) => {
-            format!("--out {} is not in the folder that the workers share, {}", out.display(), shared.right)
+        Some(shared) if !out.starts_with(shared) => {
+            format!("--out {} is not in the folder that the workers share, {shared}", out.display())
         }
         Some(_) => return Ok(()),
     };
@@ -145,10 +146,9 @@ fn refuse_unshared_folder(args: &LaunchKubernetes) -> Result<(), CommandError> {
 }
 
 /// Warns if the run has fewer chunks than workers, as far as this machine can know.
-fn warn_of_idle_workers(arguments: &[String], workers: u32, output: &CommandOutput) -> Result<(), CommandError> {
-    let args = parse_worker_command(arguments)?;
+fn warn_of_idle_workers(command: &GenerateArgs, workers: u32, output: &CommandOutput) -> Result<(), CommandError> {
     let workers = usize::try_from(workers).unwrap_or(usize::MAX);
-    let items = ChunkedItems::of_command(&args, args.workers.queue.is_none().then_some(workers))?;
+    let items = ChunkedItems::of_command(command, command.workers.queue.is_none().then_some(workers))?;
     let warning = items.and_then(|items| items.idle_warning(workers));
     warning.iter().for_each(|warning| output.say(warning));
     Ok(())

@@ -17,6 +17,7 @@ use wayword_run::{
     generate::ChunkHandout,
     output::CommandOutput,
     run_folder::is_begun,
+    stores::store_address,
 };
 
 /// Whether the command shows a run again and again until it is ended.
@@ -49,7 +50,7 @@ pub(crate) fn run_runs(args: &RunsArgs, output: &CommandOutput) -> Result<Exit, 
 
 /// Refuses the name of a queue for a run in a folder, whose workers keep it there.
 fn refuse_needless_queue(run: &Path, asked: &RunsQueue) -> Result<(), CommandError> {
-    let Some(queue) = asked.queue.as_ref().filter(|_| !is_address(run)) else { return Ok(()) };
+    let Some(queue) = asked.queue.as_ref().filter(|_| store_address(run).is_none()) else { return Ok(()) };
     if ChunkHandout::from_folder(run)? == Some(ChunkHandout::Queue(queue.clone())) {
         return Ok(());
     }
@@ -59,15 +60,10 @@ fn refuse_needless_queue(run: &Path, asked: &RunsQueue) -> Result<(), CommandErr
     ))
 }
 
-/// Whether a run is named by its address in an object store.
-fn is_address(run: &Path) -> bool {
-    run.to_string_lossy().contains("://")
-}
-
 /// Refuses a folder that is not there, and a run that one machine made or makes: it has no chunks.
 fn refuse_single_run(run: &Path) -> Result<(), CommandError> {
     // An address in an object store is no folder of this machine.
-    if !run.exists() && !is_address(run) {
+    if !run.exists() && store_address(run).is_none() {
         return Err(CommandError::usage(
             format!("{}: there is no such folder", run.display()),
             "give the --out folder of the run",
