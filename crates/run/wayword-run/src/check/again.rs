@@ -3,7 +3,7 @@
 
 use super::{
     CheckOptions, CheckedText,
-    path_texts::{FileText, StyleReference, name_of_record},
+    path_texts::FileText,
     run_texts::{RunPathKey, RunText, check_texts_of_run, match_walks},
     styles::CheckStyles,
 };
@@ -118,21 +118,8 @@ fn read_written(run: &FilePath) -> Result<WrittenTexts, CommandError> {
             Some(hash) if hash != hash_of_text(&text) => _ = written.changed.insert(line.number()),
             Some(_) => {}
         }
-        let style = StyleReference { name: style, hash: provenance.style_hash.clone() };
-        let key = RunPathKey::Id(path.id.clone());
-        let origin = Some((platform, provenance));
-        let name = name_of_record(&path.id, &style.name, number);
-        let text = FileText {
-            at: line.number(),
-            path: path.id,
-            name,
-            words: text,
-            tag: None,
-            style: Some(style),
-            origin,
-            missing_object: None,
-        };
-        written.texts.push(RunText { text, path: key });
+        let text = FileText::from_record(&path.id, style, number, text, (platform, provenance));
+        written.texts.push(RunText { text: FileText { at: line.number(), ..text }, path: RunPathKey::Id(path.id) });
         Ok(())
     })?;
     Ok(written)

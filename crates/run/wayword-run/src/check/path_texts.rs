@@ -45,9 +45,21 @@ pub(crate) struct FileText {
 
 impl FileText {
     /// A text of a dataset, which has no provenance.
-    fn from_dataset(path: &Path, name: String, words: String, tag: Option<String>) -> Self {
-        let path = path.id.clone();
-        Self { at: 0, path, name, words, style: None, tag, origin: None, missing_object: None }
+    pub(super) fn from_dataset(path: &str, name: String, words: String, tag: Option<String>) -> Self {
+        Self { at: 0, path: path.to_owned(), name, words, style: None, tag, origin: None, missing_object: None }
+    }
+
+    /// A text of a record. `number` counts the texts of its style about its path, from 0; `origin` is its platform and provenance.
+    pub(super) fn from_record(
+        path: &str,
+        style: String,
+        number: usize,
+        words: String,
+        origin: (String, TextProvenance),
+    ) -> Self {
+        let name = format!("{path} ({})", text_label(&style, number));
+        let style = StyleReference { name: style, hash: origin.1.style_hash.clone() };
+        Self { style: Some(style), origin: Some(origin), ..Self::from_dataset(path, name, words, None) }
     }
 
     /// The finding on an object of its item that the scene lacks: nothing can be known of a task about it.
@@ -56,11 +68,6 @@ impl FileText {
         let reason = format!("the item {} names the object {object}, and scene {scene} has none of that id", self.path);
         Some(CheckFinding { check: CheckKind::Task, verdict: Verdict::Fail, reason, span: None })
     }
-}
-
-/// The name of a text of a run, by its path, its style and its number among those of both, from 0.
-pub(super) fn name_of_record(path: &str, style: &str, number: usize) -> String {
-    format!("{path} ({})", text_label(style, number))
 }
 
 /// A style, as a record names it.
@@ -83,20 +90,9 @@ pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
             let object = path.target.as_ref().map(|target| target.object.clone());
             let path = with_platform_poses(platform, path).map_err(unusable_path(file, &id))?;
             let missing_object = missing_object(platform, &path, object.as_ref())?;
-            let text = FileText {
-                at: 0,
-                path: path.id.clone(),
-                name: name_of_record(&path.id, &instruction.style, number),
-                words: instruction.text,
-                tag: None,
-                style: Some(StyleReference {
-                    name: instruction.style,
-                    hash: instruction.provenance.style_hash.clone(),
-                }),
-                origin: Some((made_on, instruction.provenance)),
-                missing_object,
-            };
-            walks.add_text(path, text);
+            let origin = (made_on, instruction.provenance);
+            let text = FileText::from_record(&path.id, instruction.style, number, instruction.text, origin);
+            walks.add_text(path, FileText { missing_object, ..text });
         }
         return walks.expect_texts(file, 0);
     }
@@ -109,7 +105,7 @@ pub(crate) fn read_path_texts(file: &FilePath, platform: &dyn Platform) -> Resul
         for (at, words) in episode.instructions.iter().enumerate() {
             let tag = episode.language_of(at).map(str::to_owned);
             let name = instr_id(&episode, at);
-            let text = FileText::from_dataset(&path, name, words.clone(), tag);
+            let text = FileText::from_dataset(&path.id, name, words.clone(), tag);
             walks.add_text(path.clone(), FileText { missing_object: missing.clone(), ..text });
         }
     }
@@ -137,7 +133,7 @@ fn refuse_other_platform(
 pub(crate) fn gather_by_path(texts: Vec<(Path, String)>) -> Vec<PathTexts> {
     let mut walks = PathTextIndex::default();
     for (path, words) in texts {
-        let text = FileText::from_dataset(&path, path.id.clone(), words, None);
+        let text = FileText::from_dataset(&path.id, path.id.clone(), words, None);
         walks.add_text(path, text);
     }
     walks.all
@@ -220,7 +216,7 @@ mod tests {
         let mut walks = PathTextIndex::default();
         for (id, end_m) in [("1_7", 2.0), ("2", 4.0), ("1_7", 2.0), ("1_9", 2.0)] {
             let path = path(id, end_m);
-            walks.add_text(path.clone(), FileText::from_dataset(&path, id.into(), "Stop.".into(), None));
+            walks.add_text(path.clone(), FileText::from_dataset(&path.id, id.into(), "Stop.".into(), None));
         }
         let texts: Vec<Vec<(usize, &str)>> = walks
             .all
@@ -230,7 +226,7 @@ mod tests {
         assert_eq!(texts, [vec![(0, "1_7"), (2, "1_7"), (3, "1_9")], vec![(1, "2")]]);
         let mut other = path("1_7", 2.0);
         other.motion = PathMotion::Unknown;
-        walks.add_text(other.clone(), FileText::from_dataset(&other, "1_7".into(), "Stop.".into(), None));
+        walks.add_text(other.clone(), FileText::from_dataset(&other.id, "1_7".into(), "Stop.".into(), None));
         assert_eq!(walks.all.len(), 3, "texts are checked against the motion too");
     }
 }

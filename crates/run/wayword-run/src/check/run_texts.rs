@@ -2,7 +2,7 @@
 
 use super::{
     CheckOptions, CheckedWalk, TextChecker,
-    path_texts::{FileText, PathTexts, StyleReference, name_of_record},
+    path_texts::{FileText, PathTexts},
     report::{CheckReport, CheckedText},
     styles::CheckStyles,
 };
@@ -212,43 +212,23 @@ fn read_texts(file: &FilePath) -> Result<Vec<RunText>, CommandError> {
         for (at, record) in jsonl::read_records(file)?.into_iter().enumerate() {
             let number = number_of_text(&record);
             let jsonl::InstructionRecord { path, instruction, platform, .. } = record;
-            let style = StyleReference { name: instruction.style, hash: instruction.provenance.style_hash.clone() };
-            let (words, made) = (instruction.text, Some((platform, instruction.provenance)));
-            let name = name_of_record(&path.id, &style.name, number);
-            let text = FileText {
-                at,
-                path: path.id.clone(),
-                name,
-                words,
-                tag: None,
-                style: Some(style),
-                origin: made,
-                missing_object: None,
-            };
-            all.push(RunText { text, path: RunPathKey::Id(path.id) });
+            let origin = (platform, instruction.provenance);
+            let text = FileText::from_record(&path.id, instruction.style, number, instruction.text, origin);
+            all.push(RunText { text: FileText { at, ..text }, path: RunPathKey::Id(path.id) });
         }
         return Ok(all);
     }
     for episode in wayword_formats::read_any_format(file)? {
         for (at, words) in episode.instructions.iter().enumerate() {
             let tag = episode.language_of(at).map(str::to_owned);
-            let text = FileText {
-                at: all.len(),
-                path: episode.id.clone(),
-                name: instr_id(&episode, at),
-                words: words.clone(),
-                tag,
-                style: None,
-                origin: None,
-                missing_object: None,
-            };
+            let text = FileText::from_dataset(&episode.id, instr_id(&episode, at), words.clone(), tag);
             let path = RunPathKey::Way {
                 scene: episode.scene.clone(),
                 viewpoints: episode.viewpoints.clone(),
                 object: episode.target_object.clone(),
                 names: [episode.id.clone(), episode.path_id.clone()],
             };
-            all.push(RunText { text, path });
+            all.push(RunText { text: FileText { at: all.len(), ..text }, path });
         }
     }
     Ok(all)
