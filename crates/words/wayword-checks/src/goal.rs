@@ -50,10 +50,8 @@ fn end_places(reading: &TextReading) -> [Option<(usize, &PlaceMention)>; 2] {
         _ => None,
     };
     let stop = events.iter().rposition(|event| event.what == EventContent::Stop);
-    let in_stop = || {
-        let after = stop.map_or(events.len(), |stop| stop + 1);
-        (after..events.len()).filter(|at| Some(events[*at].clause) == stop.map(|stop| events[stop].clause))
-    };
+    let after_stop = |stop: usize| (stop + 1..events.len()).filter(move |at| events[*at].clause == events[stop].clause);
+    let in_stop = || stop.into_iter().flat_map(after_stop);
     let at_stop = in_stop().find_map(place);
     // "Wait in the bathroom" says itself that it is not in the room before it.
     let is_within = |(_, place): (usize, &PlaceMention)| is_room_alone(place) && place.link == PlaceLink::Within;
