@@ -92,13 +92,10 @@ impl Study {
     /// # Errors
     /// When the folder holds none, or a file of it cannot be used.
     pub fn open(folder: &Path) -> Result<Self, StudyError> {
-        let read = |name: &str| read_limited_file(&folder.join(name));
+        let read = |name: &str| read_limited_file(folder, name);
         check_folder(folder)?;
         let plan = StudyDesign::from_file(&read(PLAN_FILE)?)
             .map_err(|problem| wrong_file_error(folder, PLAN_FILE, &problem))?;
-        if !folder.join(SETTINGS_FILE).exists() {
-            return Err(wrong_file_error(folder, SETTINGS_FILE, &"this file of the study is missing"));
-        }
         let settings: StudySettings = toml::from_str(&read(SETTINGS_FILE)?)
             .map_err(|error| wrong_file_error(folder, SETTINGS_FILE, &settings_problem(&error)))?;
         settings.check().map_err(|problem| wrong_file_error(folder, SETTINGS_FILE, &problem))?;
@@ -267,22 +264,23 @@ impl PageTexts {
     }
 }
 
-/// Reads a text file of the study, unless it is too large.
-fn read_limited_file(path: &Path) -> Result<String, StudyError> {
-    let size = fs::metadata(path).map_err(StudyError::io_error(path, "read"))?.len();
+/// Reads a text file of the study, unless it is missing or too large.
+fn read_limited_file(folder: &Path, name: &str) -> Result<String, StudyError> {
+    let path = folder.join(name);
+    if !path.exists() {
+        return Err(wrong_file_error(folder, name, &"this file of the study is missing"));
+    }
+    let size = fs::metadata(&path).map_err(StudyError::io_error(&path, "read"))?.len();
     if size > MAX_STUDY_FILE_BYTES {
         let problem = format!("it has {size} bytes, and at most {MAX_STUDY_FILE_BYTES} are read");
-        return Err(StudyError::File { path: path.to_owned(), problem, hint: "make a smaller study" });
+        return Err(StudyError::File { path, problem, hint: "make a smaller study" });
     }
-    fs::read_to_string(path).map_err(StudyError::io_error(path, "read"))
+    fs::read_to_string(&path).map_err(StudyError::io_error(&path, "read"))
 }
 
 /// Reads a file of JSON lines. An error names the line.
 fn read_json_lines<T: DeserializeOwned>(folder: &Path, name: &str) -> Result<Vec<T>, StudyError> {
-    if !folder.join(name).exists() {
-        return Err(wrong_file_error(folder, name, &"this file of the study is missing"));
-    }
-    let text = read_limited_file(&folder.join(name))?;
+    let text = read_limited_file(folder, name)?;
     let parse = |(number, line): (usize, &str)| {
         serde_json::from_str(line)
             .map_err(|error| wrong_file_error(folder, name, &format!("line {}: {error}", number + 1)))

@@ -23,8 +23,8 @@ impl fmt::Display for PersonalLinks {
 pub(super) fn unused_links_note(made: usize, unused_before: u32) -> Option<String> {
     (made > 0 && unused_before > 0).then(|| {
         let links = if made == 1 { "this link is".to_owned() } else { format!("these {made} links are") };
-        let (earlier, stay) = if unused_before == 1 { ("1 earlier link", "stays") } else { ("earlier links", "stay") };
-        let earlier = if unused_before == 1 { earlier.to_owned() } else { format!("{unused_before} {earlier}") };
+        let earlier = count_phrase(unused_before, "earlier link");
+        let stay = if unused_before == 1 { "stays" } else { "stay" };
         format!("{links} new; {earlier} that nobody has used {stay} valid (links are not stored, so they cannot be printed again)")
     })
 }

@@ -77,13 +77,8 @@ fn announce_site(
         links: Vec::new(),
         unused_before: 0,
     };
-    if is_closed {
-        output.print_result(&serving, describe_site(&serving, args.self_signed));
-        output.say("Ctrl-C stops it");
-        return Ok(());
-    }
-    if args.preview {
-        serving.preview_link = Some(format!("{}/preview", started.url));
+    if is_closed || args.preview {
+        serving.preview_link = (!is_closed).then(|| format!("{}/preview", started.url));
         output.print_result(&serving, describe_site(&serving, args.self_signed));
         output.say("Ctrl-C stops it");
         return Ok(());
