@@ -69,7 +69,7 @@ pub use doubt::{DoubtAlternative, DoubtCause, DoubtGrade, TextDoubt};
 pub use encoder::{PhraseGrounder, TextEncoder};
 pub use failure::FailureKind;
 pub use file_start::{FILE_START_BYTES, FileGroup, FileStart};
-pub use glam::{DMat3, DVec3};
+pub use glam::{DMat3, DMat4, DVec3};
 pub use graph::{ViewpointGraph, ViewpointRoute};
 pub use ground::{GroundCover, GroundIsland, GroundRoute};
 pub use heading::{CompassPoint, Heading, Side};

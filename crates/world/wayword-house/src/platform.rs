@@ -11,7 +11,7 @@ use wayword_core::{
     DVec3, DepthImage, Frame, FromAbove, Ground, GroundRoute, ObjectId, Path, PathRequest, Platform, PlatformError,
     RecentCache, SceneCatalogue, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
-use wayword_render::to_flat_gaze;
+use wayword_render::{PinholeCamera, RenderedPicture, to_flat_gaze};
 
 /// How many houses are kept in memory; each takes about 20 MB.
 const MAX_READY_HOUSES: usize = 6;
@@ -56,6 +56,24 @@ impl HousePlatform {
     pub fn scene_of(seed: u64) -> Result<SceneId, PlatformError> {
         let name = scene_name(seed);
         SceneId::new(name.clone()).map_err(|_| unknown_scene_error(&name))
+    }
+
+    /// What a camera sees, which may be pitched: depths, and colours if `coloured`.
+    ///
+    /// # Errors
+    /// When the scene is unknown, or the camera's numbers give no picture.
+    pub fn render_camera(
+        &self,
+        scene: &SceneId,
+        camera: &PinholeCamera,
+        coloured: bool,
+    ) -> Result<RenderedPicture, PlatformError> {
+        let home = self.ready_house(scene)?;
+        if coloured {
+            home.scene.render_picture(camera).map_err(|error| home.not_drawn_error(&error))
+        } else {
+            home.scene.render_object_ids(camera).map_err(|error| home.not_drawn_error(&error))
+        }
     }
 
     fn ready_house(&self, scene: &SceneId) -> Result<Arc<PreparedHouse>, PlatformError> {

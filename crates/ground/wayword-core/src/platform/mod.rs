@@ -50,6 +50,14 @@ pub trait Platform: Send + Sync {
     /// When the scene has no path that fits, or cannot be read.
     fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError>;
 
+    /// The path along all of a scene that is one walk, as a recording is; `None` for scenes through which many paths lead.
+    ///
+    /// # Errors
+    /// When the scene does not exist or cannot be read, or has gaps that no path crosses.
+    fn whole_path(&self, scene: &SceneId) -> Result<Option<Path>, PlatformError> {
+        self.inner().map_or(Ok(None), |inner| inner.whole_path(scene))
+    }
+
     /// The view from a frame in one direction.
     ///
     /// # Errors
@@ -107,6 +115,10 @@ macro_rules! forward_pointers {
 
             fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
                 (**self).sample_path(scene, request, seed)
+            }
+
+            fn whole_path(&self, scene: &SceneId) -> Result<Option<Path>, PlatformError> {
+                (**self).whole_path(scene)
             }
 
             fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {

@@ -36,7 +36,7 @@ use wayword_core::{
     PlatformError, RecentCache, SceneCatalogue, SceneCondition, SceneFiles, SceneId, View, ViewGaze, ViewpointGraph,
     ViewpointId,
 };
-use wayword_render::to_flat_gaze;
+use wayword_render::{PinholeCamera, RenderedPicture, to_flat_gaze};
 use wayword_world::output_lines::OutputListener;
 
 /// Scenes that are kept in memory at a time: one of HM3D takes a few hundred MB.
@@ -131,6 +131,19 @@ impl HabitatPlatform {
         let (_, files) = self.find_files(scene)?;
         let PlacedStage { stage, model, .. } = PlacedStage::read(files, &self.options, SceneModel::read_file)?;
         Ok(walkable::read_or_bake_navmesh(&model, &stage, files, &self.options)?)
+    }
+
+    /// What a camera sees, which may be pitched: depths, and colours if `coloured`.
+    ///
+    /// # Errors
+    /// When the scene is unknown or cannot be read, or the camera's numbers give no picture.
+    pub fn render_camera(
+        &self,
+        scene: &SceneId,
+        camera: &PinholeCamera,
+        coloured: bool,
+    ) -> Result<RenderedPicture, PlatformError> {
+        self.prepared_scene(scene)?.render_camera(camera, coloured)
     }
 
     /// A scene in memory, read if necessary.

@@ -14,7 +14,7 @@ use wayword_core::{
     DVec3, DepthImage, Frame, FromAbove, GroundIsland, GroundRoute, GroundTruth, Heading, Image, ObjectId, ObjectLabel,
     PlatformError, Pose, SceneId, SceneLack, View, ViewGaze, ViewpointGraph, ViewpointId,
 };
-use wayword_render::{PinholeCamera, RenderError, RenderScene, draw_storey, render_ids, render_scene};
+use wayword_render::{PinholeCamera, RenderError, RenderScene, RenderedPicture, draw_storey, render_ids, render_scene};
 use wayword_world::seen_from;
 
 const DRAW_HINT: &str = "export the scene again as GLB";
@@ -110,6 +110,16 @@ impl HabitatScene {
         let picture = render_ids(&self.scene, &PinholeCamera::for_level_gaze(eye, gaze, size))
             .map_err(|error| self.not_drawn(&error))?;
         DepthImage::new(picture.width, picture.height, picture.depth_m).map_err(|error| self.not_drawn(&error))
+    }
+
+    /// What a camera sees: depths, and colours if `coloured`.
+    pub(super) fn render_camera(
+        &self,
+        camera: &PinholeCamera,
+        coloured: bool,
+    ) -> Result<RenderedPicture, PlatformError> {
+        let drawn = if coloured { render_scene(&self.scene, camera) } else { render_ids(&self.scene, camera) };
+        drawn.map_err(|error| self.not_drawn(&error))
     }
 
     /// A storey from above, around its viewpoints.
