@@ -19,6 +19,8 @@ pub struct Episode {
     /// Positions on the floor (not the eye's), world frame, metres, from start to goal. Only VLN-CE has them; empty
     /// elsewhere.
     pub floor_positions: Vec<DVec3>,
+    /// Whether its path is all of a recording, which the scene names. The platform knows its places, and the file none.
+    pub is_whole_recording: bool,
     /// What Habitat needs to know of the scene and the distance. Only VLN-CE's writer uses it.
     pub in_habitat: InHabitat,
     /// Which way the agent looks before the first hop. `None` where the file does not give it.
@@ -64,6 +66,7 @@ impl Episode {
             scene,
             viewpoints: Vec::new(),
             floor_positions: Vec::new(),
+            is_whole_recording: false,
             in_habitat: InHabitat::default(),
             start_heading: None,
             target_object: None,
@@ -74,6 +77,12 @@ impl Episode {
             extra: Map::new(),
             as_read: Map::new(),
         }
+    }
+
+    /// The episode of all of a recording, with the texts about it.
+    pub(crate) fn for_recording(scene: SceneId, instructions: Vec<String>) -> Self {
+        let name = scene.as_str().to_owned();
+        Self { is_whole_recording: true, instructions, ..Self::new(name.clone(), name, scene) }
     }
 
     /// The episode of a path, with the path's name. It has viewpoints where each frame has one. Where the motion is
@@ -95,7 +104,8 @@ impl Episode {
     #[must_use]
     pub fn goes_anywhere(&self) -> bool {
         let Self { viewpoints, floor_positions, .. } = self;
-        viewpoints.iter().any(|other| viewpoints.first() != Some(other))
+        self.is_whole_recording
+            || viewpoints.iter().any(|other| viewpoints.first() != Some(other))
             || floor_positions.iter().any(|other| floor_positions.first() != Some(other))
     }
 

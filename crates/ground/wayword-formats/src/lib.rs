@@ -59,6 +59,7 @@ pub mod submission;
 #[cfg(feature = "parquet")]
 pub mod table;
 pub mod text_hash;
+pub mod training;
 pub mod trajectories;
 pub mod vlnce;
 pub mod vlnce_actions;

@@ -26,6 +26,8 @@ use wayword_core::{DVec3, SceneId};
 
 /// Within this distance of the goal an agent has arrived, metres (VLN-CE's own value).
 const GOAL_RADIUS_M: f64 = 3.0;
+/// The language of texts that name none: RxR's loader knows en-US, en-IN, hi-IN and te-IN.
+const RXR_LANGUAGE: &str = "en-US";
 
 /// The contents of a VLN-CE file.
 #[derive(Debug, Clone, PartialEq)]
@@ -257,6 +259,51 @@ pub fn write_vlnce_file(file: &Path, dataset: &VlnceDataset) -> Result<(), Forma
         output::write_list(out, &episodes)?;
         write!(out, ",\n\"instruction_vocab\": {vocabulary}}}")
     })
+}
+
+/// Writes a file of RxR-CE, one episode per instruction; gzip where the name ends in `.gz`. Returns the name of each episode, in the order
+/// of the instructions.
+///
+/// Its loader (`RxRVLNCEDatasetV1` in jacobkrantz/VLN-CE, `habitat_extensions/task.py`) crashes on fields that it does not know, its trainer
+/// looks for episodes by names that are texts, and for features by `instruction_id`, which has to be a number. So episodes are
+/// numbered. There is no vocabulary: tokens are those of language models. A text without a language is "en-US".
+///
+/// # Errors
+/// When an item has no floor positions, or the file cannot be written.
+pub fn write_rxrce_file(file: &Path, episodes: &[Episode]) -> Result<Vec<String>, FormatError> {
+    let (mut written, mut names) = (Vec::new(), Vec::new());
+    for episode in episodes {
+        for (index, text) in episode.instructions.iter().enumerate() {
+            let number = (written.len() + 1).to_string();
+            let mut fields = Map::new();
+            fields.insert("episode_id".to_owned(), number.as_str().into());
+            add_place(file, &mut fields, episode)?;
+            // A number would be read too, but episodes of other files have texts here.
+            if let Some(Value::Number(path)) = fields.get("trajectory_id") {
+                let path = path.to_string();
+                fields.insert("trajectory_id".to_owned(), path.into());
+            }
+            let language = episode.language_of(index).unwrap_or(RXR_LANGUAGE);
+            let instruction = json!({
+                "instruction_id": number,
+                "instruction_text": text,
+                "language": language,
+                "annotator_id": null,
+                "edit_distance": null,
+                "timed_instruction": null,
+                "instruction_tokens": null,
+            });
+            fields.insert("instruction".to_owned(), instruction);
+            written.push(fields);
+            names.push(number);
+        }
+    }
+    output::write_file(file, |out| {
+        out.write_all(b"{\"episodes\": ")?;
+        output::write_list(out, &written)?;
+        out.write_all(b"}")
+    })?;
+    Ok(names)
 }
 
 /// Adds the scene, the path with its start and goal, and `info`.
