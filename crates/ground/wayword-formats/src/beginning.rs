@@ -94,6 +94,15 @@ fn contents_by_item(item: &Map<String, Value>) -> FileContents {
         let is_prediction = has("path") && !has("scan") && !has("instruction");
         return if is_prediction { FileContents::OtherPredictions } else { FileContents::Dataset(DatasetFormat::Rxr) };
     }
+    if has("video") && has("actions") {
+        return FileContents::Dataset(DatasetFormat::Streamvln);
+    }
+    if has("video_id") && has("frames") {
+        return FileContents::Dataset(DatasetFormat::Navila);
+    }
+    if has("episode_index") && has("tasks") {
+        return FileContents::Dataset(DatasetFormat::Internnav);
+    }
     if has("unobstructed") && has("image_id") {
         return FileContents::Other("the viewpoint graph of a scene");
     }

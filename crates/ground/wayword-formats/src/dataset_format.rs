@@ -15,16 +15,42 @@ pub enum DatasetFormat {
     Vlnce,
     /// Wayword's own records.
     Wayword,
+    /// StreamVLN's trajectory data: recordings with texts.
+    Streamvln,
+    /// NaVILA's decisions: recordings with texts.
+    Navila,
+    /// The episodes of a LeRobot dataset of version 2, as InternNav has them: recordings with texts.
+    Internnav,
+    /// A LeRobot dataset of version 3: recordings with texts.
+    Lerobot,
 }
 
 /// There is no format of that name.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("there is no format {0:?}; choose one of r2r, reverie, rxr, vlnce, wayword")]
+#[error(
+    "there is no format {0:?}; choose one of r2r, reverie, rxr, vlnce, wayword, streamvln, navila, internnav, lerobot"
+)]
 pub struct UnknownFormat(String);
 
 impl DatasetFormat {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::R2r, Self::Reverie, Self::Rxr, Self::Vlnce, Self::Wayword];
+    pub const ALL: [Self; 9] = [
+        Self::R2r,
+        Self::Reverie,
+        Self::Rxr,
+        Self::Vlnce,
+        Self::Wayword,
+        Self::Streamvln,
+        Self::Navila,
+        Self::Internnav,
+        Self::Lerobot,
+    ];
+
+    /// Whether its items are recordings with texts. Such a layout has pictures too, and is no file of items that could be written alone.
+    #[must_use]
+    pub fn holds_recordings(self) -> bool {
+        matches!(self, Self::Streamvln | Self::Navila | Self::Internnav | Self::Lerobot)
+    }
 
     /// Its name, as `--format` takes it.
     #[must_use]
@@ -35,6 +61,10 @@ impl DatasetFormat {
             Self::Rxr => "rxr",
             Self::Vlnce => "vlnce",
             Self::Wayword => "wayword",
+            Self::Streamvln => "streamvln",
+            Self::Navila => "navila",
+            Self::Internnav => "internnav",
+            Self::Lerobot => "lerobot",
         }
     }
 }

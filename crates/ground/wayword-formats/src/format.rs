@@ -4,9 +4,11 @@ use crate::{
     DatasetFormat, Episode, FormatError,
     beginning::{BeginningFailure, FileContents, look_at_beginning},
     json_fault::JsonFault,
-    jsonl, r2r, reverie, rxr, vlnce,
+    jsonl, r2r, reverie, rxr,
+    training::{episode_lines, navila, streamvln},
+    vlnce,
 };
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 impl DatasetFormat {
     /// Reads a file of this format.
@@ -20,6 +22,20 @@ impl DatasetFormat {
             Self::Rxr => rxr::read_rxr_file(file),
             Self::Vlnce => vlnce::read_vlnce_file(file).map(|dataset| dataset.episodes),
             Self::Wayword => jsonl::read_records(file).map(|records| jsonl::episodes_from_records(&records)),
+            Self::Streamvln => streamvln::read_streamvln_episodes(&file_in_dataset(file)),
+            Self::Navila => navila::read_navila_episodes(&file_in_dataset(file)),
+            Self::Internnav => episode_lines::read_internnav_episodes(&file_in_dataset(file)),
+            #[cfg(feature = "parquet")]
+            Self::Lerobot => crate::training::lerobot_texts::read_lerobot_episodes(file),
+            #[cfg(not(feature = "parquet"))]
+            Self::Lerobot => {
+                let hint = "build Wayword with `cargo build --release --features full`";
+                Err(FormatError::for_document(
+                    file,
+                    "this build reads no tables, in which a LeRobot dataset has its texts",
+                    hint,
+                ))
+            }
         }
     }
 }
@@ -32,16 +48,29 @@ pub fn read_any_format(file: &Path) -> Result<Vec<Episode>, FormatError> {
     detect_format(file)?.read_file(file)
 }
 
-/// Recognises a file's format by its beginning:
+/// The file with the texts of a dataset's folder, which people name instead of it; `path` itself if it is no such folder.
+fn file_in_dataset(path: &Path) -> PathBuf {
+    let inside = ["annotations.json", "meta/episodes.jsonl"].map(|name| path.join(name));
+    inside.into_iter().find(|file| file.is_file()).unwrap_or_else(|| path.to_owned())
+}
+
+/// Recognises a file's format by its beginning, or that of a folder that holds a dataset for training:
 ///
 /// - an item of a list or a line is RxR's where it has `instruction_id`, REVERIE's where it has an object (`objId`) or an
 ///   `id` that begins with its `path_id`, else R2R's;
+/// - an item with `video` and `actions` is StreamVLN's, one with `video_id` and `frames` NaVILA's, and a line with `episode_index` and
+///   `tasks` LeRobot's;
 /// - an object or line with `format` is Wayword's, one with `episodes` or `instruction_vocab` VLN-CE's.
 ///
 /// # Errors
 /// When it cannot be read, or its beginning is none of these. A submission, and other files of the field that are no
 /// datasets, are named.
 pub fn detect_format(file: &Path) -> Result<DatasetFormat, FormatError> {
+    let in_dataset = file_in_dataset(file);
+    if in_dataset == file && file.join("meta/info.json").is_file() {
+        return Ok(DatasetFormat::Lerobot);
+    }
+    let file = in_dataset.as_path();
     const FORMATS: &str = "give a file in one of the formats r2r, reverie, rxr, vlnce, wayword";
     let (contents, failure) = look_at_beginning(file)?;
     let refused = |problem: &str, hint| Err(FormatError::for_document(file, problem, hint));

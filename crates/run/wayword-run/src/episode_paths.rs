@@ -6,7 +6,8 @@ use wayword_core::{ObjectId, Path, PathMotion, Platform, PlatformError};
 use wayword_formats::Episode;
 use wayword_world::{episode_path::target_for_object, frames_over_floor, path_over_viewpoints};
 
-/// The path of an episode: over its viewpoints, or else over its positions on the floor (VLN-CE). Without either it has no frames.
+/// The path of an episode: over its viewpoints, all of its recording, or else over its positions on the floor (VLN-CE). Without any of
+/// these it has no frames.
 ///
 /// # Errors
 /// When the scene or a viewpoint is unknown, two viewpoints in a row have no edge, or data cannot be read.
@@ -14,6 +15,11 @@ pub fn path_for_episode(platform: &dyn Platform, episode: &Episode) -> Result<Pa
     let (scene, heading, object) = (&episode.scene, episode.start_heading, episode.target_object.as_ref());
     if !episode.viewpoints.is_empty() {
         return path_over_viewpoints(platform, &*episode.id, scene, &episode.viewpoints, heading, object);
+    }
+    if episode.is_whole_recording
+        && let Some(path) = platform.whole_path(scene)?
+    {
+        return Ok(Path { id: episode.id.clone(), ..path });
     }
     let frames = frames_over_floor(platform, scene, &episode.floor_positions, heading)?;
     let target = match (object, frames.last()) {

@@ -72,7 +72,9 @@ fn episode_items(
     platform: &dyn Platform,
 ) -> Result<Vec<RunItem>, CommandError> {
     let episodes = wayword_formats::read_any_format(file)?;
-    let has_places = |episode: &Episode| !episode.viewpoints.is_empty() || !episode.floor_positions.is_empty();
+    let has_places = |episode: &Episode| {
+        !episode.viewpoints.is_empty() || !episode.floor_positions.is_empty() || episode.is_whole_recording
+    };
     if let Some(without_places) = episodes.iter().find(|episode| !has_places(episode)) {
         let problem = format!(
             "{}: episode {} names neither viewpoints nor positions, but paths need them",
@@ -146,7 +148,7 @@ fn random_items(settings: &RunSettings, platform: &dyn Platform) -> Result<Vec<R
 }
 
 /// The platform with random paths that may all be equal: of a short recording, each path is the whole.
-const RECORDING_PLATFORM: &str = "recording";
+pub const RECORDING_PLATFORM: &str = "recording";
 /// With more recordings than this, equal paths are not searched for, because all recordings would have to be opened.
 const MAX_COMPARED_RECORDINGS: usize = 8;
 

@@ -125,7 +125,7 @@ impl RecordingSource for PictureFolder {
         let mut timed = self.timed_pictures(described.pictures_per_s.unwrap_or(1.0))?;
         timed.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (times_s, files) = timed.into_iter().unzip();
-        let reel = FolderReel { times_s, files };
+        let reel = FolderReel { times_s, files, remarks: Vec::new() };
         let track = self
             .find_poses(&described)?
             .map(|source| poses::read_source(&source, &described, &reel.times_s, &|number| reel.picture_name(number)));
@@ -145,10 +145,12 @@ impl RecordingSource for PictureFolder {
     }
 }
 
-/// The pictures of a folder.
-struct FolderReel {
-    times_s: Vec<f64>,
-    files: Vec<PathBuf>,
+/// Pictures that are files.
+pub(crate) struct FolderReel {
+    pub(crate) times_s: Vec<f64>,
+    pub(crate) files: Vec<PathBuf>,
+    /// What the user has to be told.
+    pub(crate) remarks: Vec<String>,
 }
 
 impl FolderReel {
@@ -180,6 +182,10 @@ impl PictureReel for FolderReel {
     fn picture_name(&self, number: usize) -> String {
         let name = self.files.get(number).and_then(|file| file.file_name());
         name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+    }
+
+    fn remarks(&self) -> &[String] {
+        &self.remarks
     }
 
     fn hand_out_pictures(&self, wanted: &[usize], take: &mut TakePicture<'_>) -> Result<(), PlatformError> {

@@ -45,6 +45,7 @@ mod poses;
 mod reel;
 mod shelf;
 mod track;
+mod training_walks;
 #[cfg(feature = "video")]
 mod video;
 

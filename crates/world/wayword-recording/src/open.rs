@@ -9,6 +9,7 @@ use crate::{
     photographs::NoPhotographs,
     reel::{Recording, RecordingSource},
     shelf::RecordingShelf,
+    training_walks,
 };
 use std::{
     collections::BTreeSet,
@@ -226,6 +227,9 @@ fn open_one(path: &Path) -> Result<Option<RecordingEntry>, PlatformError> {
         if path.join("meta").join("info.json").is_file() {
             return open_lerobot(path).map(other);
         }
+        if let Some(walks) = training_walks::open_annotated(path)? {
+            return Ok(other(Box::new(walks)));
+        }
         if let Some(bag) = open_bag(path)? {
             return Ok(other(bag));
         }
@@ -269,6 +273,9 @@ fn is_recording_file(name: &str) -> bool {
 
 #[cfg(feature = "lerobot")]
 fn open_lerobot(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
+    if let Some(walks) = training_walks::open_internnav(path)? {
+        return Ok(Box::new(walks));
+    }
     let file = path.join(crate::describe::FOLDER_FILE);
     let described = RecordingDescription::read(&file)?.refuse_pose_file_settings(&file)?;
     Ok(Box::new(crate::lerobot::LeRobotDataset::open(path, described)?))

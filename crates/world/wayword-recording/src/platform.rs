@@ -283,6 +283,19 @@ impl Platform for RecordingPlatform {
         Ok(Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, target: None, motion: opened.motion() })
     }
 
+    fn whole_path(&self, scene: &SceneId) -> Result<Option<Path>, PlatformError> {
+        let opened = self.open_scene(scene)?;
+        let last = opened.stops.len().saturating_sub(1);
+        if last == 0 || !opened.breaks.is_empty() {
+            let request = "all of it, because it has gaps or fewer than 2 frames".to_owned();
+            let hint = "record more, or set a smaller interval_m or interval_s in recording.toml (docs/RECORDINGS.md)";
+            return Err(PlatformError::NoSuchPath { scene: scene.clone(), request, hint });
+        }
+        let frames = opened.frames_between(0, last);
+        let id = scene.as_str().to_owned();
+        Ok(Some(Path { id, scene: scene.clone(), frames, target: None, motion: opened.motion() }))
+    }
+
     /// The picture of this frame if the camera looked in this direction; else a view without a picture.
     fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
         let opened = self.open_scene(scene)?;

@@ -70,10 +70,19 @@ pub fn write_items(
             vlnce::write_vlnce_file(file, &VlnceDataset::from_episodes(gather_path_items(episodes)))?;
         }
         DatasetFormat::Wayword => jsonl::write_records(file, records)?,
+        DatasetFormat::Streamvln | DatasetFormat::Navila | DatasetFormat::Internnav | DatasetFormat::Lerobot => {
+            let problem = format!("format {format} has pictures too, and is no file of items");
+            return Err(CommandError::usage(problem, format!("use `wayword export --format {format}`")));
+        }
     }
     if bears_provenance(format) {
         return Ok(None);
     }
+    write_provenance(file, records)
+}
+
+/// Writes the provenance of records into a second file beside a dataset, and returns its name.
+pub(super) fn write_provenance(file: &Path, records: &[InstructionRecord]) -> Result<Option<PathBuf>, CommandError> {
     let lines: Vec<Value> = records
         .iter()
         .map(|record| json!({"path": record.path.id, "text": record.instruction.text, "wayword": provenance_json(record)}))

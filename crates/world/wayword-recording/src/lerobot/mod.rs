@@ -25,7 +25,7 @@ use crate::{
 use camera::DatasetCamera;
 use episodes::DatasetEpisode;
 use info::{DatasetInfo, DatasetLayout};
-use parquet::ParquetTable;
+pub(crate) use parquet::ParquetTable;
 use pictures::{RowReel, VideoStretch};
 use pose_feature::{PoseFeature, YAW_UNIT_HINT};
 use std::{

@@ -50,7 +50,7 @@ pub(super) type TakeBytes<'a> = dyn FnMut(u64, Option<&[u8]>) -> Result<(), Plat
 
 /// A Parquet file: rows with named columns.
 #[derive(Debug)]
-pub(super) struct ParquetTable {
+pub(crate) struct ParquetTable {
     path: PathBuf,
     about: ParquetMetaData,
 }
@@ -60,7 +60,7 @@ impl ParquetTable {
     ///
     /// # Errors
     /// When it is not a Parquet file.
-    pub(super) fn open(path: &Path) -> Result<Self, PlatformError> {
+    pub(crate) fn open(path: &Path) -> Result<Self, PlatformError> {
         let about = footer::read_footer(&files::open_plain_file(path, PARQUET_HINT)?);
         Ok(Self {
             path: path.to_owned(),
@@ -79,7 +79,7 @@ impl ParquetTable {
     }
 
     /// Whether there is a column of this name.
-    pub(super) fn has_column(&self, name: &str) -> bool {
+    pub(crate) fn has_column(&self, name: &str) -> bool {
         self.leaf_columns().iter().any(|leaf| is_named(leaf, name))
     }
 
@@ -114,18 +114,19 @@ impl ParquetTable {
         })
     }
 
-    /// Some elements of a column of lists of `width` numbers: for each row in order, those at the indices `kept`.
+    /// Some elements of a column of lists of `width` numbers: for each row in order, those at the indices `kept`. The numbers of lists in a
+    /// list (a matrix) count one after the other.
     ///
     /// # Errors
     /// When the column does not exist, a list has another length, or the file is broken.
-    pub(super) fn read_lists(
+    pub(crate) fn read_lists(
         &self,
         name: &str,
         rows: Range<u64>,
         width: usize,
         kept: &[usize],
     ) -> Result<Vec<f64>, PlatformError> {
-        let leaf = self.find_leaf(name, |leaf| is_number(leaf) && leaf.max_rep_level() == 1)?;
+        let leaf = self.find_leaf(name, |leaf| is_number(leaf) && leaf.max_rep_level() >= 1)?;
         let mut numbers = Vec::new();
         self.each_row_group(leaf, rows, |column, group, rows| {
             let mut row = group.start;
