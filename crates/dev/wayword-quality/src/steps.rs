@@ -13,7 +13,7 @@ pub struct StepsArgs {
     /// The run that was exported.
     #[arg(long, value_name = "DIR")]
     run: PathBuf,
-    /// Take every n-th picture of a walk.
+    /// Draw every n-th walk again.
     #[arg(long, default_value_t = 1)]
     every: usize,
 }
@@ -27,8 +27,15 @@ pub fn replay_steps(flags: &StepsArgs, output: &CommandOutput) -> Result<(), Com
     output.print_result(
         &replay,
         format_args!(
-            "{} walks, {} astray, the farthest ends {:.2} m from its walk's end; {} pictures, {} others than those of their poses",
-            replay.walks, replay.astray, replay.farthest_off_m, replay.pictures, replay.others
+            "{} walks, {} astray, the farthest ends {:.2} m from its walk's end; {} pictures, {} others than those of their poses; {} pixel \
+             goals, {} of them at their place",
+            replay.walks,
+            replay.astray,
+            replay.farthest_off_m,
+            replay.pictures,
+            replay.others,
+            replay.goals,
+            replay.goals_near
         ),
     );
     Ok(())

@@ -1,14 +1,19 @@
 //! Scenes with walkable ground, in which an agent can take single steps: generated houses and Habitat's scenes, each with its navmesh.
 
 use std::sync::Arc;
-use wayword_core::{DVec3, Frame, Heading, Image, Path, Platform, PlatformError, Pose, RecentCache, SceneId, ViewGaze};
+use wayword_core::{DVec3, Path, Platform, PlatformError, RecentCache, SceneId};
 use wayword_habitat::{
     HabitatOptions, HabitatPlatform, NavMesh, NavMeshGround, NavMeshSettings, axes::EYE_M, bake::bake_navmesh,
     scene::SceneModel,
 };
 use wayword_house::{House, HouseOptions, HousePlatform, build_surfaces, generate_house, seed_of};
+use wayword_render::{PinholeCamera, RenderedPicture};
 use wayword_run::{error::CommandError, platforms, settings::RunSettings, stores};
 
+/// Height from which the floor under a place is looked for, metres.
+const PROBE_HEIGHT_M: f64 = 0.5;
+/// Farthest that the floor is from a place on its navmesh, metres.
+const MAX_ABOVE_FLOOR_M: f64 = 0.4;
 /// Navmeshes that are kept in memory.
 const MAX_NAVMESHES: usize = 6;
 
@@ -72,20 +77,39 @@ impl WalkingScenes {
         }
     }
 
-    /// The picture that an agent sees from a place on the floor, looking along a heading. `eye_m` is the height of its eye.
+    /// What a camera sees, which may be pitched: depths, and colours if `coloured`.
     ///
     /// # Errors
     /// When the scene does not exist, or cannot be drawn.
-    pub(crate) fn take_picture(
+    pub(crate) fn render_camera(
         &self,
         scene: &SceneId,
-        (floor, heading): (DVec3, Heading),
-        eye_m: f64,
-        horizontal_fov_rad: f64,
-    ) -> Result<Arc<Image>, PlatformError> {
-        let from = Frame { pose: Pose::looking_level(floor + DVec3::Z * eye_m, heading), viewpoint: None, level: None };
-        let view = self.platform().look_from(scene, &from, ViewGaze { heading, horizontal_fov_rad })?;
-        view.image.ok_or_else(|| PlatformError::NotDrawn { scene: scene.clone(), reason: "it has no picture".into() })
+        camera: &PinholeCamera,
+        coloured: bool,
+    ) -> Result<RenderedPicture, PlatformError> {
+        match &self.kind {
+            WalkingPlatform::Houses(houses) => houses.render_camera(scene, camera, coloured),
+            WalkingPlatform::Habitat(scenes) => scenes.render_camera(scene, camera, coloured),
+        }
+    }
+
+    /// How far a place on the navmesh is above the drawn floor, metres; `None` if no floor is drawn near under it.
+    ///
+    /// # Errors
+    /// When the scene does not exist, or cannot be drawn.
+    pub(crate) fn above_floor_m(&self, scene: &SceneId, place: DVec3) -> Result<Option<f64>, PlatformError> {
+        // One pixel, from a height at which nothing hangs over the place.
+        let camera = PinholeCamera {
+            position: place + DVec3::Z * PROBE_HEIGHT_M,
+            heading_rad: 0.0,
+            elevation_rad: -std::f64::consts::FRAC_PI_2,
+            vertical_fov_rad: 0.001,
+            width: 1,
+            height: 1,
+        };
+        let seen = self.render_camera(scene, &camera, false)?;
+        let above_m = seen.depth_m.first().map_or(f64::INFINITY, |depth_m| f64::from(*depth_m)) - PROBE_HEIGHT_M;
+        Ok((above_m.abs() <= MAX_ABOVE_FLOOR_M).then_some(above_m))
     }
 
     /// The ground of a scene.

@@ -1,15 +1,18 @@
-//! Trajectories for training policies: the actions along a walk, the agent's pose before each, the picture it sees
-//! there, and the instructions about it.
+//! Trajectories for training policies: the actions along a walk, the agent's pose before each, what its cameras see there, and the
+//! instructions about it.
 //!
-//! A folder has `trajectories.jsonl`, one line per walk, and the pictures: in a folder for each walk
-//! (`images/ID/0000.jpg`), or in shards as WebDataset reads them (`shards/000000.tar`, one sample per walk:
-//! `000012.json`, `000012.0000.jpg` and so on). Picture n is what the agent sees before action n.
+//! A folder has `trajectories.jsonl`, one line per walk, and a folder for each camera, `cameras/125cm_30deg`, with its intrinsics
+//! (`camera.json`), a line per walk (`pictures.jsonl`) and the pictures: in folders (`rgb/ID/0000.jpg`, `depth/ID/0000.png`), or
+//! in shards as WebDataset reads them (`shards/000000.tar`, one sample per walk: `000012.json`, `000012.rgb.0000.jpg` and so
+//! on). Picture n is what the camera sees before action n.
 
+mod camera;
 mod pictures;
 mod read;
 mod shard;
 
-pub use pictures::{PictureDigest, picture_name, read_pictures};
+pub use camera::{CameraIntrinsics, CameraWalk, PixelGoal, camera_walk_line, read_camera_walks};
+pub use pictures::{PictureDigest, PictureKind, PictureLocation, PictureSet, read_pictures};
 pub use read::read_trajectories;
 pub use shard::ShardWriter;
 
@@ -24,7 +27,7 @@ use std::path::Path;
 use wayword_core::{AgentAction, DVec3, Heading, SceneId};
 
 /// The value of `format`.
-const TRAJECTORY_FORMAT: &str = "wayword-trajectory/1";
+const TRAJECTORY_FORMAT: &str = "wayword-trajectory/2";
 /// Positions and headings are rounded to that part of a metre and of a radian: a millionth.
 const PARTS_PER_UNIT: f64 = 1e6;
 /// The four numbers of a rotation are rounded to that part of 1, so that the heading keeps its digits.
@@ -43,35 +46,20 @@ pub struct ActionTrajectory {
     pub split: String,
     /// The agent's actions. The last action, and no other, is [`AgentAction::Stop`].
     pub actions: Vec<AgentAction>,
-    /// Where the agent is before each action, on the floor, world frame, metres.
+    /// Where the agent is before each action, on the navmesh, world frame, metres.
     pub positions: Vec<DVec3>,
     /// Which way it looks before each action.
     pub headings: Vec<Heading>,
+    /// How far each position is above the drawn floor, metres; `None` if no floor is drawn under it.
+    pub above_floor_m: Vec<Option<f64>>,
     /// For each frame of the path, the number of the action before which the agent comes there.
     pub frame_steps: Vec<usize>,
     /// How far from the end of the path it stops, metres.
     pub off_m: f64,
-    /// Where its pictures are.
-    pub pictures: PictureLocation,
-    /// SHA-256 of its pictures, one after the other ([`PictureDigest`]).
-    pub sha256: String,
+    /// SHA-256 of the path that the agent follows.
+    pub path_sha256: String,
     /// The instructions about it.
     pub instructions: Vec<TrajectoryInstruction>,
-}
-
-/// Where the pictures of a walk are, below the folder of `trajectories.jsonl`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum PictureLocation {
-    /// A folder: `images/ID`.
-    Folder(String),
-    /// A sample of a shard.
-    Sample {
-        /// `shards/000000.tar`.
-        shard: String,
-        /// `000012`.
-        key: String,
-    },
 }
 
 /// An instruction about a walk.
@@ -83,8 +71,10 @@ pub struct TrajectoryInstruction {
     pub style: String,
     /// Its words.
     pub text: String,
-    /// Its parts, in order.
+    /// Its parts, in order. The first begins before action 0, and each begins before a later action than the one before.
     pub sub_instructions: Vec<SubInstruction>,
+    /// How many parts of the text have no length of their own on the walk, and were joined with a neighbour.
+    pub joined_parts: usize,
 }
 
 /// A part of an instruction, and the part of the walk that it is about.
@@ -98,6 +88,16 @@ pub struct SubInstruction {
     pub frames: [usize; 2],
     /// The actions before which the agent comes to these frames.
     pub steps: [usize; 2],
+}
+
+impl ActionTrajectory {
+    /// The place on the drawn floor under the agent before an action; where no floor is drawn, its place on the navmesh. `None` if the
+    /// walk has no such action.
+    #[must_use]
+    pub fn floor_position(&self, step: usize) -> Option<DVec3> {
+        let above_m = self.above_floor_m.get(step).copied().flatten().unwrap_or_default();
+        Some(*self.positions.get(step)? - DVec3::Z * above_m)
+    }
 }
 
 /// A position and a heading as a file holds them, with few digits. Pictures are taken from there, so that readers of the
@@ -116,12 +116,19 @@ fn rounded_heading(heading: Heading) -> Heading {
 }
 
 fn rotation_from_heading(heading: Heading) -> [f64; 4] {
-    habitat_from_heading(heading).map(|part| (part * ROTATION_PARTS).round() / ROTATION_PARTS)
+    // No -0, which a reader would write as 0.
+    habitat_from_heading(heading).map(|part| (part * ROTATION_PARTS).round() / ROTATION_PARTS + 0.0)
 }
 
 /// The heading of a rotation that a file has, with the digits that its writer had.
 fn heading_from_rotation(rotation: [f64; 4]) -> Option<Heading> {
     heading_from_habitat(rotation).map(rounded_heading)
+}
+
+/// A length as a file holds it, with few digits.
+#[must_use]
+pub fn round_length_m(length_m: f64) -> f64 {
+    (length_m * PARTS_PER_UNIT).round() / PARTS_PER_UNIT
 }
 
 /// The line of a trajectory.
@@ -131,7 +138,7 @@ pub fn trajectory_line(trajectory: &ActionTrajectory) -> Value {
     let positions: Vec<_> = trajectory
         .positions
         .iter()
-        .map(|position| habitat_from_wayword(round_position(*position)).to_array())
+        .map(|position| habitat_from_wayword(round_position(*position)).to_array().map(|part| part + 0.0))
         .collect();
     let rotations: Vec<_> = trajectory.headings.iter().map(|heading| rotation_from_heading(*heading)).collect();
     json!({
@@ -144,10 +151,10 @@ pub fn trajectory_line(trajectory: &ActionTrajectory) -> Value {
         "actions": actions,
         "positions": positions,
         "rotations": rotations,
+        "above_floor_m": trajectory.above_floor_m,
         "frame_steps": trajectory.frame_steps,
-        "off_m": (trajectory.off_m * PARTS_PER_UNIT).round() / PARTS_PER_UNIT,
-        "pictures": trajectory.pictures,
-        "sha256": trajectory.sha256,
+        "off_m": round_length_m(trajectory.off_m),
+        "path_sha256": trajectory.path_sha256,
     })
 }
 

@@ -1,12 +1,9 @@
 //! Reads trajectories, and refuses those that break a rule of the format.
 
-use super::{ActionTrajectory, PictureLocation, SubInstruction, TRAJECTORY_FORMAT, TrajectoryInstruction};
+use super::{ActionTrajectory, SubInstruction, TRAJECTORY_FORMAT, TrajectoryInstruction};
 use crate::{DatasetItem, FormatError, habitat::wayword_from_habitat, input, limits};
 use serde_json::Value;
-use std::{
-    collections::BTreeSet,
-    path::{Component, Path},
-};
+use std::{collections::BTreeSet, path::Path};
 use wayword_core::{AgentAction, DVec3, Heading};
 
 /// Most actions of one walk; a file with a longer one is refused.
@@ -53,12 +50,8 @@ fn take_trajectory(item: &mut DatasetItem<'_>) -> Result<ActionTrajectory, Forma
     let frame_steps = take_frame_steps(item, actions.len())?;
     let (positions, headings) = take_poses(item, actions.len())?;
     let off_m = item.take_field("off_m")?;
-    let pictures = take_picture_location(item)?;
-    let sha256 = item.take_field("sha256")?;
-    let sha256 = item.checked_text("sha256", &sha256)?.to_owned();
-    if sha256.len() != 64 || !sha256.bytes().all(|digit| digit.is_ascii_hexdigit()) {
-        return Err(item.wrong_field("sha256", "it is no SHA-256", "write 64 hexadecimal digits"));
-    }
+    let above_floor_m = take_above_floor(item, actions.len())?;
+    let path_sha256 = item.take_field("path_sha256")?;
     let instructions = take_instructions(item, &frame_steps)?;
     Ok(ActionTrajectory {
         platform: item.checked_name("platform", &platform)?,
@@ -70,8 +63,8 @@ fn take_trajectory(item: &mut DatasetItem<'_>) -> Result<ActionTrajectory, Forma
         positions,
         headings,
         frame_steps,
-        pictures,
-        sha256,
+        above_floor_m,
+        path_sha256: item.checked_name("path_sha256", &path_sha256)?,
         instructions,
     })
 }
@@ -127,24 +120,15 @@ fn take_frame_steps(item: &mut DatasetItem<'_>, actions: usize) -> Result<Vec<us
     Ok(steps)
 }
 
-/// Takes the place of the pictures: a path of at most 512 bytes that does not leave the folder.
-fn take_picture_location(item: &mut DatasetItem<'_>) -> Result<PictureLocation, FormatError> {
-    let value = item.take_field("pictures")?;
-    let place: PictureLocation = item.parse_value("pictures", value)?;
-    let (path, key) = match &place {
-        PictureLocation::Folder(folder) => (folder, None),
-        PictureLocation::Sample { shard, key } => (shard, Some(key)),
-    };
-    let is_below = path.len() <= limits::MAX_LINE_BYTES.min(512)
-        && Path::new(path).components().all(|part| matches!(part, Component::Normal(_)))
-        && !path.is_empty();
-    if !is_below {
-        return Err(item.wrong_field("pictures", "it leads out of the folder", "write images/ID or shards/000000.tar"));
+/// Takes how far each position is above the floor.
+fn take_above_floor(item: &mut DatasetItem<'_>, count: usize) -> Result<Vec<Option<f64>>, FormatError> {
+    let value = item.take_field("above_floor_m")?;
+    let found = item.checked_list("above_floor_m", &value, MAX_ACTIONS)?.len();
+    if found != count {
+        let problem = format!("expected {count} entries, one for each action, found {found}");
+        return Err(item.wrong_field("above_floor_m", problem, "write a number or null for each position"));
     }
-    if key.is_some_and(|key| key.is_empty() || !key.bytes().all(|byte| byte.is_ascii_alphanumeric())) {
-        return Err(item.wrong_field("pictures.sample.key", "it is no key of a sample", "write digits, as in 000012"));
-    }
-    Ok(place)
+    item.parse_value("above_floor_m", value)
 }
 
 fn take_instructions(
@@ -169,8 +153,13 @@ fn take_instructions(
                 "shorten it: an instruction is a few sentences",
             ));
         }
+        let mut last_start = None;
         for (part, sub) in instruction.sub_instructions.iter().enumerate() {
-            if let Some((wrong, problem)) = find_fault(sub, &instruction.text, frame_steps) {
+            let grows = last_start.replace(sub.steps[0]).is_none_or(|last| last < sub.steps[0]);
+            let fault = find_fault(sub, &instruction.text, frame_steps);
+            if let Some((wrong, problem)) =
+                fault.or_else(|| (!grows).then_some(("steps", "it begins no later than the part before")))
+            {
                 let field = format!("{field}.sub_instructions[{part}].{wrong}");
                 return Err(item.wrong_field(&field, problem, "docs/FORMATS.md says what it should be"));
             }

@@ -1,7 +1,7 @@
 //! Shards as WebDataset reads them: tar archives in which the files of a sample follow one another and share the part
 //! of their name before the first point.
 
-use super::{ActionTrajectory, pictures::picture_name, trajectory_line};
+use super::{ActionTrajectory, PictureKind, pictures::sample_file, trajectory_line};
 use crate::OutputFile;
 use std::{
     fmt, io,
@@ -29,14 +29,23 @@ impl ShardWriter {
         Ok(Self { file: file.to_owned(), tar: tar::Builder::new(OutputFile::begin(file)?) })
     }
 
-    /// Adds a walk with its pictures.
+    /// Adds a walk with what a camera sees, kind by kind.
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn add_walk(&mut self, key: &str, trajectory: &ActionTrajectory, pictures: &[Vec<u8>]) -> io::Result<()> {
+    pub fn add_walk(
+        &mut self,
+        key: &str,
+        trajectory: &ActionTrajectory,
+        pictures: &[(PictureKind, &[Vec<u8>])],
+    ) -> io::Result<()> {
         self.append_file(&format!("{key}.json"), &serde_json::to_vec(&trajectory_line(trajectory))?)?;
-        let mut named = pictures.iter().enumerate();
-        named.try_for_each(|(number, picture)| self.append_file(&format!("{key}.{}", picture_name(number)), picture))
+        for (kind, pictures) in pictures {
+            for (number, picture) in pictures.iter().enumerate() {
+                self.append_file(&sample_file(key, *kind, number), picture)?;
+            }
+        }
+        Ok(())
     }
 
     /// Appends a file without time and owner, so that the same walks give the same bytes.

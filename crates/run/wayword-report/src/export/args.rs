@@ -26,8 +26,24 @@ pub enum ExportFormat {
     Parquet,
     /// A folder with tables and a dataset card.
     Hf,
-    /// A folder of trajectories: single actions, with a picture before each.
+    /// A folder of trajectories: single actions, with what cameras see before each.
     Steps,
+    /// StreamVLN's trajectory data.
+    Streamvln,
+    /// InternNav's VLN-CE walks with pixel goals.
+    Internnav,
+    /// InternData's VLN-N1.
+    InternnavN1,
+    /// NaVILA's decisions, and its videos for speakers.
+    Navila,
+    /// Uni-NaVid's and NaVid's conversations about videos.
+    Uninavid,
+    /// A folder with RxR-CE's episodes and actions.
+    Rxrce,
+    /// The lines from which VLN-DUET and ScaleVLN pre-train.
+    DuetPretrain,
+    /// A LeRobot dataset with columns of language.
+    Lerobot,
 }
 
 impl ExportFormat {
@@ -40,7 +56,7 @@ impl ExportFormat {
             Self::Rxr => Some(DatasetFormat::Rxr),
             Self::Vlnce => Some(DatasetFormat::Vlnce),
             Self::Wayword => Some(DatasetFormat::Wayword),
-            Self::Duet | Self::Parquet | Self::Hf | Self::Steps => None,
+            _ => None,
         }
     }
 
@@ -53,13 +69,28 @@ impl ExportFormat {
     /// Whether it takes texts of several styles.
     #[must_use]
     pub fn takes_all_styles(self) -> bool {
-        self.takes_several_runs() || self == Self::Steps
+        self.takes_several_runs() || self == Self::Steps || self.is_layout()
+    }
+
+    /// Whether it is a layout for training that is packed from steps.
+    #[must_use]
+    pub fn is_layout(self) -> bool {
+        matches!(
+            self,
+            Self::Streamvln | Self::Internnav | Self::InternnavN1 | Self::Navila | Self::Uninavid | Self::Lerobot
+        )
+    }
+
+    /// Whether it is a folder.
+    #[must_use]
+    pub fn is_folder(self) -> bool {
+        matches!(self, Self::Duet | Self::Hf | Self::Steps | Self::Rxrce | Self::DuetPretrain) || self.is_layout()
     }
 
     /// Whether the written files name the split of each text.
     #[must_use]
     pub fn names_splits(self) -> bool {
-        matches!(self, Self::Rxr | Self::Duet | Self::Parquet | Self::Hf | Self::Steps)
+        matches!(self, Self::Rxr | Self::Parquet) || self.is_folder()
     }
 }
 
@@ -92,14 +123,16 @@ Examples:
   wayword export --run runs/houses --format parquet --out houses.parquet
   wayword export --run runs/houses --format steps --out train        (VLN-CE's actions, with a picture before each)
   wayword export --run runs/houses --format steps --shard 100 --size-px 640x480 --out shards
+  wayword export --run runs/houses --format streamvln --out streamvln (layouts share the pictures in runs/houses/steps)
+  wayword export --run runs/houses --format lerobot --out lerobot
   wayword export --run runs/val_seen --style r2r --highlight doubts
   wayword export --texts R2R_val_seen.json --platform matterport --data DATA --highlight doubts")]
 pub struct ExportArgs {
     /// Run folder. Several can be merged in the formats wayword, parquet and hf.
     #[arg(long, value_name = "DIR")]
     pub run: Vec<PathBuf>,
-    /// Export only the instructions of this style; required for a run of several styles and all formats but wayword, parquet, hf
-    /// and steps.
+    /// Export only the instructions of this style; required for a run of several styles and the formats that are one dataset's or
+    /// agent's: r2r, reverie, rxr, vlnce, rxrce, duet and duet-pretrain.
     #[arg(long, value_name = "STYLE")]
     pub style: Option<String>,
     /// Instead of a dataset, write NAME.html and NAME.json: the texts with the words that a reader should doubt, and up to three
@@ -116,19 +149,20 @@ pub struct ExportArgs {
     #[arg(long, value_name = "WORLD", value_enum, default_value_t)]
     pub world: AskedWorld,
     /// Format: r2r, reverie, rxr, vlnce, wayword; duet, the files of VLN-DUET and VLN-HAMT with the ids of tokens; parquet, a table;
-    /// hf, a folder with tables and a dataset card, made for publishing; steps, a folder of single actions with a picture before
-    /// each, for training.
+    /// hf, a folder with tables and a dataset card, made for publishing; steps, a folder of single actions with what cameras see
+    /// before each; and what training code reads: streamvln, internnav, internnav-n1, navila, uninavid, lerobot, rxrce (VLN-CE for RxR) and
+    /// duet-pretrain.
     #[arg(long, value_enum, hide_possible_values = true)]
     pub format: Option<ExportFormat>,
-    /// File to write; for duet, hf and steps a folder. Where a format's loaders refuse unknown fields, the provenance goes into a second
+    /// File to write; for duet, hf, steps and what training code reads a folder. Where a format's loaders refuse unknown fields, the provenance goes into a second
     /// file beside it.
     #[arg(long, value_name = "PATH")]
     pub out: Option<PathBuf>,
-    /// With duet: the agent's tokenizer, a tokenizer.json or the model that has it, such as hf/google-bert/bert-base-uncased
+    /// With duet and duet-pretrain: the agent's tokenizer, a tokenizer.json or the model that has it, such as hf/google-bert/bert-base-uncased
     /// (R2R, REVERIE) or hf/FacebookAI/xlm-roberta-base (RxR).
     #[arg(long, value_name = "FILE|MODEL")]
     pub tokenizer: Option<String>,
-    /// With duet: the dataset of the agent's files. [default: the one that the style is named after; else reverie if the texts name
+    /// With duet and duet-pretrain: the dataset of the agent's files. [default: the one that the style is named after; else reverie if the texts name
     /// targets; else r2r]
     #[arg(long, value_enum)]
     pub dataset: Option<AgentDataset>,

@@ -18,9 +18,9 @@ const BERT_MODEL: &str = "hf/google-bert/bert-base-uncased";
 const XLM_ROBERTA: &str = "hf/FacebookAI/xlm-roberta-base";
 
 /// The token ids of each text, and whether the tokenizer is XLM-RoBERTa's.
-struct EncodedInstructions {
+pub(super) struct EncodedInstructions {
     is_xlm: bool,
-    ids: Vec<Vec<u32>>,
+    pub(super) ids: Vec<Vec<u32>>,
 }
 
 pub(super) fn write_duet(
@@ -54,7 +54,7 @@ pub(super) fn write_duet(
 }
 
 /// Refuses paths over open ground, because these agents walk a viewpoint graph.
-fn refuse_without_viewpoints(records: &[InstructionRecord]) -> Result<(), CommandError> {
+pub(super) fn refuse_without_viewpoints(records: &[InstructionRecord]) -> Result<(), CommandError> {
     let is_blind = |record: &&InstructionRecord| record.path.frames.iter().any(|frame| frame.viewpoint.is_none());
     let Some(record) = records.iter().find(is_blind) else { return Ok(()) };
     let problem = format!(
@@ -89,7 +89,7 @@ fn write_split(
 }
 
 /// The dataset that the texts resemble: the one that their style is named after, else REVERIE if most of them name a target, else R2R.
-fn usual_dataset(records: &[InstructionRecord]) -> AgentDataset {
+pub(super) fn usual_dataset(records: &[InstructionRecord]) -> AgentDataset {
     let all_have_style = |name: &str| records.iter().all(|record| record.instruction.style == name);
     let names_target = |record: &&InstructionRecord| {
         record.path.target.is_some()
@@ -127,7 +127,7 @@ fn no_tokenizer() -> CommandError {
 }
 
 #[cfg(feature = "local")]
-fn encode_instructions(
+pub(super) fn encode_instructions(
     tokenizer: Option<&str>,
     records: &[InstructionRecord],
     output: &CommandOutput,
@@ -156,7 +156,7 @@ fn find_tokenizer_file(tokenizer: &str, output: &CommandOutput) -> Result<PathBu
 }
 
 #[cfg(not(feature = "local"))]
-fn encode_instructions(
+pub(super) fn encode_instructions(
     _tokenizer: Option<&str>,
     _records: &[InstructionRecord],
     _output: &CommandOutput,

@@ -1,12 +1,18 @@
 //! `wayword export`: checks the flags, reads and merges the runs' records, and writes them in the chosen format.
 
 pub mod args;
-#[cfg(feature = "parquet")]
 mod card;
 mod duet;
+mod duet_pretraining;
 mod habitat_scenes;
 mod highlight;
 pub mod items;
+#[cfg(not(feature = "habitat"))]
+#[path = "no_layouts.rs"]
+mod layouts;
+#[cfg(feature = "habitat")]
+mod layouts;
+mod rxrce;
 mod splits;
 #[cfg(not(feature = "habitat"))]
 #[path = "no_steps.rs"]
@@ -14,7 +20,7 @@ mod steps;
 #[cfg(feature = "habitat")]
 mod steps;
 pub mod steps_args;
-#[cfg(feature = "parquet")]
+mod training_texts;
 mod unfinished_folder;
 #[cfg(feature = "habitat")]
 pub use habitat_scenes::lay_on_navmesh;
@@ -83,9 +89,20 @@ pub fn run_export(args: &ExportArgs, output: &CommandOutput) -> Result<Exit, Com
     let (format, out) = check_dataset_args(args)?;
     refuse_what_does_not_fit(args, format)?;
     refuse_over_input("--out", out, args.run.iter().flat_map(|run| files_of_run(run)))?;
-    let output = &output_beside(format, out, output)?;
-    let mut records = read_records(&args.run, args.style.as_deref())?;
+    // A layout is packed from the steps of all texts, and chooses among them later.
+    let style = args.style.as_deref();
+    let mut records = read_records(&args.run, style)?;
+    if format.is_layout() && style.is_some() {
+        records = read_records(&args.run, None)?;
+    }
     refuse_several_styles(format, &records)?;
+    if format.is_layout() && training_texts::are_of_recordings(&records) {
+        records.retain(|record| style.is_none_or(|style| record.instruction.style == style));
+        let output = &output.beside_data(&find_output_place(out)?);
+        training_texts::put_texts_back(args, (format, out), &records, output)?;
+        return Ok(Exit::Done);
+    }
+    let output = &output_beside(format, out, output)?;
     if let Some(share) = args.val_share {
         split_by_scene(&mut records, share, args.seed);
     }
@@ -94,6 +111,14 @@ pub fn run_export(args: &ExportArgs, output: &CommandOutput) -> Result<Exit, Com
         ExportFormat::Parquet => table::write_table(args, out, &records, output)?,
         ExportFormat::Hf => table::publish_tables(args, out, &records, output)?,
         ExportFormat::Steps => return steps::write_steps(args, out, &records, output),
+        ExportFormat::Rxrce => rxrce::write_rxrce(args, out, &records, output)?,
+        ExportFormat::DuetPretrain => duet_pretraining::write_pretraining(args, out, &records, output)?,
+        ExportFormat::Streamvln
+        | ExportFormat::Internnav
+        | ExportFormat::InternnavN1
+        | ExportFormat::Navila
+        | ExportFormat::Uninavid
+        | ExportFormat::Lerobot => return layouts::export_layout(args, (format, out), &records, output),
         ExportFormat::R2r | ExportFormat::Reverie | ExportFormat::Rxr | ExportFormat::Vlnce | ExportFormat::Wayword => {
             write_one_file(args, format, out, &records, output)?;
         }
@@ -122,7 +147,7 @@ fn check_dataset_args(args: &ExportArgs) -> Result<(ExportFormat, &Path), Comman
 
 /// Refuses a place that cannot take the format. The returned output keeps standard output free if the data goes there.
 fn output_beside(format: ExportFormat, out: &Path, output: &CommandOutput) -> Result<CommandOutput, CommandError> {
-    if matches!(format, ExportFormat::Duet | ExportFormat::Hf | ExportFormat::Steps) {
+    if format.is_folder() {
         expect_output_folder(out)?;
         return Ok(output.clone());
     }
@@ -140,7 +165,10 @@ fn refuse_what_does_not_fit(args: &ExportArgs, format: ExportFormat) -> Result<(
     let splits_itself = format.names_splits() || format == ExportFormat::Wayword;
     if args.val_share.is_some() && !splits_itself {
         let problem = format!("format {format} has no splits within a file");
-        return refused(problem, "use --val-share with --format wayword, rxr, duet, parquet, hf or steps");
+        return refused(
+            problem,
+            "use --val-share with --format wayword, rxr, duet, parquet, hf, steps, or a layout for training",
+        );
     }
     if let Some(share) = args.val_share.filter(|share| !(0.0..=1.0).contains(share)) {
         return refused(format!("--val-share {share} is not a share"), "give a number from 0 to 1");
@@ -153,13 +181,29 @@ fn refuse_what_does_not_fit(args: &ExportArgs, format: ExportFormat) -> Result<(
         let problem = "records of --format wayword have a split only with --val-share".to_owned();
         return refused(problem, "leave --split out, or give --val-share");
     }
-    if format != ExportFormat::Duet && (args.tokenizer.is_some() || args.dataset.is_some()) {
-        return refused("--tokenizer and --dataset are for --format duet".to_owned(), "leave them out");
+    let has_tokens = matches!(format, ExportFormat::Duet | ExportFormat::DuetPretrain);
+    if !has_tokens && (args.tokenizer.is_some() || args.dataset.is_some()) {
+        return refused(
+            "--tokenizer and --dataset are for --format duet and duet-pretrain".to_owned(),
+            "leave them out",
+        );
     }
-    if format != ExportFormat::Steps && args.steps != AskedSteps::default() {
-        return refused("the flags of steps are for --format steps".to_owned(), "leave them out");
-    }
-    Ok(())
+    refuse_unused_steps(format, &args.steps)
+}
+
+/// Refuses the flags of single actions for formats without them.
+fn refuse_unused_steps(format: ExportFormat, steps: &AskedSteps) -> Result<(), CommandError> {
+    let of_walks = AskedSteps { steps: None, shard: None, ..steps.clone() };
+    let of_gait = AskedSteps { size_px: None, fov_deg: None, camera: Vec::new(), ..of_walks.clone() };
+    let (used, problem) = match format {
+        ExportFormat::Steps => {
+            (AskedSteps { shard: steps.shard, ..of_walks }, "--steps is for what is packed from steps")
+        }
+        ExportFormat::Rxrce => (of_gait, "the flags of pictures are for --format steps and what is packed from it"),
+        _ if format.is_layout() => (AskedSteps { shard: None, ..steps.clone() }, "--shard is for --format steps"),
+        _ => (AskedSteps::default(), "the flags of steps are for --format steps and what is packed from it"),
+    };
+    if used == *steps { Ok(()) } else { Err(CommandError::usage(problem, "leave them out")) }
 }
 
 /// Refuses texts of several styles for a format that has one.

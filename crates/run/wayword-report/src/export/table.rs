@@ -41,7 +41,7 @@ pub(super) fn publish_tables(
 ) -> Result<(), CommandError> {
     check_terms(args, records)?;
     let splits = splits::splits_of_records(args, records)?;
-    let card = card::card_text(args, out, records, &splits)?;
+    let card = card::card_text(args, out, records, &splits, None)?;
     let folder = UnfinishedFolder::begin(out)?;
     let mut rows_by_split: BTreeMap<&str, Vec<ParquetRow<'_>>> = BTreeMap::new();
     for (record, split) in records.iter().zip(&splits) {
@@ -56,7 +56,7 @@ pub(super) fn publish_tables(
     }
     write_file(&folder.place().join(CARD_FILE), card)?;
     files.push(out.join(CARD_FILE));
-    folder.finish(&[DATA_FOLDER, CARD_FILE])?;
+    folder.finish([DATA_FOLDER, CARD_FILE])?;
     tell_terms(records, output);
     tell_written(out, files, &splits, output);
     Ok(())

@@ -17,6 +17,14 @@ pub(super) struct UnfinishedFolder {
     unfinished: PathBuf,
 }
 
+impl Drop for UnfinishedFolder {
+    /// Removes what an export that failed has made. Else its hidden folder would mark all beside it as left by a killed one.
+    fn drop(&mut self) {
+        // The failure itself is what the user is told.
+        let _ = fs::remove_dir_all(&self.unfinished);
+    }
+}
+
 impl UnfinishedFolder {
     /// Begins a folder. What an earlier command left unfinished in it is removed.
     ///
@@ -63,7 +71,7 @@ impl UnfinishedFolder {
     ///
     /// # Errors
     /// When one cannot be moved.
-    pub(super) fn finish(self, names: &[&str]) -> Result<(), CommandError> {
+    pub(super) fn finish<'n>(self, names: impl IntoIterator<Item = &'n str>) -> Result<(), CommandError> {
         for name in names {
             let place = self.folder.join(name);
             fs::rename(self.unfinished.join(name), &place).map_err(CommandError::io(place, "write"))?;

@@ -2,7 +2,7 @@
 
 pub mod args;
 mod file_kind;
-mod film;
+pub(crate) mod film;
 mod map;
 pub mod panorama;
 pub mod path;

@@ -204,7 +204,10 @@ mod tests {
         let mut used: BTreeSet<String> = BTreeSet::new();
         for (words, command) in all_commands() {
             // The flags of `export --format steps` stand under a heading of their own, which is last.
-            for arg in command.get_arguments().filter(|arg| arg.get_help_heading() != Some("With --format steps")) {
+            for arg in command
+                .get_arguments()
+                .filter(|arg| arg.get_help_heading() != Some("With steps and layouts for training"))
+            {
                 let (Some(flag), found) = (arg.get_long(), arg.get_help_heading()) else { continue };
                 assert!(found.is_none() || found == own.get(flag).copied(), "{words}: --{flag} is under {found:?}");
                 used.extend(found.map(|_| flag.to_owned()));
@@ -217,9 +220,10 @@ mod tests {
     #[test]
     fn flags_of_the_steps_are_the_only_ones_under_their_heading() {
         let export = command("export");
-        let steps = export.get_arguments().filter(|arg| arg.get_help_heading() == Some("With --format steps"));
+        let steps =
+            export.get_arguments().filter(|arg| arg.get_help_heading() == Some("With steps and layouts for training"));
         let steps: Vec<&str> = steps.filter_map(Arg::get_long).collect();
-        assert_eq!(steps, ["forward-m", "turn-deg", "tolerance-m", "size-px", "fov-deg", "eye-m", "shard"]);
+        assert_eq!(steps, ["steps", "forward-m", "turn-deg", "tolerance-m", "size-px", "fov-deg", "camera", "shard"]);
     }
 
     #[test]

@@ -25,7 +25,7 @@ fn each_format_is_read_back_with_the_same_texts_and_paths() {
     let building = Building::new();
     let mut records = building.run_over_episodes("run");
     records.retain(|record| record.instruction.style == "reverie");
-    for format in DatasetFormat::ALL {
+    for format in DatasetFormat::ALL.into_iter().filter(|format| !format.holds_recordings()) {
         let out = format!("out.{format}.json");
         let written = export(&building, format.name(), &out);
         assert_eq!(written["instructions"], 10, "{written}");
@@ -318,7 +318,7 @@ fn a_recording_without_poses_is_exported_as_records_alone() {
         record.path.motion = PathMotion::Unknown;
     }
     jsonl::write_records(&building.path("run/instructions.jsonl"), &records).unwrap();
-    for format in DatasetFormat::ALL {
+    for format in DatasetFormat::ALL.into_iter().filter(|format| !format.holds_recordings()) {
         let ran =
             building.wayword(&["export", "--run", "run", "--style", "r2r", "--format", format.name(), "--out", "o"]);
         if format == DatasetFormat::Wayword {

@@ -180,8 +180,9 @@ fn walks_along_graphs_are_exported_in_single_steps() {
     assert_eq!((walks + failed, walks > 0), (2, true), "{ran:?}");
     assert!(told["farthest_off_m"].as_f64().unwrap() <= 0.5, "{ran:?}");
     let taken = wayword_formats::trajectories::read_trajectories(&building.path("steps/trajectories.jsonl")).unwrap();
-    let shown = wayword_formats::trajectories::read_pictures(&building.path("steps"), &taken[0]).unwrap();
-    assert_eq!(shown.len(), taken[0].actions.len());
+    let seen = building.path("steps/cameras/125cm_0deg/pictures.jsonl");
+    let seen = wayword_formats::trajectories::read_camera_walks(&seen).unwrap();
+    assert_eq!(seen[0].world_from_camera.len(), taken[0].actions.len());
 }
 
 #[test]

@@ -56,6 +56,7 @@ mod study;
 mod study_ground;
 mod study_planning;
 mod study_refusals;
+mod training_layouts;
 mod turning_worlds;
 mod view;
 mod workers;

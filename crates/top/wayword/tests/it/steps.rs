@@ -9,7 +9,9 @@ use std::{collections::BTreeMap, fs};
 use wayword_core::{AgentAction, DVec3};
 use wayword_formats::{
     DatasetFormat,
-    trajectories::{ActionTrajectory, PictureLocation, read_pictures, read_trajectories},
+    trajectories::{
+        ActionTrajectory, CameraWalk, PictureKind, PictureLocation, read_camera_walks, read_pictures, read_trajectories,
+    },
     vlnce_actions::{self, EpisodeActions},
 };
 use wayword_report::export::replay_export;
@@ -28,6 +30,16 @@ fn export(building: &Building, out: &str, more: &[&str]) -> Ran {
 
 fn trajectories(building: &Building, out: &str) -> Vec<ActionTrajectory> {
     read_trajectories(&building.path(out).join("trajectories.jsonl")).unwrap()
+}
+
+/// What the usual camera saw along each walk.
+fn seen(building: &Building, out: &str) -> Vec<CameraWalk> {
+    read_camera_walks(&building.path(out).join("cameras/125cm_0deg/pictures.jsonl")).unwrap()
+}
+
+fn pictures(building: &Building, out: &str, walk: &CameraWalk, kind: PictureKind) -> Vec<Vec<u8>> {
+    let set = if kind == PictureKind::Rgb { &walk.rgb } else { &walk.depth };
+    read_pictures(&building.path(out), set, kind, walk.world_from_camera.len()).unwrap()
 }
 
 /// Every file of a folder with its bytes, except its lock files.
@@ -59,13 +71,15 @@ fn walks_end_where_they_should_and_pictures_are_those_of_their_poses() {
     assert_eq!((&told["walks"], &told["instructions"], &told["failed"]), (&json!(3), &json!(6), &json!(0)));
     let again = replay_export(&building.path("steps"), &building.path("run"), 1).unwrap();
     assert_eq!((again.walks, again.astray, again.others), (3, 0, 0));
-    assert!(again.farthest_off_m <= 0.5 && json!(again.pictures) == told["pictures"], "{again:?}");
+    // Each picture has its depths.
+    assert!(again.farthest_off_m <= 0.5 && json!(again.pictures / 2) == told["pictures"], "{again:?}");
+    assert!(again.goals > 20 && again.goals_near == again.goals, "{again:?}");
     let ends: BTreeMap<String, DVec3> = building
         .records("run")
         .into_iter()
         .map(|record| (record.path.id, record.path.frames.last().unwrap().pose.position - DVec3::Z * 1.5))
         .collect();
-    for trajectory in trajectories(&building, "steps") {
+    for (trajectory, walk) in trajectories(&building, "steps").into_iter().zip(seen(&building, "steps")) {
         let last = trajectory.positions.last().unwrap();
         assert!((*last - ends[&trajectory.id]).truncate().length() <= 0.5, "{last}");
         let steps = trajectory.positions.windows(2).zip(&trajectory.actions);
@@ -78,10 +92,15 @@ fn walks_end_where_they_should_and_pictures_are_those_of_their_poses() {
         assert_eq!(styles, ["r2r", "reverie"]);
         let parts = &trajectory.instructions[0].sub_instructions;
         assert!(parts.len() > 1 && parts[0].steps[0] == 0);
-        assert!(parts.windows(2).all(|pair| pair[0].steps[1] == pair[1].steps[0]), "{parts:?}");
-        let shown = read_pictures(&building.path("steps"), &trajectory).unwrap();
-        let size = image::load_from_memory(&shown[0]).unwrap().into_rgb8().dimensions();
-        assert_eq!((shown.len(), size), (trajectory.actions.len(), (48, 48)));
+        assert!(parts.windows(2).all(|pair| pair[0].steps[0] < pair[1].steps[0]), "{parts:?}");
+        let above: Vec<f64> = trajectory.above_floor_m.iter().flatten().copied().collect();
+        assert!(above.len() == trajectory.actions.len() && above.iter().all(|above_m| (0.0..0.3).contains(above_m)));
+        for kind in [PictureKind::Rgb, PictureKind::Depth] {
+            let shown = pictures(&building, "steps", &walk, kind);
+            let shown: Vec<_> = shown.iter().map(|bytes| image::load_from_memory(bytes).unwrap()).collect();
+            assert!(shown.iter().all(|picture| (picture.width(), picture.height()) == (48, 48)));
+            assert_eq!(shown.len(), trajectory.actions.len());
+        }
     }
 }
 
@@ -117,17 +136,20 @@ fn an_export_that_was_stopped_goes_on_and_gives_the_same_bytes() {
         let out = if more.is_empty() { "folders" } else { "shards" };
         assert_eq!(export(&building, out, more).code, Some(0));
         let whole = files(&building, out);
-        // As if the program had been killed while it wrote the last line, with pictures half written.
-        let lines = fs::read_to_string(building.path(out).join("trajectories.jsonl")).unwrap();
-        let first = lines.lines().next().unwrap();
-        fs::write(building.path(out).join("trajectories.jsonl"), format!("{first}\n{}", &first[..40])).unwrap();
+        let ids: Vec<String> = trajectories(&building, out).into_iter().map(|trajectory| trajectory.id).collect();
+        // As if the program had been killed while it wrote the last lines, with pictures half written.
+        for name in ["trajectories.jsonl", "cameras/125cm_0deg/pictures.jsonl"] {
+            let lines = fs::read_to_string(building.path(out).join(name)).unwrap();
+            let first = lines.lines().next().unwrap();
+            fs::write(building.path(out).join(name), format!("{first}\n{}", &first[..40])).unwrap();
+        }
         for made in ["train.json.gz", "train_gt.json.gz", "train.json.gz.provenance.jsonl"] {
             fs::remove_file(building.path(out).join(made)).unwrap();
         }
-        let last = trajectories_of(&lines).last().unwrap().clone();
-        if let PictureLocation::Folder(images) = &last.pictures {
-            let images = building.path(out).join(images);
-            fs::rename(&images, images.with_file_name(format!(".{}.part", last.id))).unwrap();
+        if more.is_empty() {
+            let last = ids.last().unwrap();
+            let images = building.path(out).join("cameras/125cm_0deg/rgb").join(last);
+            fs::rename(&images, images.with_file_name(format!(".{last}.part"))).unwrap();
         }
         assert_eq!(export(&building, out, more).code, Some(0));
         assert!(files(&building, out) == whole, "{out} differs");
@@ -136,11 +158,22 @@ fn an_export_that_was_stopped_goes_on_and_gives_the_same_bytes() {
     }
 }
 
-fn trajectories_of(lines: &str) -> Vec<ActionTrajectory> {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("t.jsonl");
-    fs::write(&file, lines).unwrap();
-    read_trajectories(&file).unwrap()
+#[test]
+fn a_camera_that_is_added_draws_only_its_own_pictures() {
+    let building = Building::new();
+    run(&building);
+    assert_eq!(export(&building, "steps", &[]).code, Some(0));
+    let before = files(&building, "steps");
+    let kept =
+        building.path("steps/cameras/125cm_0deg/rgb").join(&trajectories(&building, "steps")[0].id).join("0000.jpg");
+    let drawn_at = fs::metadata(&kept).unwrap().modified().unwrap();
+    assert_eq!(export(&building, "steps", &["--camera", "1.25,0", "--camera", "0.6,-30"]).code, Some(0));
+    let after = files(&building, "steps");
+    assert!(before.iter().all(|(name, bytes)| after.get(name) == Some(bytes)));
+    assert_eq!(fs::metadata(&kept).unwrap().modified().unwrap(), drawn_at);
+    assert!(after.keys().any(|name| name.starts_with("cameras/60cm_30deg/depth/")));
+    let again = replay_export(&building.path("steps"), &building.path("run"), 1).unwrap();
+    assert_eq!((again.others, again.goals_near), (0, again.goals));
 }
 
 #[test]
@@ -149,14 +182,16 @@ fn tar_shards_have_the_same_content_as_folders() {
     run(&building);
     assert_eq!(export(&building, "folders", &[]).code, Some(0));
     assert_eq!(export(&building, "shards", &["--shard", "2"]).code, Some(0));
-    let (apart, packed) = (trajectories(&building, "folders"), trajectories(&building, "shards"));
-    for (apart, packed) in apart.iter().zip(&packed) {
-        let all = |out: &str, trajectory| read_pictures(&building.path(out), trajectory).unwrap();
-        assert!(all("folders", apart) == all("shards", packed));
-        assert_eq!(apart, &ActionTrajectory { pictures: apart.pictures.clone(), ..packed.clone() });
+    assert_eq!(trajectories(&building, "folders"), trajectories(&building, "shards"));
+    for (apart, packed) in seen(&building, "folders").iter().zip(&seen(&building, "shards")) {
+        assert!(matches!(packed.rgb.place, PictureLocation::Sample { .. }));
+        for kind in [PictureKind::Rgb, PictureKind::Depth] {
+            assert!(pictures(&building, "folders", apart, kind) == pictures(&building, "shards", packed, kind));
+        }
+        assert_eq!(apart.pixel_goals, packed.pixel_goals);
     }
     let shards: Vec<String> = files(&building, "shards").into_keys().filter(|name| name.ends_with(".tar")).collect();
-    assert_eq!(shards, ["shards/000000.tar", "shards/000001.tar"]);
+    assert_eq!(shards, ["cameras/125cm_0deg/shards/000000.tar", "cameras/125cm_0deg/shards/000001.tar"]);
 }
 
 #[test]
@@ -184,7 +219,12 @@ fn steps_refuse_flags_that_do_not_fit() {
     run(&building);
     assert!(export(&building, "steps", &["--turn-deg", "50"]).refused().contains("a turn of 50 degrees"));
     let flags = ["export", "--run", "run", "--format", "r2r", "--style", "r2r", "--out", "x.json", "--fov-deg", "60"];
-    assert!(building.wayword(&flags).refused().contains("the flags of steps are for --format steps"));
+    assert!(
+        building
+            .wayword(&flags)
+            .refused()
+            .contains("the flags of steps are for --format steps and what is packed from it")
+    );
     building.run_over_episodes("matterport");
     let ran = building.wayword(&["export", "--run", "matterport", "--format", "steps", "--out", "steps"]);
     assert!(ran.refused().contains("platform matterport has no ground on which single steps can be taken"), "{ran:?}");

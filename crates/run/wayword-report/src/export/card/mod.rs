@@ -3,7 +3,7 @@
 
 mod escape;
 
-use crate::export::args::ExportArgs;
+use crate::export::args::{ExportArgs, ExportFormat};
 use minijinja::{Environment, UndefinedBehavior};
 use serde::Serialize;
 use std::{
@@ -30,6 +30,8 @@ const HUB_SIZE_CLASSES: [(usize, &str); 4] =
 #[derive(Debug, Serialize)]
 struct DatasetCard {
     name: String,
+    /// The layout for training, if the folder is no folder of tables.
+    layout: Option<String>,
     version: &'static str,
     size: &'static str,
     instructions: usize,
@@ -114,7 +116,8 @@ pub(super) fn file_name(split: &str) -> String {
     format!("{split}-00000-of-00001.parquet")
 }
 
-/// The text of the card for the records of an export; `splits` has the split of each record.
+/// The text of the card for the records of an export; `splits` has the split of each record. A layout for training is named; else the
+/// folder holds tables.
 ///
 /// # Errors
 /// When the runs' rejected texts cannot be read.
@@ -123,9 +126,12 @@ pub(super) fn card_text(
     out: &Path,
     records: &[InstructionRecord],
     splits: &[String],
+    layout: Option<ExportFormat>,
 ) -> Result<String, CommandError> {
     let name = out.file_name().map_or_else(|| "Wayword".to_owned(), |name| name.to_string_lossy().into_owned());
-    render_card(&DatasetCard::new(name, records, splits, count_rejected(args)?)).map_err(|error| {
+    let layout = layout.map(|layout| layout.to_string());
+    let card = DatasetCard { layout, ..DatasetCard::new(name, records, splits, count_rejected(args)?) };
+    render_card(&card).map_err(|error| {
         CommandError::usage(format!("the dataset card cannot be written: {error:#}"), "report this as a bug")
     })
 }
@@ -163,6 +169,7 @@ impl DatasetCard {
         let all: Vec<&InstructionRecord> = records.iter().collect();
         Self {
             name,
+            layout: None,
             version: env!("CARGO_PKG_VERSION"),
             size: HUB_SIZE_CLASSES.iter().find(|(most, _)| records.len() < *most).map_or(largest, |(_, size)| size),
             instructions: records.len(),

@@ -1,34 +1,41 @@
-//! Writes trajectories for training policies: the walks of a run as single actions (forward, left, right, stop), with the picture
-//! that the agent sees before each. The command can be repeated after an interruption: it keeps the walks that are done.
+//! Writes trajectories for training policies: the walks of a run as single actions (forward, left, right, stop), with what each camera
+//! sees before each. The command can be repeated after an interruption: it keeps the walks that are done. Layouts of other programs
+//! are packed from such a folder.
 
+mod drawing;
 mod instruction_parts;
 mod replay;
 mod settings;
 mod store;
 mod walks;
 
+#[cfg(feature = "parquet")]
+pub(super) use drawing::encode_png16;
 pub use replay::{TrajectoryReplay, replay_export};
 
 use super::{items, splits, tell_terms};
 use crate::{
-    export::args::{ExportArgs, ExportFormat},
+    export::{
+        args::{ExportArgs, ExportFormat},
+        steps_args::AskedSteps,
+    },
     walking::WalkingScenes,
 };
 use serde::Serialize;
 use settings::StepExportSettings;
-use sha2::{Digest, Sha256};
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
     path::{Path, PathBuf},
 };
-use store::{TrajectoryMaker, TrajectoryStore};
+use store::{TRAJECTORIES_FILE, TrajectoryMaker, TrajectoryStore, pictures_file};
 use walks::{ExportedWalk, walks_from_records};
-use wayword_core::hex_text;
 use wayword_formats::{
     DatasetFormat,
     jsonl::InstructionRecord,
-    trajectories::{ActionTrajectory, read_trajectories},
+    trajectories::{
+        ActionTrajectory, CameraIntrinsics, CameraWalk, read_camera_walks, read_trajectories, write_trajectories,
+    },
     vlnce_actions::{self, EpisodeActions},
 };
 use wayword_run::{
@@ -37,8 +44,15 @@ use wayword_run::{
     in_order::{core_count, in_order},
     interrupt,
     output::CommandOutput,
-    run_folder::{keep_config, lock_folder, read_run_settings},
+    run_folder::{file, keep_config, lock_folder, read_config, read_run_settings},
 };
+
+/// The angle of a turn in RxR-CE's task, degrees.
+const RXR_TURN_DEG: f64 = 30.0;
+/// The folder in a run with the steps of its walks.
+const STEPS_FOLDER: &str = "steps";
+/// The camera of VLN-CE's agents: height in metres and pitch in degrees.
+pub(super) const USUAL_CAMERA: [f64; 2] = [1.25, 0.0];
 
 /// Result of an export of trajectories.
 #[derive(Debug, Serialize)]
@@ -46,11 +60,35 @@ struct WrittenTrajectories {
     folder: PathBuf,
     walks: usize,
     instructions: usize,
+    /// The cameras; each has taken a picture before each action.
+    cameras: Vec<String>,
     pictures: usize,
+    /// Parts of texts without length on the walk, which were joined with a neighbour.
+    joined_parts: usize,
     /// Walks that cannot be taken; `errors.jsonl` has the reasons.
     failed: usize,
     /// The largest distance between the last place of an agent and the end of its walk, metres.
     farthest_off_m: f64,
+}
+
+/// A folder of steps that holds everything a command needs.
+pub(super) struct StepsFolder {
+    pub(super) folder: PathBuf,
+    pub(super) trajectories: Vec<ActionTrajectory>,
+    pub(super) cameras: Vec<CameraIntrinsics>,
+    /// Walks that cannot be taken.
+    pub(super) failed: usize,
+}
+
+impl StepsFolder {
+    /// What a camera has seen, by the names of the walks.
+    pub(super) fn walks_of_camera(
+        &self,
+        camera: &CameraIntrinsics,
+    ) -> Result<BTreeMap<String, CameraWalk>, CommandError> {
+        let walks = read_camera_walks(&pictures_file(&self.folder, camera))?;
+        Ok(walks.into_iter().map(|walk| (walk.trajectory_id.clone(), walk)).collect())
+    }
 }
 
 pub(super) fn write_steps(
@@ -59,28 +97,126 @@ pub(super) fn write_steps(
     records: &[InstructionRecord],
     output: &CommandOutput,
 ) -> Result<Exit, CommandError> {
-    items::refuse_without_poses(ExportFormat::Steps, records)?;
     let splits = splits::splits_of_records(args, records)?;
-    let steps = StepExportSettings::from_flags(&args.steps, hash_texts(records, &splits))?;
-    let [run] = args.run.as_slice() else { return Err(CommandError::usage("--run is missing", "give one run")) };
-    let scenes = WalkingScenes::open_run(&read_run_settings(run)?, [steps.width_px, steps.height_px])?;
-    fs::create_dir_all(out).map_err(CommandError::io(out, "make the folder"))?;
-    let _folder_lock = lock_folder(out)?;
-    keep_config(out, &steps)?;
-    let mut store = TrajectoryStore::open(out)?;
-    let walks = walks_from_records(records, &splits);
-    take_walks(
-        &walks,
-        &TrajectoryMaker { folder: out, scenes: &scenes, steps: &steps, done: store.finished_ids() },
-        &mut store,
-        output,
-    )?;
-    store.sort_and_sync(&walks)?;
-    // Reads the file back, so that the reported figures are those of the file.
-    let trajectories = read_trajectories(&store.trajectories_file())?;
-    write_episodes(args, out, &walks, &trajectories, output)?;
+    let settings = StepExportSettings::from_flags(&args.steps)?;
+    let made = make_steps(args, (out, settings), (records, &splits), &[USUAL_CAMERA], output)?;
+    write_episodes(args, out, &walks_from_records(records, &splits), &made.trajectories, output)?;
     tell_terms(records, output);
-    report_written(out, &trajectories, store.failed_count(), output)
+    report_written(&made, output)
+}
+
+/// Makes the steps that a layout is packed from, as far as they are not there yet: in the folder of `--steps`, or in that of the run.
+/// What the flags leave open is as it is in that folder.
+pub(super) fn make_steps_of_run(
+    args: &ExportArgs,
+    records: &[InstructionRecord],
+    usual_cameras: &[[f64; 2]],
+    fixed_turn_deg: Option<f64>,
+    output: &CommandOutput,
+) -> Result<StepsFolder, CommandError> {
+    let [run] = args.run.as_slice() else { return Err(CommandError::usage("--run is missing", "give one run")) };
+    let folder = args.steps.steps.clone().unwrap_or_else(|| match fixed_turn_deg {
+        None => run.join(STEPS_FOLDER),
+        Some(turn_deg) => run.join(format!("{STEPS_FOLDER}_{turn_deg}deg")),
+    });
+    let before = match folder.join(file::CONFIG).exists() {
+        true => Some(read_config::<StepExportSettings>(&folder)?),
+        false => None,
+    };
+    let mut asked = args.steps.with_defaults_from(before.as_ref());
+    asked.turn_deg = asked.turn_deg.or(fixed_turn_deg);
+    let settings = StepExportSettings::from_flags(&asked)?;
+    if let Some(turn_deg) = fixed_turn_deg.filter(|turn_deg| *turn_deg != settings.turn_deg) {
+        let problem = format!(
+            "the words of this layout mean turns of {turn_deg} degrees, and the steps have {}",
+            settings.turn_deg
+        );
+        return Err(CommandError::usage(
+            problem,
+            format!("give --turn-deg {turn_deg}, or leave it out, and another --steps"),
+        ));
+    }
+    let splits = splits::splits_of_records(args, records)?;
+    make_steps(args, (&folder, settings), (records, &splits), usual_cameras, output)
+}
+
+/// The actions along each walk in RxR-CE's gait, by the name of its path; `None` if the platform has no ground. A walk that cannot be taken has
+/// none.
+pub(super) fn walk_actions(
+    args: &ExportArgs,
+    records: &[InstructionRecord],
+    record_splits: &[String],
+) -> Result<Option<BTreeMap<String, EpisodeActions>>, CommandError> {
+    let [run] = args.run.as_slice() else { return Err(CommandError::usage("--run is missing", "give one run")) };
+    let run_settings = read_run_settings(run)?;
+    if !matches!(run_settings.platform.as_str(), "house" | "habitat") {
+        return Ok(None);
+    }
+    let turn_deg = args.steps.turn_deg.or(Some(RXR_TURN_DEG));
+    let steps = StepExportSettings::from_flags(&AskedSteps { turn_deg, ..args.steps.clone() })?;
+    let scenes = WalkingScenes::open_run(&run_settings, [steps.width_px, steps.height_px])?;
+    let walks = walks_from_records(records, record_splits);
+    let mut actions = BTreeMap::new();
+    let take = |walk: &ExportedWalk<'_>| walks::trajectory_from_walk(walk, &scenes, &steps);
+    in_order(&walks, core_count(), take, |_, taken| {
+        if let Ok(taken) = taken? {
+            actions.insert(taken.id.clone(), EpisodeActions::from_positions(&taken.actions, &taken.positions));
+        }
+        Ok::<bool, CommandError>(true)
+    })?;
+    Ok(Some(actions))
+}
+
+/// Takes the walks of records in single actions, and draws what the cameras see, as far as the folder does not have it.
+fn make_steps(
+    args: &ExportArgs,
+    (folder, steps): (&Path, StepExportSettings),
+    (records, splits): (&[InstructionRecord], &[String]),
+    usual_cameras: &[[f64; 2]],
+    output: &CommandOutput,
+) -> Result<StepsFolder, CommandError> {
+    items::refuse_without_poses(ExportFormat::Steps, records)?;
+    let [run] = args.run.as_slice() else { return Err(CommandError::usage("--run is missing", "give one run")) };
+    let cameras = steps.cameras(&args.steps.camera, usual_cameras)?;
+    let scenes = WalkingScenes::open_run(&read_run_settings(run)?, [steps.width_px, steps.height_px])?;
+    fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the folder"))?;
+    let _folder_lock = lock_folder(folder)?;
+    keep_config(folder, &steps)?;
+    let walks = walks_from_records(records, splits);
+    let mut store = TrajectoryStore::open(folder, &cameras)?;
+    let maker = TrajectoryMaker::continue_folder(folder, &scenes, &steps, &cameras, (&store, &walks))?;
+    take_walks(&walks, &maker, &mut store, output)?;
+    store.sort_and_sync(&walks)?;
+    let trajectories = refresh_texts(folder, &walks, steps.shard.is_some())?;
+    Ok(StepsFolder { folder: folder.to_owned(), trajectories, cameras, failed: store.failed_count() })
+}
+
+/// Reads the trajectories back, and gives them the texts and splits of this command.
+fn refresh_texts(
+    folder: &Path,
+    walks: &[ExportedWalk<'_>],
+    has_shards: bool,
+) -> Result<Vec<ActionTrajectory>, CommandError> {
+    let file = folder.join(TRAJECTORIES_FILE);
+    let mut trajectories = read_trajectories(&file)?;
+    let by_id: BTreeMap<&str, &ExportedWalk<'_>> = walks.iter().map(|walk| (walk.path.id.as_str(), walk)).collect();
+    let mut is_changed = false;
+    for trajectory in &mut trajectories {
+        let Some(walk) = by_id.get(trajectory.id.as_str()) else { continue };
+        let instructions = walk.instructions(&trajectory.frame_steps);
+        if trajectory.instructions != instructions || trajectory.split != walk.split {
+            (trajectory.instructions, trajectory.split) = (instructions, walk.split.to_owned());
+            is_changed = true;
+        }
+    }
+    if is_changed && has_shards {
+        let problem = format!("{}: its shards hold other texts or splits", folder.display());
+        return Err(CommandError::usage(problem, "give a new folder"));
+    }
+    if is_changed {
+        write_trajectories(&file, &trajectories)?;
+    }
+    Ok(trajectories)
 }
 
 /// Takes all walks that are not done yet, several at the same time.
@@ -138,23 +274,22 @@ fn write_episodes(
     Ok(())
 }
 
-fn report_written(
-    out: &Path,
-    trajectories: &[ActionTrajectory],
-    failed: usize,
-    output: &CommandOutput,
-) -> Result<Exit, CommandError> {
+fn report_written(made: &StepsFolder, output: &CommandOutput) -> Result<Exit, CommandError> {
+    let trajectories = &made.trajectories;
+    let instructions = || trajectories.iter().flat_map(|trajectory| &trajectory.instructions);
     let written = WrittenTrajectories {
-        folder: out.to_owned(),
+        folder: made.folder.clone(),
         walks: trajectories.len(),
-        instructions: trajectories.iter().map(|trajectory| trajectory.instructions.len()).sum(),
-        pictures: trajectories.iter().map(|trajectory| trajectory.actions.len()).sum(),
-        failed,
+        instructions: instructions().count(),
+        cameras: made.cameras.iter().map(CameraIntrinsics::name).collect(),
+        pictures: made.cameras.len() * trajectories.iter().map(|trajectory| trajectory.actions.len()).sum::<usize>(),
+        joined_parts: instructions().map(|instruction| instruction.joined_parts).sum(),
+        failed: made.failed,
         farthest_off_m: trajectories.iter().map(|trajectory| trajectory.off_m).fold(0.0, f64::max),
     };
-    let failures = match failed {
+    let failures = match made.failed {
         0 => String::new(),
-        _ => format!("; {} cannot be taken, and errors.jsonl says why", count_phrase(failed, "walk")),
+        failed => format!("; {} cannot be taken, and errors.jsonl says why", count_phrase(failed, "walk")),
     };
     output.print_result(
         &written,
@@ -163,19 +298,9 @@ fn report_written(
             count_phrase(written.walks, "walk"),
             count_phrase(written.instructions, "instruction"),
             count_phrase(written.pictures, "picture"),
-            out.display(),
+            made.folder.display(),
             written.farthest_off_m
         ),
     );
-    Ok(if failed > 0 { Exit::WithLoss } else { Exit::Done })
-}
-
-/// SHA-256 of the texts, their paths and their splits.
-fn hash_texts(records: &[InstructionRecord], splits: &[String]) -> String {
-    let mut hash = Sha256::new();
-    for (record, split) in records.iter().zip(splits) {
-        // A record that was read can be written.
-        hash.update(serde_json::to_vec(&(record, split)).unwrap_or_default());
-    }
-    hex_text(hash.finalize())
+    Ok(if made.failed > 0 { Exit::WithLoss } else { Exit::Done })
 }

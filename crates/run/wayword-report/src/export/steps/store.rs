@@ -1,7 +1,8 @@
-//! Makes the pictures of walks and stores them: in a folder for each walk, or several walks in one tar file (shard). The pictures are
-//! written first and the walk's line in `trajectories.jsonl` last, so every walk with a line is complete.
+//! A folder of steps: its walks, and the pictures of each camera. The pictures of a walk are written first and its line in the camera's
+//! `pictures.jsonl` last, so every walk with a line is complete. Cameras can be added later.
 
 use super::{
+    drawing::{DrawnWalk, draw_walk},
     settings::StepExportSettings,
     walks::{ExportedWalk, trajectory_from_walk},
 };
@@ -14,52 +15,95 @@ use std::{
 };
 use wayword_core::FailureKind;
 use wayword_formats::trajectories::{
-    ActionTrajectory, PictureDigest, PictureLocation, ShardWriter, picture_name, trajectory_line,
+    ActionTrajectory, CameraIntrinsics, CameraWalk, PictureDigest, PictureKind, PictureLocation, PictureSet,
+    ShardWriter, camera_walk_line, read_trajectories, trajectory_line,
 };
 use wayword_run::{
     error::CommandError,
     interrupt,
-    pictures::encode_jpeg,
     run_folder::{FailedItem, Journal, file},
+    written_files::write_file,
 };
 
 /// The file of trajectories.
 pub(super) const TRAJECTORIES_FILE: &str = "trajectories.jsonl";
-/// The folders of the pictures: one below `images` for each walk, or the tar files in `shards`.
-const IMAGES_FOLDER: &str = "images";
+/// The folder with a folder for each camera.
+const CAMERAS_FOLDER: &str = "cameras";
+/// The files of a camera: its intrinsics, and a line for each walk.
+const CAMERA_FILE: &str = "camera.json";
+const PICTURES_FILE: &str = "pictures.jsonl";
+/// The folder of a camera's shards.
 const SHARDS_FOLDER: &str = "shards";
 
-/// The folder of an export, with its journals of finished and failed walks.
+/// The folder of a camera, below that of the steps.
+pub(super) fn camera_folder(camera: &CameraIntrinsics) -> String {
+    format!("{CAMERAS_FOLDER}/{}", camera.name())
+}
+
+/// The file with a camera's line for each walk.
+pub(super) fn pictures_file(folder: &Path, camera: &CameraIntrinsics) -> PathBuf {
+    folder.join(camera_folder(camera)).join(PICTURES_FILE)
+}
+
+/// The cameras that a folder of steps has.
+pub(super) fn read_cameras(folder: &Path) -> Result<Vec<CameraIntrinsics>, CommandError> {
+    let place = folder.join(CAMERAS_FOLDER);
+    let entries = fs::read_dir(&place).map_err(CommandError::io(&place, "look into"))?;
+    let mut files = entries
+        .map(|entry| Ok(entry.map_err(CommandError::io(&place, "look into"))?.path().join(CAMERA_FILE)))
+        .collect::<Result<Vec<_>, CommandError>>()?;
+    files.sort();
+    files.iter().filter(|file| file.is_file()).map(|file| read_camera(file)).collect()
+}
+
+fn read_camera(file: &Path) -> Result<CameraIntrinsics, CommandError> {
+    let text = fs::read(file).map_err(CommandError::io(file, "read"))?;
+    serde_json::from_slice(&text).map_err(|error| {
+        let problem = format!("{}: it does not describe a camera: {error}", file.display());
+        CommandError::usage(problem, "give a folder that `wayword export --format steps` wrote")
+    })
+}
+
+/// The journals of a folder of steps.
 pub(super) struct TrajectoryStore {
-    folder: PathBuf,
     trajectories: Journal,
+    /// The finished walks of each camera.
+    pictures: Vec<Journal>,
     errors: Journal,
 }
 
-/// The result of one unit: walks that are finished, and walks that failed.
+/// The result of one unit: walks and their pictures that are new, and walks that failed.
+#[derive(Default)]
 pub(super) struct TrajectoryBatch {
     taken: Vec<ActionTrajectory>,
+    /// Each with the index of its camera.
+    pictured: Vec<(usize, CameraWalk)>,
     failed: Vec<FailedItem>,
 }
 
 impl TrajectoryStore {
     /// Opens a folder and continues with its finished walks. Failed walks are tried again.
-    pub(super) fn open(folder: &Path) -> Result<Self, CommandError> {
+    pub(super) fn open(folder: &Path, cameras: &[CameraIntrinsics]) -> Result<Self, CommandError> {
+        let open_camera = |camera: &CameraIntrinsics| {
+            let place = folder.join(camera_folder(camera));
+            fs::create_dir_all(&place).map_err(CommandError::io(&place, "make the folder"))?;
+            let text = serde_json::to_string_pretty(camera).unwrap_or_default() + "\n";
+            write_file(&place.join(CAMERA_FILE), text)?;
+            Journal::open(&pictures_file(folder, camera), key_of)
+        };
         Ok(Self {
-            folder: folder.to_owned(),
             trajectories: Journal::open(&folder.join(TRAJECTORIES_FILE), key_of)?,
+            pictures: cameras.iter().map(open_camera).collect::<Result<_, _>>()?,
             errors: Journal::begin_empty(&folder.join(file::ERRORS), FailedItem::key_of)?,
         })
-    }
-
-    /// The ids of the finished walks.
-    pub(super) fn finished_ids(&self) -> BTreeSet<String> {
-        self.trajectories.keys().map(str::to_owned).collect()
     }
 
     /// Writes the lines of the walks of a unit.
     pub(super) fn keep_batch(&mut self, batch: &TrajectoryBatch) -> Result<(), CommandError> {
         batch.taken.iter().try_for_each(|taken| self.trajectories.append(&trajectory_line(taken)))?;
+        for (camera, walk) in &batch.pictured {
+            self.pictures[*camera].append(&camera_walk_line(walk))?;
+        }
         batch.failed.iter().try_for_each(|failed| self.errors.append(failed))
     }
 
@@ -67,12 +111,11 @@ impl TrajectoryStore {
     pub(super) fn sort_and_sync(&mut self, walks: &[ExportedWalk<'_>]) -> Result<(), CommandError> {
         let places: BTreeMap<&str, usize> =
             walks.iter().enumerate().map(|(place, walk)| (walk.path.id.as_str(), place)).collect();
-        self.trajectories.arrange_by(|id| places.get(id).copied())?;
-        self.trajectories.sync()
-    }
-
-    pub(super) fn trajectories_file(&self) -> PathBuf {
-        self.folder.join(TRAJECTORIES_FILE)
+        for journal in self.pictures.iter_mut().chain([&mut self.trajectories]) {
+            journal.arrange_by(|id| places.get(id).copied())?;
+            journal.sync()?;
+        }
+        Ok(())
     }
 
     /// How many walks cannot be taken.
@@ -85,121 +128,175 @@ fn key_of(line: &Value) -> Option<String> {
     Some(line.get("trajectory_id")?.as_str()?.to_owned())
 }
 
-/// Takes walks and makes their pictures.
+/// Takes walks and draws what the cameras see along them.
 pub(super) struct TrajectoryMaker<'a> {
-    pub(super) folder: &'a Path,
-    pub(super) scenes: &'a WalkingScenes,
+    folder: &'a Path,
+    scenes: &'a WalkingScenes,
     pub(super) steps: &'a StepExportSettings,
+    cameras: &'a [CameraIntrinsics],
     /// Walks that an earlier command has taken.
-    pub(super) done: BTreeSet<String>,
+    done: BTreeMap<String, ActionTrajectory>,
+    /// The walks that each camera has seen already.
+    pictured: Vec<BTreeSet<String>>,
 }
 
-impl TrajectoryMaker<'_> {
-    /// Makes one unit, a shard or a single walk, unless all of its walks are finished.
+impl<'a> TrajectoryMaker<'a> {
+    /// Prepares to continue a folder.
+    ///
+    /// # Errors
+    /// When the folder has walks that the run does not have, or its file cannot be read.
+    pub(super) fn continue_folder(
+        folder: &'a Path,
+        scenes: &'a WalkingScenes,
+        steps: &'a StepExportSettings,
+        cameras: &'a [CameraIntrinsics],
+        (store, walks): (&TrajectoryStore, &[ExportedWalk<'_>]),
+    ) -> Result<Self, CommandError> {
+        let hashes: BTreeMap<&str, String> =
+            walks.iter().map(|walk| (walk.path.id.as_str(), walk.path_sha256())).collect();
+        let mut done = BTreeMap::new();
+        for trajectory in read_trajectories(&folder.join(TRAJECTORIES_FILE))? {
+            if hashes.get(trajectory.id.as_str()) != Some(&trajectory.path_sha256) {
+                let problem =
+                    format!("{} holds walk {}, which is not of these runs' texts", folder.display(), trajectory.id);
+                return Err(CommandError::usage(problem, "give a new folder"));
+            }
+            done.insert(trajectory.id.clone(), trajectory);
+        }
+        let pictured = store.pictures.iter().map(|journal| journal.keys().map(str::to_owned).collect()).collect();
+        Ok(Self { folder, scenes, steps, cameras, done, pictured })
+    }
+
+    /// Makes one unit, a shard or a single walk, as far as it is not finished.
     pub(super) fn make_unit(
         &self,
         walks: &[ExportedWalk<'_>],
         unit: &[usize],
     ) -> Result<TrajectoryBatch, CommandError> {
-        let is_done = |number: &usize| walks.get(*number).is_some_and(|walk| self.done.contains(&walk.path.id));
-        let mut batch = TrajectoryBatch { taken: Vec::new(), failed: Vec::new() };
-        if unit.iter().all(is_done) {
-            return Ok(batch);
-        }
-        let mut trajectories = Vec::new();
-        for number in unit {
-            let Some(walk) = walks.get(*number) else { continue };
-            match trajectory_from_walk(walk, self.scenes, self.steps, self.picture_place(*number, walk))? {
-                Ok(trajectory) => trajectories.push((*number, trajectory)),
+        let mut batch = TrajectoryBatch::default();
+        let mut taken = Vec::new();
+        for (number, walk) in unit.iter().filter_map(|number| Some((*number, walks.get(*number)?))) {
+            let trajectory = match self.done.get(&walk.path.id) {
+                Some(done) => Ok(done.clone()),
+                None => trajectory_from_walk(walk, self.scenes, self.steps)?,
+            };
+            match trajectory {
+                Ok(trajectory) => taken.push((number, trajectory)),
                 Err(reason) => batch.failed.push(reason),
             }
         }
-        // A shard is written anew only if a walk can be taken that could not before.
-        if trajectories.iter().all(|(number, _)| is_done(number)) {
-            return Ok(batch);
-        }
-        let mut ready = Vec::with_capacity(trajectories.len());
-        for (number, trajectory) in trajectories {
-            interrupt::check_interrupt()?;
-            match self.take_pictures(&trajectory) {
-                Ok(pictures) => ready.push((number, trajectory, pictures)),
-                Err(error) => batch.failed.push(failed_item(&trajectory, error)?),
+        for (index, camera) in self.cameras.iter().enumerate() {
+            // A shard is written anew only if a walk can be taken that could not before.
+            if taken.iter().all(|(_, trajectory)| self.pictured[index].contains(&trajectory.id)) {
+                continue;
             }
-        }
-        batch.taken = match self.steps.shard {
-            Some(walks_per_shard) => self.write_shard(ready, walks_per_shard)?,
-            None => {
-                ready.into_iter().map(|(_, walk, shown)| self.write_folder(walk, &shown)).collect::<Result<_, _>>()?
+            let mut drawn = Vec::new();
+            let mut lost = BTreeSet::new();
+            for (number, trajectory) in &taken {
+                interrupt::check_interrupt()?;
+                match draw_walk(self.scenes, camera, self.steps.jpeg_quality, trajectory) {
+                    Ok(pictures) => drawn.push((*number, trajectory, pictures)),
+                    Err(error) => {
+                        batch.failed.push(failed_item(trajectory, error)?);
+                        lost.insert(trajectory.id.clone());
+                    }
+                }
             }
-        };
+            let written = match self.steps.shard {
+                Some(walks_per_shard) => self.write_shard(camera, drawn, walks_per_shard)?,
+                None => drawn
+                    .into_iter()
+                    .map(|(_, trajectory, pictures)| self.write_folders(camera, trajectory, pictures))
+                    .collect::<Result<_, _>>()?,
+            };
+            batch.pictured.extend(written.into_iter().map(|walk| (index, walk)));
+            taken.retain(|(_, trajectory)| !lost.contains(&trajectory.id));
+        }
+        let new = taken.into_iter().map(|(_, trajectory)| trajectory);
+        batch.taken = new.filter(|trajectory| !self.done.contains_key(&trajectory.id)).collect();
         Ok(batch)
     }
 
-    fn picture_place(&self, number: usize, walk: &ExportedWalk<'_>) -> PictureLocation {
-        match self.steps.shard {
-            None => PictureLocation::Folder(format!("{IMAGES_FOLDER}/{}", walk.path.id)),
-            Some(walks_per_shard) => {
-                PictureLocation::Sample { shard: shard_file(number, walks_per_shard), key: format!("{number:06}") }
-            }
-        }
-    }
-
-    /// Takes the pictures that the agent sees before its actions.
-    fn take_pictures(&self, trajectory: &ActionTrajectory) -> Result<Vec<Vec<u8>>, CommandError> {
-        (0..trajectory.actions.len()).map(|number| take_picture(self.scenes, self.steps, trajectory, number)).collect()
-    }
-
-    fn write_folder(
+    /// Writes what a camera sees along a walk into a folder for each kind.
+    fn write_folders(
         &self,
-        mut trajectory: ActionTrajectory,
-        pictures: &[Vec<u8>],
-    ) -> Result<ActionTrajectory, CommandError> {
-        let PictureLocation::Folder(images) = &trajectory.pictures else { return Ok(trajectory) };
-        let whole = self.folder.join(images);
-        let unfinished = self.folder.join(IMAGES_FOLDER).join(format!(".{}.part", trajectory.id));
+        camera: &CameraIntrinsics,
+        trajectory: &ActionTrajectory,
+        drawn: DrawnWalk,
+    ) -> Result<CameraWalk, CommandError> {
+        let place = |kind: PictureKind| format!("{}/{}/{}", camera_folder(camera), kind.name(), trajectory.id);
+        for (kind, pictures) in drawn.kinds() {
+            self.write_folder(&place(kind), kind, pictures)?;
+        }
+        Ok(camera_walk(trajectory, drawn, |kind| PictureLocation::Folder(place(kind))))
+    }
+
+    fn write_folder(&self, place: &str, kind: PictureKind, pictures: &[Vec<u8>]) -> Result<(), CommandError> {
+        let whole = self.folder.join(place);
+        let name = whole.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let unfinished = whole.with_file_name(format!(".{name}.part"));
         for old in [&unfinished, &whole] {
             if old.exists() {
                 fs::remove_dir_all(old).map_err(CommandError::io(old, "remove what an earlier command left in"))?;
             }
         }
-        if let Err(error) = write_pictures(&unfinished, pictures) {
+        if let Err(error) = write_pictures(&unfinished, kind, pictures) {
             // The first failure is the one to report. What stays is removed by the next command.
             let _ = fs::remove_dir_all(&unfinished);
             return Err(error);
         }
-        fs::rename(&unfinished, &whole).map_err(CommandError::io(&whole, "name"))?;
-        trajectory.sha256 = PictureDigest::from_pictures(pictures);
-        Ok(trajectory)
+        fs::rename(&unfinished, &whole).map_err(CommandError::io(&whole, "name"))
     }
 
     fn write_shard(
         &self,
-        walks: Vec<(usize, ActionTrajectory, Vec<Vec<u8>>)>,
+        camera: &CameraIntrinsics,
+        walks: Vec<(usize, &ActionTrajectory, DrawnWalk)>,
         walks_per_shard: usize,
-    ) -> Result<Vec<ActionTrajectory>, CommandError> {
+    ) -> Result<Vec<CameraWalk>, CommandError> {
         let Some((first, ..)) = walks.first() else { return Ok(Vec::new()) };
-        let file = self.folder.join(shard_file(*first, walks_per_shard));
-        let folder = self.folder.join(SHARDS_FOLDER);
-        fs::create_dir_all(&folder).map_err(CommandError::io(&folder, "make the folder"))?;
-        let mut shard = ShardWriter::begin(&file).map_err(CommandError::io(&file, "write"))?;
-        let mut taken = Vec::with_capacity(walks.len());
-        for (number, mut trajectory, pictures) in walks {
-            trajectory.sha256 = PictureDigest::from_pictures(&pictures);
-            shard
-                .add_walk(&format!("{number:06}"), &trajectory, &pictures)
-                .map_err(CommandError::io(&file, "write"))?;
-            taken.push(trajectory);
+        let folder = format!("{}/{SHARDS_FOLDER}", camera_folder(camera));
+        let place = self.folder.join(&folder);
+        fs::create_dir_all(&place).map_err(CommandError::io(&place, "make the folder"))?;
+        let name = format!("{folder}/{:06}.tar", first / walks_per_shard);
+        let file = self.folder.join(&name);
+        let failed = || CommandError::io(&file, "write");
+        let mut shard = ShardWriter::begin(&file).map_err(failed())?;
+        let mut written = Vec::with_capacity(walks.len());
+        for (number, trajectory, drawn) in walks {
+            let key = format!("{number:06}");
+            shard.add_walk(&key, trajectory, &drawn.kinds()).map_err(failed())?;
+            let place = |_| PictureLocation::Sample { shard: name.clone(), key: key.clone() };
+            written.push(camera_walk(trajectory, drawn, place));
         }
-        shard.finish().map_err(CommandError::io(&file, "write"))?;
-        Ok(taken)
+        shard.finish().map_err(failed())?;
+        Ok(written)
+    }
+}
+
+/// The line of a camera about a walk whose pictures are written.
+fn camera_walk(
+    trajectory: &ActionTrajectory,
+    drawn: DrawnWalk,
+    place: impl Fn(PictureKind) -> PictureLocation,
+) -> CameraWalk {
+    let [rgb, depth] = drawn
+        .kinds()
+        .map(|(kind, pictures)| PictureSet { place: place(kind), sha256: PictureDigest::from_pictures(pictures) });
+    CameraWalk {
+        trajectory_id: trajectory.id.clone(),
+        world_from_camera: drawn.world_from_camera,
+        rgb,
+        depth,
+        pixel_goals: drawn.pixel_goals,
     }
 }
 
 /// Writes the pictures of a walk into a new folder.
-fn write_pictures(folder: &Path, pictures: &[Vec<u8>]) -> Result<(), CommandError> {
+fn write_pictures(folder: &Path, kind: PictureKind, pictures: &[Vec<u8>]) -> Result<(), CommandError> {
     fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the folder"))?;
     for (number, picture) in pictures.iter().enumerate() {
-        let file = folder.join(picture_name(number));
+        let file = folder.join(kind.file_name(number));
         fs::write(&file, picture).map_err(CommandError::io(&file, "write"))?;
     }
     Ok(())
@@ -214,23 +311,4 @@ fn failed_item(trajectory: &ActionTrajectory, error: CommandError) -> Result<Fai
         }
         other => Err(other),
     }
-}
-
-/// Takes the picture that the agent sees before an action, as JPEG.
-pub(super) fn take_picture(
-    scenes: &WalkingScenes,
-    steps: &StepExportSettings,
-    trajectory: &ActionTrajectory,
-    number: usize,
-) -> Result<Vec<u8>, CommandError> {
-    let stance = (trajectory.positions[number], trajectory.headings[number]);
-    let image = scenes.take_picture(&trajectory.scene, stance, steps.eye_m, steps.fov_deg.to_radians())?;
-    encode_jpeg(&image, steps.jpeg_quality).map_err(|error| {
-        CommandError::usage(format!("a picture cannot be written as JPEG: {error}"), "report this as a bug")
-    })
-}
-
-/// The path of the shard that has a walk, below the folder of the export.
-fn shard_file(number: usize, walks_per_shard: usize) -> String {
-    format!("{SHARDS_FOLDER}/{:06}.tar", number / walks_per_shard)
 }

@@ -2,11 +2,12 @@
 
 use super::{super::items, instruction_parts::split_instruction, settings::StepExportSettings};
 use crate::walking::{WalkingScenes, floor_positions};
+use sha2::{Digest as _, Sha256};
 use std::collections::BTreeMap;
-use wayword_core::{FailureKind, Heading, Path};
+use wayword_core::{FailureKind, Heading, Path, hex_text};
 use wayword_formats::{
     jsonl::InstructionRecord,
-    trajectories::{ActionTrajectory, PictureLocation, TrajectoryInstruction, round_pose},
+    trajectories::{ActionTrajectory, TrajectoryInstruction, round_length_m, round_pose},
 };
 use wayword_habitat::walk::follow_places;
 use wayword_run::{error::CommandError, run_folder::FailedItem};
@@ -17,6 +18,29 @@ pub(super) struct ExportedWalk<'a> {
     pub(super) split: &'a str,
     /// The records about the walk, each with the name of its episode.
     pub(super) texts: Vec<(String, &'a InstructionRecord)>,
+}
+
+impl ExportedWalk<'_> {
+    /// SHA-256 of its path.
+    pub(super) fn path_sha256(&self) -> String {
+        // A path that was read can be written.
+        hex_text(Sha256::digest(serde_json::to_vec(self.path).unwrap_or_default()))
+    }
+
+    /// Its texts, with the actions before which the agent comes to their parts.
+    pub(super) fn instructions(&self, frame_steps: &[usize]) -> Vec<TrajectoryInstruction> {
+        let instruction = |(episode_id, record): &(String, &InstructionRecord)| {
+            let (sub_instructions, joined_parts) = split_instruction(&record.instruction, frame_steps);
+            TrajectoryInstruction {
+                episode_id: episode_id.clone(),
+                style: record.instruction.style.clone(),
+                text: record.instruction.text.clone(),
+                sub_instructions,
+                joined_parts,
+            }
+        };
+        self.texts.iter().map(instruction).collect()
+    }
 }
 
 /// The walks of records, scene by scene. A walk occurs once, with all of its texts and their split.
@@ -36,13 +60,12 @@ pub(super) fn walks_from_records<'a>(records: &'a [InstructionRecord], splits: &
     walks
 }
 
-/// Divides a walk into single actions that follow its path from frame to frame. The result has no pictures yet. If the actions
-/// cannot follow the path, the inner result is a failed item.
+/// Divides a walk into single actions that follow its path from frame to frame. If the actions cannot follow the path, the inner
+/// result is a failed item.
 pub(super) fn trajectory_from_walk(
     walk: &ExportedWalk<'_>,
     scenes: &WalkingScenes,
     steps: &StepExportSettings,
-    pictures: PictureLocation,
 ) -> Result<Result<ActionTrajectory, FailedItem>, CommandError> {
     let (path, gait) = (walk.path, steps.gait()?);
     let failed = |failure, reason: String| FailedItem { item: path.id.clone(), failure, reason };
@@ -57,13 +80,11 @@ pub(super) fn trajectory_from_walk(
         Err(astray) => return Ok(Err(failed(FailureKind::Broken, astray.to_string()))),
     };
     let stances = walked.stances.iter().map(|stance| round_pose(stance.foothold.place, stance.heading(gait)));
-    let (positions, headings) = stances.unzip();
-    let instructions = walk.texts.iter().map(|(episode_id, record)| TrajectoryInstruction {
-        episode_id: episode_id.clone(),
-        style: record.instruction.style.clone(),
-        text: record.instruction.text.clone(),
-        sub_instructions: split_instruction(&record.instruction, &walked.reached),
-    });
+    let (positions, headings): (Vec<_>, Vec<_>) = stances.unzip();
+    let above_floor_m = positions
+        .iter()
+        .map(|position| Ok(scenes.above_floor_m(&path.scene, *position)?.map(round_length_m)))
+        .collect::<Result<_, CommandError>>()?;
     Ok(Ok(ActionTrajectory {
         id: path.id.clone(),
         platform: scenes.platform().name().to_owned(),
@@ -71,10 +92,10 @@ pub(super) fn trajectory_from_walk(
         split: walk.split.to_owned(),
         positions,
         headings,
+        above_floor_m,
         off_m: walked.off_m,
-        pictures,
-        sha256: String::new(),
-        instructions: instructions.collect(),
+        path_sha256: walk.path_sha256(),
+        instructions: walk.instructions(&walked.reached),
         frame_steps: walked.reached,
         actions: walked.actions,
     }))

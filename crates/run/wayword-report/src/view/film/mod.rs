@@ -12,7 +12,7 @@ use wayword_core::Image;
 use wayword_run::error::CommandError;
 
 /// Writes the pictures of a film, which all have the same size.
-pub(super) trait FilmWriter {
+pub(crate) trait FilmWriter {
     /// Adds the next picture.
     ///
     /// # Errors
@@ -24,6 +24,15 @@ pub(super) trait FilmWriter {
     /// # Errors
     /// When it cannot be written.
     fn finish(self: Box<Self>) -> Result<Vec<PathBuf>, CommandError>;
+}
+
+/// Begins a video in which each picture is one frame, with many key frames: readers of training data jump to any frame.
+///
+/// # Errors
+/// When the file cannot be written.
+#[cfg(feature = "video")]
+pub(crate) fn open_training_video(out: &Path, fps: f64) -> Result<Box<dyn FilmWriter>, CommandError> {
+    mp4::open_frames(out, fps)
 }
 
 /// The place and the form of a film.

@@ -19,13 +19,27 @@ const KEY_EVERY_S: f64 = 5.0;
 /// How coarse pictures may be: quantisation on the encoder's scale of 0 to 51.
 const QUANTISATION_RANGE: [u8; 2] = [18, 24];
 
+/// Frames between two key frames of a video for training.
+const TRAINING_KEY_FRAMES: u32 = 2;
+
+/// Begins a film for people.
 pub(super) fn open_video(out: &Path, fps: f64) -> Result<Box<dyn FilmWriter>, CommandError> {
     let repeats = (MIN_FPS / fps).ceil().max(1.0);
+    let key_frames = (KEY_EVERY_S * fps * repeats).ceil() as u32;
+    open_with(out, fps * repeats, repeats as usize, key_frames)
+}
+
+/// Begins a video in which each picture is one frame.
+pub(super) fn open_frames(out: &Path, fps: f64) -> Result<Box<dyn FilmWriter>, CommandError> {
+    open_with(out, fps, 1, TRAINING_KEY_FRAMES)
+}
+
+fn open_with(out: &Path, fps: f64, repeats: usize, key_frames: u32) -> Result<Box<dyn FilmWriter>, CommandError> {
     let config = EncoderConfig::new()
-        .max_frame_rate(FrameRate::from_hz((fps * repeats) as f32))
+        .max_frame_rate(FrameRate::from_hz(fps as f32))
         .rate_control_mode(RateControlMode::Off)
         .qp(QpRange::new(QUANTISATION_RANGE[0], QUANTISATION_RANGE[1]))
-        .intra_frame_period(IntraFramePeriod::from_num_frames((KEY_EVERY_S * fps * repeats).ceil() as u32))
+        .intra_frame_period(IntraFramePeriod::from_num_frames(key_frames))
         .skip_frames(false)
         // One thread and no choice by load: the same pictures give the same file.
         .num_threads(1)
@@ -38,8 +52,8 @@ pub(super) fn open_video(out: &Path, fps: f64) -> Result<Box<dyn FilmWriter>, Co
         file: Some(OutputFile::begin(out).map_err(CommandError::io(out, "write"))?),
         muxer: None,
         out: out.to_owned(),
-        fps: fps * repeats,
-        repeats: repeats as usize,
+        fps,
+        repeats,
         frames: 0,
     }))
 }
