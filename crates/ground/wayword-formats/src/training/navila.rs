@@ -207,8 +207,8 @@ impl JoinedSamples {
     }
 }
 
-/// Writes the decisions of the walks of `file` again with other texts, by the name of the walk. Walks without a text, and those whose answers
-/// do not say every action, are left out.
+/// Writes the decisions of the walks of `file` again with other texts, by the name of the walk. A walk without a text, or
+/// with answers that do not say every action, is left out.
 ///
 /// # Errors
 /// When `file` cannot be read, or `out` cannot be written.

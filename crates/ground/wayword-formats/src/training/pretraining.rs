@@ -62,14 +62,14 @@ pub fn neighbour_views(scan: &str, graph: &ViewpointGraph) -> BTreeMap<String, V
 fn neighbour_view(graph: &ViewpointGraph, from: &ViewpointId, to: &ViewpointId) -> Option<Value> {
     const HEADINGS: i64 = 12;
     let offset = graph.position_of(to)? - graph.position_of(from)?;
-    let heading = offset.x.atan2(offset.y).rem_euclid(TAU);
-    let elevation = offset.z.atan2(offset.x.hypot(offset.y));
+    let heading = libm::atan2(offset.x, offset.y).rem_euclid(TAU);
+    let elevation = libm::atan2(offset.z, libm::hypot(offset.x, offset.y));
     let column = (heading / FRAC_PI_6).round() as i64 % HEADINGS;
     // The middle row reaches 15 degrees up and down.
     let row = 1 + i64::from(elevation > FRAC_PI_6 / 2.0) - i64::from(elevation < -FRAC_PI_6 / 2.0);
     let beside = (heading - FRAC_PI_6 * column as f64 + PI).rem_euclid(TAU) - PI;
     let above = elevation - FRAC_PI_6 * (row - 1) as f64;
-    Some(json!([HEADINGS * row + column, beside.hypot(above), beside, above]))
+    Some(json!([HEADINGS * row + column, libm::hypot(beside, above), beside, above]))
 }
 
 /// Writes the table of neighbours' views.

@@ -75,7 +75,7 @@ pub struct CameraWalk {
     pub rgb: PictureSet,
     /// The depths before each action, millimetres along the camera's axis; 0 where nothing is drawn or it is farther than 65.5 m.
     pub depth: PictureSet,
-    /// For each action the farthest later position of the walk whose floor the picture shows and nothing hides.
+    /// For each action the farthest later position of the walk that the picture shows, at its place on the floor.
     pub pixel_goals: Vec<Option<PixelGoal>>,
 }
 

@@ -1,6 +1,7 @@
 //! `wayword export`: checks the flags, reads and merges the runs' records, and writes them in the chosen format.
 
 pub mod args;
+#[cfg(any(feature = "habitat", feature = "parquet"))]
 mod card;
 mod duet;
 mod duet_pretraining;
@@ -21,6 +22,7 @@ mod steps;
 mod steps;
 pub mod steps_args;
 mod training_texts;
+#[cfg(any(feature = "habitat", feature = "parquet"))]
 mod unfinished_folder;
 #[cfg(feature = "habitat")]
 pub use habitat_scenes::lay_on_navmesh;

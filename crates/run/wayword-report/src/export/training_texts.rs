@@ -22,12 +22,12 @@ use wayword_run::{
 #[derive(Debug, Serialize)]
 struct WrittenTexts {
     instructions: usize,
-    /// The file whose walks they are about.
+    /// The file of the walks that they are about.
     source: PathBuf,
     file: PathBuf,
 }
 
-/// Whether the texts are about recordings, whose pictures exist already.
+/// Whether the texts are about recordings: their pictures exist already.
 pub(super) fn are_of_recordings(records: &[InstructionRecord]) -> bool {
     records.iter().all(|record| record.platform == RECORDING_PLATFORM)
 }

@@ -1,9 +1,11 @@
-//! Folders of training data for navigation policies, whose walks are recordings: StreamVLN's, NaVILA's, and InternNav's. The texts are read
-//! beside them (`wayword_formats::training`).
+//! Walks of training data for navigation policies as recordings: StreamVLN's, NaVILA's, and InternNav's. `wayword_formats::training`
+//! reads the texts about them.
 
 #[cfg(feature = "lerobot")]
 mod internnav;
 mod motion;
+#[cfg(feature = "lerobot")]
+mod pose_column;
 
 #[cfg(feature = "lerobot")]
 pub(crate) use internnav::open_internnav;

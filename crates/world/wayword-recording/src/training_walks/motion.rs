@@ -14,7 +14,7 @@ pub(super) enum WalkMotion {
     Actions(Vec<AgentAction>),
     /// A column of poses in a table, one for each picture.
     #[cfg(feature = "lerobot")]
-    Poses(super::internnav::PoseColumn),
+    Poses(super::pose_column::PoseColumn),
     /// Nothing.
     Unknown,
 }

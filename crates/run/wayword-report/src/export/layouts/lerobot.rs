@@ -1,4 +1,4 @@
-//! LeRobot's layout, v3.0 with its columns of language: an episode for each text, whose frames are a stretch of a video.
+//! LeRobot's layout, v3.0 with its columns of language: an episode for each text, with a stretch of a video.
 
 use super::{LayoutPack, PackedCounts, PackedWalk};
 use crate::view::film::{FilmWriter, open_training_video};

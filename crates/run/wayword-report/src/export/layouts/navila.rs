@@ -1,5 +1,5 @@
-//! NaVILA's layouts: decisions of a policy with all pictures before them (`annotations.json`, `frames/`), and videos whose answer is the
-//! instruction (`speaker.json`, `videos/`).
+//! NaVILA's layouts: decisions of a policy with all pictures before them (`annotations.json`, `frames/`), and videos for which the
+//! instruction is the answer (`speaker.json`, `videos/`).
 
 use super::{LayoutPack, PackedCounts, write_picture};
 use std::fs;

@@ -68,7 +68,7 @@ pub(super) fn pinhole_at(camera: &CameraIntrinsics, trajectory: &ActionTrajector
         position: trajectory.positions[step] + DVec3::Z * camera.height_m,
         heading_rad: trajectory.headings[step].rad(),
         elevation_rad: camera.pitch_deg.to_radians(),
-        vertical_fov_rad: 2.0 * (0.5 * f64::from(camera.height_px) / camera.focal_px).atan(),
+        vertical_fov_rad: 2.0 * libm::atan(0.5 * f64::from(camera.height_px) / camera.focal_px),
         width: camera.width_px,
         height: camera.height_px,
     }
@@ -82,7 +82,7 @@ fn habitat_from_optical(pinhole: &PinholeCamera) -> DMat4 {
     DMat4::from_cols(right.extend(0.0), down.extend(0.0), ahead.extend(0.0), eye.extend(1.0))
 }
 
-/// The farthest later position of the walk whose floor the picture shows and nothing hides.
+/// The farthest later position of the walk that the picture shows, at its place on the floor.
 fn find_goal(
     camera: &CameraIntrinsics,
     pinhole: &PinholeCamera,

@@ -40,8 +40,8 @@ pub struct TrajectoryReplay {
     pub others: usize,
     /// Pixel goals.
     pub goals: usize,
-    /// Of these, those whose pixel, at the depth that the depth picture has there, is the place that they stand for: within 0.1 m, or
-    /// within the width of the pixel there.
+    /// Of these, those with a pixel that, at its depth in the depth picture, shows the place that they stand for: within 0.1 m, or within
+    /// the width of the pixel there.
     pub goals_near: usize,
 }
 

@@ -80,7 +80,7 @@ impl StepExportSettings {
             pitch_deg,
             width_px: self.width_px,
             height_px: self.height_px,
-            focal_px: 0.5 * width / (0.5 * self.fov_deg.to_radians()).tan(),
+            focal_px: 0.5 * width / libm::tan(0.5 * self.fov_deg.to_radians()),
             centre_px: [0.5 * width, 0.5 * height],
         }
     }

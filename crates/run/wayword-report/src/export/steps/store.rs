@@ -274,7 +274,7 @@ impl<'a> TrajectoryMaker<'a> {
     }
 }
 
-/// The line of a camera about a walk whose pictures are written.
+/// The line of a camera about a walk, once its pictures are written.
 fn camera_walk(
     trajectory: &ActionTrajectory,
     drawn: DrawnWalk,

@@ -142,7 +142,8 @@ const BELOW: [(&str, Below); 33] = [
     ("wayword-house", Below::Crates(&["wayword-core", "wayword-render", "wayword-world"])),
     ("wayword-platforms", Below::Crates(&["wayword-core", "wayword-render", "wayword-world"])),
     ("wayword-habitat", Below::Crates(&["wayword-core", "wayword-render", "wayword-world"])),
-    ("wayword-recording", Below::Crates(&["wayword-core", "wayword-world"])),
+    // Walks of training data are recordings, and their layouts are formats.
+    ("wayword-recording", Below::Crates(&["wayword-core", "wayword-formats", "wayword-world"])),
     // Its stand-ins draw generated houses; they are not part of any program that users get.
     ("wayword-live", Below::Crates(&["wayword-core", "wayword-house", "wayword-render", "wayword-world"])),
     ("wayword-database", Below::Crates(&[])),
