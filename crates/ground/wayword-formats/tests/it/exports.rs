@@ -55,7 +55,7 @@ fn write(format: DatasetFormat, file: &Path, episodes: &[Episode]) {
         DatasetFormat::Reverie => reverie::write_reverie_file(file, episodes),
         DatasetFormat::Rxr => rxr::write_rxr_file(file, episodes),
         DatasetFormat::Vlnce => vlnce::write_vlnce_file(file, &vlnce::VlnceDataset::from_episodes(episodes.to_vec())),
-        DatasetFormat::Wayword => unreachable!("records are written by jsonl::write"),
+        other => unreachable!("{other} is not written from episodes"),
     }
     .unwrap();
 }

@@ -65,6 +65,7 @@ fn needed(format: DatasetFormat) -> &'static [&'static str] {
         DatasetFormat::Wayword => {
             &["/format", "/platform", "/path", "/text", "/style", "/mentions", "/verdict", "/findings", "/provenance"]
         }
+        other => unreachable!("{other} holds recordings"),
     }
 }
 
@@ -75,6 +76,7 @@ fn names(format: DatasetFormat) -> &'static [&'static str] {
         DatasetFormat::Rxr => &["/instruction_id", "/path_id", "/scan", "/path/2", "/split"],
         DatasetFormat::Vlnce => &["/episode_id", "/trajectory_id", "/scene_id"],
         DatasetFormat::Wayword => &["/path/id", "/path/scene", "/path/frames/1/viewpoint", "/platform"],
+        other => unreachable!("{other} holds recordings"),
     }
 }
 
@@ -83,6 +85,7 @@ fn places(format: DatasetFormat) -> &'static str {
         DatasetFormat::R2r | DatasetFormat::Reverie | DatasetFormat::Rxr => "/path",
         DatasetFormat::Vlnce => "/reference_path",
         DatasetFormat::Wayword => "/path/frames",
+        other => unreachable!("{other} holds recordings"),
     }
 }
 
@@ -91,6 +94,7 @@ fn number_place(format: DatasetFormat) -> &'static str {
         DatasetFormat::R2r | DatasetFormat::Reverie | DatasetFormat::Rxr => "/heading",
         DatasetFormat::Vlnce => "/start_position/1",
         DatasetFormat::Wayword => "/path/frames/0/pose/position/2",
+        other => unreachable!("{other} holds recordings"),
     }
 }
 

@@ -74,6 +74,7 @@ fn changed(format: DatasetFormat, n: usize, item: &Value, change: &Change) -> Va
             item["text"] = text;
             item["mentions"] = json!([]);
         }
+        other => unreachable!("{other} holds recordings"),
     }
     let bears_unknown = format != DatasetFormat::Vlnce;
     item.extend(change.unknown.iter().filter(|_| bears_unknown).cloned());

@@ -1,7 +1,6 @@
 //! Tests of reading training data as recordings.
 
 use super::*;
-use crate::reel::PictureReel as _;
 
 fn write_picture(file: &Path) {
     std::fs::create_dir_all(file.parent().unwrap()).unwrap();

@@ -48,6 +48,7 @@ fn item(format: DatasetFormat, n: u64) -> Value {
             "provenance": {"wayword": "0.1.0", "asker": "rules", "answerer": "labels", "summariser": "rules",
                 "writer": "rules", "checked_against": "labels", "seed": 1, "style_hash": "0f", "repairs": 0},
         }),
+        other => unreachable!("{other} holds recordings"),
     }
 }
 
@@ -61,6 +62,7 @@ pub(crate) fn text(format: DatasetFormat, items: &[Value]) -> String {
             let words = ["<pad>", "<unk>", "door", "to", "walk"];
             json!({"episodes": items, "instruction_vocab": {"word_list": words}}).to_string()
         }
+        other => unreachable!("{other} holds recordings"),
     }
 }
 
@@ -76,6 +78,7 @@ pub(crate) fn items_of(format: DatasetFormat, file: &Path) -> Vec<Value> {
             let mut dataset: Value = serde_json::from_str(&text).unwrap();
             serde_json::from_value(dataset["episodes"].take()).unwrap()
         }
+        other => unreachable!("{other} holds recordings"),
     }
 }
 
@@ -87,5 +90,6 @@ pub(crate) fn copy(format: DatasetFormat, from: &Path, to: &Path) -> Result<(), 
         DatasetFormat::Rxr => rxr::write_rxr_file(to, &rxr::read_rxr_file(from)?),
         DatasetFormat::Vlnce => vlnce::write_vlnce_file(to, &vlnce::read_vlnce_file(from)?),
         DatasetFormat::Wayword => jsonl::write_records(to, &jsonl::read_records(from)?),
+        other => unreachable!("{other} holds recordings"),
     }
 }
