@@ -14,3 +14,5 @@ mod refusals;
 mod round_trip;
 mod shared_paths;
 mod submissions;
+#[cfg(feature = "parquet")]
+mod training_schemas;

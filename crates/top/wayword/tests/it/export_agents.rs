@@ -87,6 +87,45 @@ mod built {
     }
 
     #[test]
+    fn pretraining_has_a_line_for_each_text_and_the_views_of_all_neighbours() {
+        let building = Building::new();
+        let records = building.run_over_episodes("run");
+        let bert = tokenizer(&building, "[CLS]", "[SEP]");
+        for (style, name) in [("r2r", "R2R_val_seen_enc.jsonl"), ("reverie", "REVERIE_val_seen_enc.jsonl")] {
+            let export =
+                ["export", "--run", "run", "--style", style, "--format", "duet-pretrain", "--tokenizer", &bert];
+            let ran = building.wayword(&[&export[..], &["--out", "pre", "--json"]].concat());
+            assert_eq!(ran.code, Some(0), "{ran:?}");
+            let lines = building.lines(&format!("pre/{name}"));
+            let texts: BTreeSet<Vec<u64>> = records
+                .iter()
+                .filter(|record| record.instruction.style == style)
+                .map(|record| ids(&record.instruction.text))
+                .collect();
+            let views: Value =
+                serde_json::from_slice(&fs::read(building.path("pre/scanvp_candview_relangles.json")).unwrap())
+                    .unwrap();
+            for line in &lines {
+                let encoded: Vec<u64> = serde_json::from_value(line["instr_encoding"].clone()).unwrap();
+                assert!(texts.contains(&encoded), "{line}");
+                let path: Vec<&str> = line["path"].as_array().unwrap().iter().map(|at| at.as_str().unwrap()).collect();
+                for hop in path.windows(2) {
+                    let here = format!("{}_{}", line["scan"].as_str().unwrap(), hop[0]);
+                    assert!((0.0..36.0).contains(&views[&here][hop[1]][0].as_f64().unwrap()), "{here}");
+                }
+                let name_parts = line["instr_id"].as_str().unwrap().split('_').count();
+                let is_about_object = style == "reverie";
+                assert_eq!(
+                    (name_parts == 3, line.get("pos_vps").is_some()),
+                    (is_about_object, is_about_object),
+                    "{line}"
+                );
+            }
+            assert_eq!(lines.len() as u64, ran.json()["instructions"].as_u64().unwrap());
+        }
+    }
+
+    #[test]
     fn texts_for_one_path_are_one_item_with_as_many_encodings() {
         let building = Building::new();
         let mut records = building.run_over_episodes("run");
