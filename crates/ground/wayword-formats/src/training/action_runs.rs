@@ -2,6 +2,11 @@
 
 use wayword_core::AgentAction;
 
+/// Length of a step, centimetres.
+pub(super) const STEP_CM: usize = 25;
+/// Steps that one answer of NaVid and NaVILA holds at most: 75 cm.
+pub(super) const MAX_ANSWER_STEPS: usize = 3;
+
 /// Equal actions in a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ActionRun {
@@ -24,6 +29,18 @@ pub fn action_runs(actions: &[AgentAction], longest: usize) -> Vec<ActionRun> {
         }
     }
     runs
+}
+
+/// A run of actions in the words that NaVid's and NaVILA's evaluations read back. `turn_deg` is the angle of one turn, and `degree` the
+/// unit as the policy writes it.
+pub(super) fn action_sentence(run: ActionRun, turn_deg: usize, degree: &str) -> String {
+    let turned = turn_deg * run.count;
+    match run.action {
+        AgentAction::Stop => "The next action is stop.".to_owned(),
+        AgentAction::Forward => format!("The next action is move forward {} cm.", STEP_CM * run.count),
+        AgentAction::Left => format!("The next action is turn left {turned} {degree}."),
+        AgentAction::Right => format!("The next action is turn right {turned} {degree}."),
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 //! Source: jzhzhang/Uni-NaVid, `uninavid/train/train.py` (`LazySupervisedDataset`) and `offline_eval_uninavid.py`;
 //! jzhzhang/NaVid-VLN-CE, `agent_navid.py` (the prompt and the words that it reads back). A word means 0.25 m or 30 degrees.
 
-use super::action_runs::{ActionRun, action_runs};
+use super::action_runs::{ActionRun, MAX_ANSWER_STEPS, action_runs, action_sentence};
 use crate::{FormatError, output};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -11,11 +11,8 @@ use wayword_core::AgentAction;
 
 /// The angle that a turn of these policies means, degrees.
 pub const NAVID_TURN_DEG: f64 = 30.0;
-/// Steps that one answer of NaVid holds at most.
-const MAX_STEPS: usize = 3;
 /// Actions that Uni-NaVid says at once.
 const NEXT_ACTIONS: usize = 4;
-const STEP_CM: usize = 25;
 const TURN_DEG: usize = 30;
 
 /// The policy that learns from the conversations.
@@ -43,7 +40,7 @@ pub struct NavidSample {
 /// The decisions of a walk for which there are samples: the first action of each run of equal ones.
 #[must_use]
 pub fn navid_decisions(actions: &[AgentAction]) -> Vec<ActionRun> {
-    action_runs(actions, MAX_STEPS)
+    action_runs(actions, MAX_ANSWER_STEPS)
 }
 
 /// The sample of a decision. `walk` names the walk with its text, and `video` the views up to the decision.
@@ -56,7 +53,7 @@ pub fn navid_sample(
     run: ActionRun,
 ) -> NavidSample {
     let answer = match policy {
-        NavidPolicy::NaVid => action_sentence(run),
+        NavidPolicy::NaVid => action_sentence(run, TURN_DEG, "degrees"),
         NavidPolicy::UniNaVid => next_words(actions, run.first),
     };
     NavidSample { id: format!("NAV_ID_{walk}_{}", run.first), video, prompt: prompt_words(policy, text), answer }
@@ -80,16 +77,6 @@ fn prompt_words(policy: NavidPolicy, text: &str) -> String {
         "Imagine you are a robot programmed for navigation tasks. You have been given a video of historical observations and an \
          image of the current observation <image>. Your assigned task is: '{text}'. Analyze this series of images to {asked}"
     )
-}
-
-/// A run of actions as NaVid's agent reads it.
-fn action_sentence(run: ActionRun) -> String {
-    match run.action {
-        AgentAction::Stop => "The next action is stop.".to_owned(),
-        AgentAction::Forward => format!("The next action is move forward {} cm.", STEP_CM * run.count),
-        AgentAction::Left => format!("The next action is turn left {} degrees.", TURN_DEG * run.count),
-        AgentAction::Right => format!("The next action is turn right {} degrees.", TURN_DEG * run.count),
-    }
 }
 
 /// The next four actions, one word each; after the end of the walk "stop".

@@ -5,7 +5,7 @@
 //! `evaluation/vlnce_baselines/cma_trainer.py` reads back.
 
 use super::{
-    action_runs::{ActionRun, action_runs},
+    action_runs::{ActionRun, MAX_ANSWER_STEPS, STEP_CM, action_runs, action_sentence},
     streamvln::take_relative_path,
 };
 use crate::{DatasetItem, Episode, FormatError, input, output};
@@ -14,10 +14,7 @@ use serde_json::{Value, json};
 use std::{collections::BTreeMap, path::Path};
 use wayword_core::{AgentAction, SceneId};
 
-/// Steps that one answer holds at most: 75 cm, or 45 degrees.
-const MAX_STEPS: usize = 3;
-/// Length of a step, centimetres, and angle of a turn, degrees.
-const STEP_CM: usize = 25;
+/// Angle of a turn, degrees.
 const TURN_DEG: usize = 15;
 /// Most pictures of one decision.
 const MAX_FRAMES: usize = 25_000;
@@ -55,20 +52,10 @@ pub fn navila_samples(
     let sample = |run: ActionRun| NavilaSample {
         video_id: video_id.to_owned(),
         question: text.to_owned(),
-        answer: action_words(run),
+        answer: action_sentence(run, TURN_DEG, "degree"),
         frames: (0..=run.first).map(&frame).collect(),
     };
-    action_runs(actions, MAX_STEPS).into_iter().map(sample).collect()
-}
-
-/// A run of actions in the words that NaVILA's evaluation reads.
-fn action_words(run: ActionRun) -> String {
-    match run.action {
-        AgentAction::Stop => "The next action is stop.".to_owned(),
-        AgentAction::Forward => format!("The next action is move forward {} cm.", STEP_CM * run.count),
-        AgentAction::Left => format!("The next action is turn left {} degree.", TURN_DEG * run.count),
-        AgentAction::Right => format!("The next action is turn right {} degree.", TURN_DEG * run.count),
-    }
+    action_runs(actions, MAX_ANSWER_STEPS).into_iter().map(sample).collect()
 }
 
 /// The actions of an answer; `None` if it says none. NaVILA's evaluation reads words in this order, and rounds to whole steps.
@@ -89,7 +76,7 @@ pub fn actions_of_answer(answer: &str) -> Option<Vec<AgentAction>> {
     ];
     let (words, action, unit) = told.into_iter().find(|(words, ..)| answer.contains(words))?;
     let count = (number_after(words)? + unit / 2) / unit;
-    (1..=MAX_STEPS).contains(&count).then(|| vec![action; count])
+    (1..=MAX_ANSWER_STEPS).contains(&count).then(|| vec![action; count])
 }
 
 /// Writes `annotations.json` of a policy: one sample a line.

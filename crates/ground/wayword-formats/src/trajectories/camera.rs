@@ -1,6 +1,6 @@
 //! A camera of an agent: its intrinsics, and for each walk its poses, the pictures it takes and the goals that they show.
 
-use super::{PictureSet, pictures::take_picture_set};
+use super::{PictureKind, PictureSet, pictures::take_picture_set};
 use crate::{DatasetItem, FormatError, input};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -77,6 +77,17 @@ pub struct CameraWalk {
     pub depth: PictureSet,
     /// For each action the farthest later position of the walk that the picture shows, at its place on the floor.
     pub pixel_goals: Vec<Option<PixelGoal>>,
+}
+
+impl CameraWalk {
+    /// The pictures of a kind.
+    #[must_use]
+    pub fn pictures(&self, kind: PictureKind) -> &PictureSet {
+        match kind {
+            PictureKind::Rgb => &self.rgb,
+            PictureKind::Depth => &self.depth,
+        }
+    }
 }
 
 /// A later position of a walk, as a picture shows it.

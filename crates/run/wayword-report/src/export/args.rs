@@ -123,7 +123,7 @@ Examples:
   wayword export --run runs/houses --format parquet --out houses.parquet
   wayword export --run runs/houses --format steps --out train        (VLN-CE's actions, with a picture before each)
   wayword export --run runs/houses --format steps --shard 100 --size-px 640x480 --out shards
-  wayword export --run runs/houses --format streamvln --out streamvln (layouts share the pictures in runs/houses/steps)
+  wayword export --run runs/houses --format streamvln --out streamvln      (layouts share the pictures in runs/houses/steps)
   wayword export --run runs/houses --format lerobot --out lerobot
   wayword export --run runs/val_seen --style r2r --highlight doubts
   wayword export --texts R2R_val_seen.json --platform matterport --data DATA --highlight doubts")]

@@ -38,8 +38,7 @@ fn seen(building: &Building, out: &str) -> Vec<CameraWalk> {
 }
 
 fn pictures(building: &Building, out: &str, walk: &CameraWalk, kind: PictureKind) -> Vec<Vec<u8>> {
-    let set = if kind == PictureKind::Rgb { &walk.rgb } else { &walk.depth };
-    read_pictures(&building.path(out), set, kind, walk.world_from_camera.len()).unwrap()
+    read_pictures(&building.path(out), walk.pictures(kind), kind, walk.world_from_camera.len()).unwrap()
 }
 
 /// Every file of a folder with its bytes, except its lock files.

@@ -16,10 +16,6 @@ const MAX_VIDEO_FRAMES: usize = 10_000;
 pub(super) fn pack_lerobot(pack: &LayoutPack<'_>, output: &CommandOutput) -> Result<PackedCounts, CommandError> {
     let camera = &pack.cameras[0];
     let size = [camera.width_px, camera.height_px];
-    if size.iter().any(|side| side % 2 == 1) {
-        let problem = format!("a video has even sides, and these pictures are {}x{}", size[0], size[1]);
-        return Err(CommandError::usage(problem, "make steps with another --size-px"));
-    }
     let mut colours = ColourStatistics { pictures: 0, counts: [[0; 256]; 3] };
     let mut episodes: Vec<LeRobotEpisode> = Vec::new();
     let mut video: Option<Box<dyn FilmWriter>> = None;

@@ -9,7 +9,12 @@ mod navid;
 mod navila;
 mod streamvln;
 
-use super::{card, splits, steps, tell_terms, unfinished_folder::UnfinishedFolder};
+use super::{
+    card, splits,
+    steps::{self, LayoutNeeds, StepsFolder},
+    tell_terms,
+    unfinished_folder::UnfinishedFolder,
+};
 use crate::export::args::{ExportArgs, ExportFormat};
 use serde::Serialize;
 use serde_json::json;
@@ -83,17 +88,16 @@ struct WrittenLayout {
 }
 
 impl ExportFormat {
-    /// The cameras of a layout, if the user names none: heights in metres, and pitches in degrees.
-    fn usual_cameras(self) -> &'static [[f64; 2]] {
-        match self {
-            Self::Internnav => &[steps::USUAL_CAMERA, [1.25, -30.0]],
-            _ => &[steps::USUAL_CAMERA],
+    /// What a layout needs of its steps.
+    fn layout_needs(self) -> LayoutNeeds {
+        LayoutNeeds {
+            cameras: match self {
+                Self::Internnav => &[steps::USUAL_CAMERA, [1.25, -30.0]],
+                _ => &[steps::USUAL_CAMERA],
+            },
+            turn_deg: (self == Self::Uninavid).then_some(wayword_formats::training::navid::NAVID_TURN_DEG),
+            has_video: self == Self::Lerobot,
         }
-    }
-
-    /// The angle of a turn, if the layout's words fix it, degrees.
-    fn fixed_turn_deg(self) -> Option<f64> {
-        (self == Self::Uninavid).then_some(wayword_formats::training::navid::NAVID_TURN_DEG)
     }
 }
 
@@ -104,33 +108,26 @@ pub(super) fn export_layout(
     records: &[InstructionRecord],
     output: &CommandOutput,
 ) -> Result<Exit, CommandError> {
-    let made = steps::make_steps_of_run(args, records, format.usual_cameras(), format.fixed_turn_deg(), output)?;
-    let is_chosen =
-        |record: &InstructionRecord| args.style.as_deref().is_none_or(|style| record.instruction.style == style);
+    // Before anything is drawn, so that a folder in use is refused at once.
+    let folder = UnfinishedFolder::begin(out)?;
+    let made = steps::make_steps_of_run(args, records, &format.layout_needs(), output)?;
     let seen = made.cameras.iter().map(|camera| made.walks_of_camera(camera)).collect::<Result<Vec<_>, _>>()?;
-    let mut walks_by_split: BTreeMap<&str, Vec<PackedWalk<'_>>> = BTreeMap::new();
-    for trajectory in &made.trajectories {
-        let has_style = |text: &&TrajectoryInstruction| args.style.as_ref().is_none_or(|style| text.style == *style);
-        let texts: Vec<_> = trajectory.instructions.iter().filter(has_style).collect();
-        let seen: Option<Vec<_>> = seen.iter().map(|walks| walks.get(&trajectory.id)).collect();
-        if let Some(seen) = seen.filter(|_| !texts.is_empty()) {
-            walks_by_split.entry(&trajectory.split).or_default().push(PackedWalk { trajectory, texts, seen });
-        }
-    }
-    let all_texts = || walks_by_split.values().flatten().flat_map(|walk| &walk.texts);
+    let walks_by_split = choose_walks(&made, &seen, args.style.as_deref());
+    let walks = || walks_by_split.values().flatten();
+    let packed: BTreeSet<&str> = walks().map(|walk| walk.trajectory.id.as_str()).collect();
     let mut written = WrittenLayout {
         folder: out.to_owned(),
         steps: made.folder.clone(),
-        walks: walks_by_split.values().map(Vec::len).sum(),
-        instructions: all_texts().count(),
+        walks: packed.len(),
+        instructions: walks().map(|walk| walk.texts.len()).sum(),
         entries: 0,
         left_out: 0,
-        joined_parts: all_texts().map(|text| text.joined_parts).sum(),
+        joined_parts: walks().flat_map(|walk| &walk.texts).map(|text| text.joined_parts).sum(),
         splits: BTreeMap::new(),
         failed: made.failed,
     };
-    let folder = UnfinishedFolder::begin(out)?;
-    let mut names: BTreeSet<String> = BTreeSet::new();
+    write_card(args, (format, out), (&folder, records, &packed))?;
+    let mut names = BTreeSet::from([CARD_FILE, CHECKS_FILE].map(str::to_owned));
     for (split, walks) in walks_by_split {
         interrupt::check_interrupt()?;
         written.splits.insert(split.to_owned(), walks.iter().map(|walk| walk.texts.len()).sum());
@@ -142,14 +139,44 @@ pub(super) fn export_layout(
         written.left_out += counts.left_out;
         names.insert(split.to_owned());
     }
-    let chosen: Vec<InstructionRecord> = records.iter().filter(|record| is_chosen(record)).cloned().collect();
-    let chosen_splits = splits::splits_of_records(args, &chosen)?;
-    write_file(&folder.place().join(CARD_FILE), card::card_text(args, out, &chosen, &chosen_splits, Some(format))?)?;
-    write_file(&folder.place().join(CHECKS_FILE), check_lines(&chosen))?;
-    names.extend([CARD_FILE, CHECKS_FILE].map(str::to_owned));
     folder.finish(names.iter().map(String::as_str))?;
     tell_terms(records, output);
     Ok(report_written(format, &written, output))
+}
+
+/// The walks of each split with their texts of a style. A walk that a camera could not see is left out.
+fn choose_walks<'a>(
+    made: &'a StepsFolder,
+    seen: &'a [BTreeMap<String, CameraWalk>],
+    style: Option<&str>,
+) -> BTreeMap<&'a str, Vec<PackedWalk<'a>>> {
+    let mut walks_by_split: BTreeMap<&str, Vec<PackedWalk<'_>>> = BTreeMap::new();
+    for trajectory in &made.trajectories {
+        let has_style = |text: &&TrajectoryInstruction| style.is_none_or(|style| text.style == style);
+        let texts: Vec<_> = trajectory.instructions.iter().filter(has_style).collect();
+        let seen: Option<Vec<_>> = seen.iter().map(|walks| walks.get(&trajectory.id)).collect();
+        if let Some(seen) = seen.filter(|_| !texts.is_empty()) {
+            walks_by_split.entry(&trajectory.split).or_default().push(PackedWalk { trajectory, texts, seen });
+        }
+    }
+    walks_by_split
+}
+
+/// Writes the dataset card, and what the checks left open of each text, about the texts that are packed.
+fn write_card(
+    args: &ExportArgs,
+    (format, out): (ExportFormat, &Path),
+    (folder, records, packed): (&UnfinishedFolder, &[InstructionRecord], &BTreeSet<&str>),
+) -> Result<(), CommandError> {
+    let is_packed = |record: &&InstructionRecord| {
+        packed.contains(record.path.id.as_str())
+            && args.style.as_deref().is_none_or(|style| record.instruction.style == style)
+    };
+    let records: Vec<InstructionRecord> = records.iter().filter(is_packed).cloned().collect();
+    let record_splits = splits::splits_of_records(args, &records)?;
+    let card = card::card_text(args, out, &records, &record_splits, Some(format))?;
+    write_file(&folder.place().join(CARD_FILE), card)?;
+    write_file(&folder.place().join(CHECKS_FILE), check_lines(&records))
 }
 
 /// For each text its verdict, and what the checks left unverified.
@@ -228,10 +255,7 @@ impl LayoutPack<'_> {
         if let Some(folder) = places.first().and_then(|place| place.parent()) {
             fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the folder"))?;
         }
-        let set = match kind {
-            PictureKind::Rgb => &walk.seen[camera].rgb,
-            PictureKind::Depth => &walk.seen[camera].depth,
-        };
+        let set = walk.seen[camera].pictures(kind);
         if let PictureLocation::Folder(folder) = &set.place {
             let folder = self.steps.join(folder);
             return places
@@ -250,10 +274,7 @@ impl LayoutPack<'_> {
         camera: usize,
         kind: PictureKind,
     ) -> Result<Vec<Vec<u8>>, CommandError> {
-        let set = match kind {
-            PictureKind::Rgb => &walk.seen[camera].rgb,
-            PictureKind::Depth => &walk.seen[camera].depth,
-        };
+        let set = walk.seen[camera].pictures(kind);
         Ok(read_pictures(self.steps, set, kind, walk.trajectory.actions.len())?)
     }
 }

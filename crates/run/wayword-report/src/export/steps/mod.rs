@@ -44,7 +44,7 @@ use wayword_run::{
     in_order::{core_count, in_order},
     interrupt,
     output::CommandOutput,
-    run_folder::{file, keep_config, lock_folder, read_config, read_run_settings},
+    run_folder::{FolderLock, file, keep_config, lock_folder, read_config, read_run_settings},
 };
 
 /// The angle of a turn in RxR-CE's task, degrees.
@@ -71,6 +71,16 @@ struct WrittenTrajectories {
     farthest_off_m: f64,
 }
 
+/// What a layout needs of the steps that it is packed from.
+pub(super) struct LayoutNeeds {
+    /// The cameras, if the user names none: heights in metres, and pitches in degrees.
+    pub(super) cameras: &'static [[f64; 2]],
+    /// The angle of a turn, if the layout's words fix it, degrees.
+    pub(super) turn_deg: Option<f64>,
+    /// Whether pictures become videos with H.264, which have even sides.
+    pub(super) has_video: bool,
+}
+
 /// A folder of steps that holds everything a command needs.
 pub(super) struct StepsFolder {
     pub(super) folder: PathBuf,
@@ -78,6 +88,8 @@ pub(super) struct StepsFolder {
     pub(super) cameras: Vec<CameraIntrinsics>,
     /// Walks that cannot be taken.
     pub(super) failed: usize,
+    /// Keeps other commands away while this one uses the folder.
+    _held: FolderLock,
 }
 
 impl StepsFolder {
@@ -99,8 +111,11 @@ pub(super) fn write_steps(
 ) -> Result<Exit, CommandError> {
     let splits = splits::splits_of_records(args, records)?;
     let settings = StepExportSettings::from_flags(&args.steps)?;
-    let made = make_steps(args, (out, settings), (records, &splits), &[USUAL_CAMERA], output)?;
-    write_episodes(args, out, &walks_from_records(records, &splits), &made.trajectories, output)?;
+    let has_shards = settings.shard.is_some();
+    let mut made = make_steps(args, (out, settings), (records, &splits), &[USUAL_CAMERA], output)?;
+    let walks = walks_from_records(records, &splits);
+    write_new_texts(&mut made, &walks, has_shards)?;
+    write_episodes(args, out, &walks, &made.trajectories, output)?;
     tell_terms(records, output);
     report_written(&made, output)
 }
@@ -110,12 +125,11 @@ pub(super) fn write_steps(
 pub(super) fn make_steps_of_run(
     args: &ExportArgs,
     records: &[InstructionRecord],
-    usual_cameras: &[[f64; 2]],
-    fixed_turn_deg: Option<f64>,
+    needs: &LayoutNeeds,
     output: &CommandOutput,
 ) -> Result<StepsFolder, CommandError> {
     let [run] = args.run.as_slice() else { return Err(CommandError::usage("--run is missing", "give one run")) };
-    let folder = args.steps.steps.clone().unwrap_or_else(|| match fixed_turn_deg {
+    let folder = args.steps.steps.clone().unwrap_or_else(|| match needs.turn_deg {
         None => run.join(STEPS_FOLDER),
         Some(turn_deg) => run.join(format!("{STEPS_FOLDER}_{turn_deg}deg")),
     });
@@ -124,9 +138,9 @@ pub(super) fn make_steps_of_run(
         false => None,
     };
     let mut asked = args.steps.with_defaults_from(before.as_ref());
-    asked.turn_deg = asked.turn_deg.or(fixed_turn_deg);
+    asked.turn_deg = asked.turn_deg.or(needs.turn_deg);
     let settings = StepExportSettings::from_flags(&asked)?;
-    if let Some(turn_deg) = fixed_turn_deg.filter(|turn_deg| *turn_deg != settings.turn_deg) {
+    if let Some(turn_deg) = needs.turn_deg.filter(|turn_deg| *turn_deg != settings.turn_deg) {
         let problem = format!(
             "the words of this layout mean turns of {turn_deg} degrees, and the steps have {}",
             settings.turn_deg
@@ -136,8 +150,16 @@ pub(super) fn make_steps_of_run(
             format!("give --turn-deg {turn_deg}, or leave it out, and another --steps"),
         ));
     }
+    if needs.has_video && (settings.width_px % 2 == 1 || settings.height_px % 2 == 1) {
+        let problem =
+            format!("a video has even sides, and these pictures are {}x{}", settings.width_px, settings.height_px);
+        return Err(CommandError::usage(problem, "give another --size-px, and another --steps"));
+    }
     let splits = splits::splits_of_records(args, records)?;
-    make_steps(args, (&folder, settings), (records, &splits), usual_cameras, output)
+    let mut made = make_steps(args, (&folder, settings), (records, &splits), needs.cameras, output)?;
+    // The folder may be a dataset of its own, with texts and splits of its own: they stay as they are there.
+    renew_texts(&mut made.trajectories, &walks_from_records(records, &splits));
+    Ok(made)
 }
 
 /// The actions along each walk in RxR-CE's gait, by the name of its path; `None` if the platform has no ground. A walk that cannot be taken has
@@ -180,28 +202,23 @@ fn make_steps(
     let cameras = steps.cameras(&args.steps.camera, usual_cameras)?;
     let scenes = WalkingScenes::open_run(&read_run_settings(run)?, [steps.width_px, steps.height_px])?;
     fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the folder"))?;
-    let _folder_lock = lock_folder(folder)?;
+    let held = lock_folder(folder)?;
     keep_config(folder, &steps)?;
     let walks = walks_from_records(records, splits);
     let mut store = TrajectoryStore::open(folder, &cameras)?;
     let maker = TrajectoryMaker::continue_folder(folder, &scenes, &steps, &cameras, (&store, &walks))?;
     take_walks(&walks, &maker, &mut store, output)?;
     store.sort_and_sync(&walks)?;
-    let trajectories = refresh_texts(folder, &walks, steps.shard.is_some())?;
-    Ok(StepsFolder { folder: folder.to_owned(), trajectories, cameras, failed: store.failed_count() })
+    // Reads the file back, so that what is reported and packed is what is there.
+    let trajectories = read_trajectories(&folder.join(TRAJECTORIES_FILE))?;
+    Ok(StepsFolder { folder: folder.to_owned(), trajectories, cameras, failed: store.failed_count(), _held: held })
 }
 
-/// Reads the trajectories back, and gives them the texts and splits of this command.
-fn refresh_texts(
-    folder: &Path,
-    walks: &[ExportedWalk<'_>],
-    has_shards: bool,
-) -> Result<Vec<ActionTrajectory>, CommandError> {
-    let file = folder.join(TRAJECTORIES_FILE);
-    let mut trajectories = read_trajectories(&file)?;
+/// Gives trajectories the texts and splits of this command. Returns whether any had others.
+fn renew_texts(trajectories: &mut [ActionTrajectory], walks: &[ExportedWalk<'_>]) -> bool {
     let by_id: BTreeMap<&str, &ExportedWalk<'_>> = walks.iter().map(|walk| (walk.path.id.as_str(), walk)).collect();
     let mut is_changed = false;
-    for trajectory in &mut trajectories {
+    for trajectory in trajectories {
         let Some(walk) = by_id.get(trajectory.id.as_str()) else { continue };
         let instructions = walk.instructions(&trajectory.frame_steps);
         if trajectory.instructions != instructions || trajectory.split != walk.split {
@@ -209,14 +226,19 @@ fn refresh_texts(
             is_changed = true;
         }
     }
-    if is_changed && has_shards {
-        let problem = format!("{}: its shards hold other texts or splits", folder.display());
+    is_changed
+}
+
+/// Writes the texts and splits of this command into its folder, if an earlier command left others.
+fn write_new_texts(made: &mut StepsFolder, walks: &[ExportedWalk<'_>], has_shards: bool) -> Result<(), CommandError> {
+    if !renew_texts(&mut made.trajectories, walks) {
+        return Ok(());
+    }
+    if has_shards {
+        let problem = format!("{}: its shards hold other texts or splits", made.folder.display());
         return Err(CommandError::usage(problem, "give a new folder"));
     }
-    if is_changed {
-        write_trajectories(&file, &trajectories)?;
-    }
-    Ok(trajectories)
+    Ok(write_trajectories(&made.folder.join(TRAJECTORIES_FILE), &made.trajectories)?)
 }
 
 /// Takes all walks that are not done yet, several at the same time.
