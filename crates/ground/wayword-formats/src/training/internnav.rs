@@ -12,7 +12,7 @@
 
 use super::{
     columns::{ColumnValues, NamedColumn, write_column_file},
-    episode_lines::INSTRUCTION_SEPARATOR,
+    episode_lines::{EPISODES_PER_CHUNK, INSTRUCTION_SEPARATOR},
 };
 use crate::{FormatError, output};
 use serde::Serialize;
@@ -20,8 +20,6 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use wayword_core::{AgentAction, DMat4, DVec3};
 
-/// Episodes in one folder of files.
-const EPISODES_PER_CHUNK: usize = 1000;
 /// The first action of an episode, which the loader skips.
 const DUMMY_ACTION: i32 = -1;
 /// Pictures each second, which nobody reads.
@@ -96,7 +94,7 @@ pub fn write_internnav_scene(folder: &Path, episodes: &[InternNavEpisode]) -> Re
             features[format!("{feature}.{}", camera.name)] = json!({"dtype": kind, "shape": shape, "names": null});
         }
     }
-    write_info(folder, &features, [episodes.len(), first_row, episodes.len()])
+    write_info(folder, &features, [episodes.len(), first_row, episodes.len()], EPISODES_PER_CHUNK)
 }
 
 fn episode_columns(episode: &InternNavEpisode, first_row: usize) -> Vec<NamedColumn> {
@@ -136,7 +134,12 @@ fn matrix_rows(pose: DMat4) -> Vec<Vec<f32>> {
     pose.transpose().to_cols_array_2d().iter().map(|row| row.iter().map(|part| *part as f32).collect()).collect()
 }
 
-fn write_info(folder: &Path, features: &Value, [episodes, frames, tasks]: [usize; 3]) -> Result<(), FormatError> {
+fn write_info(
+    folder: &Path,
+    features: &Value,
+    [episodes, frames, tasks]: [usize; 3],
+    chunk: usize,
+) -> Result<(), FormatError> {
     let info = json!({
         "codebase_version": "v2.1",
         "robot_type": "unknown",
@@ -144,8 +147,8 @@ fn write_info(folder: &Path, features: &Value, [episodes, frames, tasks]: [usize
         "total_frames": frames,
         "total_tasks": tasks,
         "total_videos": 0,
-        "total_chunks": episodes.div_ceil(EPISODES_PER_CHUNK),
-        "chunks_size": EPISODES_PER_CHUNK,
+        "total_chunks": episodes.div_ceil(chunk),
+        "chunks_size": chunk,
         "fps": FPS as u32,
         "splits": {"train": format!("0:{episodes}")},
         "data_path": "data/chunk-{episode_chunk:03d}/episode_{episode_index:06d}.parquet",
@@ -232,7 +235,8 @@ pub fn write_vln_n1_scene(folder: &Path, episodes: &[VlnN1Episode], obstacles: &
         "observation.camera_extrinsic": matrix(4),
         "action": matrix(4),
     });
-    write_info(folder, &features, [episodes.len(), first_row, tasks.len()])
+    // Whatever their number, all episodes lie in one folder of files.
+    write_info(folder, &features, [episodes.len(), first_row, tasks.len()], episodes.len().max(EPISODES_PER_CHUNK))
 }
 
 /// A part of a text as a sentence of its own.
@@ -311,12 +315,19 @@ mod tests {
         write_internnav_scene(&scene, &[episode()]).unwrap();
         let file = scene.join(EPISODES_FILE);
         let lines = read_internnav_lines(&file).unwrap();
-        let expected = InternNavLine { index: 0, texts: episode().texts, length: 3 };
+        let expected = InternNavLine {
+            index: 0,
+            texts: episode().texts,
+            other_tasks: Vec::new(),
+            length: 3,
+            extra: serde_json::Map::new(),
+        };
         assert_eq!(lines, [expected]);
         let episodes = read_internnav_episodes(&file).unwrap();
         assert_eq!((episodes[0].scene.as_str(), episodes[0].instructions.len()), ("house2-1_000000", 2));
         let again = scene.join("meta/again.jsonl");
-        write_internnav_texts(&file, &again, |_| episode().texts).unwrap();
+        let put = write_internnav_texts(&file, &again, &|_| episode().texts).unwrap();
+        assert_eq!((put.walks, put.texts, put.left_out), (1, 2, 0));
         assert_eq!(std::fs::read(&again).unwrap(), std::fs::read(&file).unwrap());
         assert_eq!(
             internnav_picture(1000, "rgb", "125cm_0deg", 7, "jpg").display().to_string(),

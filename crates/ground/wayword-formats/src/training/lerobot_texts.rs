@@ -1,11 +1,13 @@
 //! Reads the texts of a LeRobot dataset of version 3: the tasks of each episode.
 
-use crate::{Episode, FormatError};
+use crate::{Episode, FormatError, limits};
 use parquet::{
     file::reader::{FileReader as _, SerializedFileReader},
     record::{Field, Row},
+    schema::types::Type,
 };
 use std::{
+    collections::BTreeSet,
     fs::File,
     path::{Path, PathBuf},
 };
@@ -13,6 +15,8 @@ use wayword_core::SceneId;
 
 /// Largest table of episodes that is read, bytes.
 const MAX_TABLE_BYTES: u64 = 256 << 20;
+/// Most bytes of all texts.
+const MAX_TEXTS_BYTES: usize = 1 << 30;
 /// Most tables of episodes.
 const MAX_TABLES: usize = 10_000;
 
@@ -23,12 +27,16 @@ const MAX_TABLES: usize = 10_000;
 pub fn read_lerobot_episodes(folder: &Path) -> Result<Vec<Episode>, FormatError> {
     let folder = std::path::absolute(folder).map_err(|source| FormatError::from_io(folder, "find", source))?;
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let mut episodes = Vec::new();
+    let (mut episodes, mut names) = (Vec::new(), BTreeSet::new());
     for table in episode_tables(&folder)? {
         for (number, tasks) in read_table(&table)? {
             let scene = SceneId::new(format!("{name}_{number:06}")).map_err(|error| {
                 FormatError::for_document(&folder, format!("its name: {error}"), "give the folder another name")
             })?;
+            if !names.insert(scene.clone()) {
+                let problem = format!("episode {number} is listed twice");
+                return Err(FormatError::for_document(&table, problem, "give each episode its own number"));
+            }
             episodes.push(Episode::for_recording(scene, tasks));
         }
     }
@@ -66,10 +74,27 @@ fn read_table(table: &Path) -> Result<Vec<(i64, Vec<String>)>, FormatError> {
     // The library panics at some broken files.
     let read = wayword_core::contain_panics::run_decoder(|| {
         let reader = SerializedFileReader::new(file).map_err(|error| error.to_string())?;
-        let rows = reader.get_row_iter(None).map_err(|error| error.to_string())?;
-        rows.map(|row| episode_of_row(&row.map_err(|error| error.to_string())?)).collect::<Result<Vec<_>, String>>()
+        let rows = reader.get_row_iter(Some(wanted_columns(&reader)?)).map_err(|error| error.to_string())?;
+        let (mut episodes, mut bytes) = (Vec::new(), 0);
+        for row in rows {
+            let (number, tasks) = episode_of_row(&row.map_err(|error| error.to_string())?)?;
+            bytes += tasks.iter().map(String::len).sum::<usize>();
+            if episodes.len() >= limits::MAX_ITEMS || bytes > MAX_TEXTS_BYTES {
+                return Err("it has more than 1,000,000 episodes or 1 GiB of texts".to_owned());
+            }
+            episodes.push((number, tasks));
+        }
+        Ok(episodes)
     });
     read.map_err(broken)
+}
+
+/// The columns of numbers and texts alone, so that nothing else of a row is read.
+fn wanted_columns(reader: &SerializedFileReader<File>) -> Result<Type, String> {
+    let schema = reader.metadata().file_metadata().schema();
+    let wanted = schema.get_fields().iter().filter(|field| ["episode_index", "tasks"].contains(&field.name()));
+    let fields = wanted.cloned().collect();
+    Type::group_type_builder(schema.name()).with_fields(fields).build().map_err(|error| error.to_string())
 }
 
 fn episode_of_row(row: &Row) -> Result<(i64, Vec<String>), String> {
@@ -81,8 +106,12 @@ fn episode_of_row(row: &Row) -> Result<(i64, Vec<String>), String> {
         return Err("episode_index is no whole number".to_owned());
     };
     let Field::ListInternal(tasks) = field("tasks")? else { return Err("tasks is no list".to_owned()) };
+    if tasks.len() > limits::MAX_INSTRUCTIONS {
+        return Err(format!("episode {number} has more than 1,000 tasks"));
+    }
     let text = |field: &Field| match field {
-        Field::Str(text) => Ok(text.clone()),
+        Field::Str(text) if text.len() <= limits::MAX_INSTRUCTION_BYTES => Ok(text.clone()),
+        Field::Str(_) => Err(format!("a task of episode {number} is longer than an instruction may be")),
         _ => Err(format!("a task of episode {number} is no text")),
     };
     Ok((*number, tasks.elements().iter().map(text).collect::<Result<_, _>>()?))

@@ -17,6 +17,8 @@ pub mod motion_jpeg;
 pub mod navid;
 pub mod navila;
 pub mod pretraining;
+mod put_back;
 pub mod streamvln;
 
 pub use action_runs::{ActionRun, action_runs};
+pub use put_back::{TextsOfWalk, TextsPutBack};

@@ -6,12 +6,16 @@
 
 use super::{
     action_runs::{ActionRun, MAX_ANSWER_STEPS, STEP_CM, action_runs, action_sentence},
+    put_back::{TextsOfWalk, TextsPutBack},
     streamvln::take_relative_path,
 };
 use crate::{DatasetItem, Episode, FormatError, input, output};
 use serde::Serialize;
 use serde_json::{Value, json};
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
 use wayword_core::{AgentAction, SceneId};
 
 /// Angle of a turn, degrees.
@@ -194,23 +198,30 @@ impl JoinedSamples {
     }
 }
 
-/// Writes the decisions of the walks of `file` again with other texts, by the name of the walk. A walk without a text, or
-/// with answers that do not say every action, is left out.
+/// Writes the decisions of the walks of `file` again with other texts, by the name of the walk. A walk without a text, or with answers that
+/// do not say every action, is left out. Returns what was put back.
 ///
 /// # Errors
 /// When `file` cannot be read, or `out` cannot be written.
-pub fn write_navila_texts(file: &Path, out: &Path, texts: impl Fn(&str) -> Vec<String>) -> Result<(), FormatError> {
-    let mut walks = read_navila_walks(file)?;
+pub fn write_navila_texts(file: &Path, out: &Path, texts: TextsOfWalk<'_>) -> Result<TextsPutBack, FormatError> {
     // The walk of each name occurs once for each text that it had.
-    let mut seen = std::collections::BTreeSet::new();
-    walks.retain(|walk| walk.actions.is_some() && seen.insert(walk.video_id.clone()));
-    let samples = walks.iter().flat_map(|walk| {
+    let mut seen = BTreeSet::new();
+    let (mut walks, mut count) = (Vec::new(), TextsPutBack::default());
+    for walk in read_navila_walks(file)? {
+        if seen.insert(walk.video_id.clone()) {
+            let texts = if walk.actions.is_some() { texts(&walk.video_id) } else { Vec::new() };
+            if count.take_walk(texts.len()) {
+                walks.push((walk, texts));
+            }
+        }
+    }
+    let samples = walks.iter().flat_map(|(walk, texts)| {
         let actions = walk.actions.as_deref().unwrap_or_default();
         let frame = |number: usize| walk.frames.get(number).cloned().unwrap_or_default();
-        let of_text = |text: String| navila_samples(&walk.video_id, &text, actions, frame);
-        texts(&walk.video_id).into_iter().flat_map(of_text).collect::<Vec<_>>()
+        texts.iter().flat_map(move |text| navila_samples(&walk.video_id, text, actions, frame))
     });
-    write_navila_samples(out, samples)
+    write_navila_samples(out, samples)?;
+    Ok(count)
 }
 
 /// Reads the walks as episodes of recordings: the scene of each is its `video_id`.

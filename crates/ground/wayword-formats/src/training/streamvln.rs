@@ -5,6 +5,7 @@
 //! picture i is the view before `actions[i + 1]`, and the stop at the end is implied: it is the action before which the last
 //! picture was taken.
 
+use super::put_back::{TextsOfWalk, TextsPutBack};
 use crate::{DatasetItem, Episode, FormatError, input, limits, output, read_tally::ReadTally};
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -135,17 +136,21 @@ pub(super) fn take_relative_path(item: &DatasetItem<'_>, field: &str, value: &Va
     Err(item.wrong_field(field, "it leads out of the folder", "write a path below the folder of this file"))
 }
 
-/// Writes the walks of `file` again with other texts, by the name of their scene. Walks without a text are left out.
+/// Writes the walks of `file` again with other texts, by the name of their scene. Walks without a text are left out. Returns what was put
+/// back.
 ///
 /// # Errors
 /// When `file` cannot be read, or `out` cannot be written.
-pub fn write_streamvln_texts(file: &Path, out: &Path, texts: impl Fn(&str) -> Vec<String>) -> Result<(), FormatError> {
-    let walks = read_streamvln_file(file)?.into_iter().map(|walk| {
+pub fn write_streamvln_texts(file: &Path, out: &Path, texts: TextsOfWalk<'_>) -> Result<TextsPutBack, FormatError> {
+    let (mut walks, mut count) = (Vec::new(), TextsPutBack::default());
+    for walk in read_streamvln_file(file)? {
         let instructions = texts(walk.scene_name());
-        StreamVlnWalk { instructions, ..walk }
-    });
-    let walks: Vec<_> = walks.filter(|walk| !walk.instructions.is_empty()).collect();
-    write_streamvln_file(out, &walks)
+        if count.take_walk(instructions.len()) {
+            walks.push(StreamVlnWalk { instructions, ..walk });
+        }
+    }
+    write_streamvln_file(out, &walks)?;
+    Ok(count)
 }
 
 /// Reads the walks as episodes of recordings: the scene of each is the folder of its pictures.

@@ -156,9 +156,12 @@ fn take_camera_walk(item: &mut DatasetItem<'_>) -> Result<CameraWalk, FormatErro
         let problem = format!("expected {} entries, one for each pose, found {}", world_from_camera.len(), goals.len());
         return Err(item.wrong_field("pixel_goals", problem, "write a goal or null for each action"));
     }
-    if let Some((_, step)) = goals.iter().flatten().find(|(_, step)| *step >= world_from_camera.len()) {
-        let problem = format!("there is no action {step}");
-        return Err(item.wrong_field("pixel_goals", problem, "count actions from 0"));
+    let is_later = |(at, goal): &(usize, &Option<([u32; 2], usize)>)| {
+        goal.is_none_or(|(_, step)| step > *at && step < world_from_camera.len())
+    };
+    if let Some((at, _)) = goals.iter().enumerate().find(|entry| !is_later(entry)) {
+        let problem = "it is no later action of the walk";
+        return Err(item.wrong_field(&format!("pixel_goals[{at}]"), problem, "count actions from 0"));
     }
     let pixel_goals = goals.into_iter().map(|goal| goal.map(|(pixel, step)| PixelGoal { pixel, step })).collect();
     Ok(CameraWalk { trajectory_id, world_from_camera, rgb, depth, pixel_goals })

@@ -17,7 +17,7 @@ const MAX_PICTURE_BYTES: u64 = 32 << 20;
 const MAX_SHARD_FILES: usize = 4_000_000;
 /// Longest path of a folder or shard, bytes.
 const MAX_PLACE_BYTES: usize = 512;
-const REWRITE_HINT: &str = "write the trajectories again: the same command goes on where it stopped";
+const REWRITE_HINT: &str = "remove this folder or shard, and `wayword export` draws it again";
 
 /// What a picture shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -175,7 +175,8 @@ fn picture_bytes(file: io::Result<impl Read>) -> io::Result<Vec<u8>> {
 fn sample_pictures(file: &Path, key: &str, kind: PictureKind, count: usize) -> io::Result<Vec<Vec<u8>>> {
     let mut archive = tar::Archive::new(io::BufReader::new(File::open(file)?));
     let mut pictures = Vec::new();
-    for entry in archive.entries()?.take(MAX_SHARD_FILES) {
+    // It steps over the files of other samples without reading them.
+    for entry in archive.entries_with_seek()?.take(MAX_SHARD_FILES) {
         let entry = entry?;
         let name = entry.path()?.to_string_lossy().into_owned();
         if pictures.len() >= count {

@@ -178,7 +178,7 @@ fn what_a_camera_saw_is_refused_with_line_and_field() {
         ("/depth/place", json!({"sample": {"shard": "a.tar", "key": "x/y"}}), "field \"depth.place.sample.key\""),
         ("/rgb/sha256", json!("abc"), "field \"rgb.sha256\""),
         ("/pixel_goals", json!([null]), "field \"pixel_goals\": expected 3 entries"),
-        ("/pixel_goals/0/1", json!(3), "field \"pixel_goals\": there is no action 3"),
+        ("/pixel_goals/0/1", json!(3), "field \"pixel_goals[0]\": it is no later action of the walk"),
         ("/world_from_camera/0", json!([1]), "field \"world_from_camera"),
     ] {
         let mut line = camera_walk_line(&camera_walk("a"));

@@ -2,10 +2,13 @@
 
 use crate::export::steps_args::AskedSteps;
 use clap::{Args, ValueEnum};
-use std::{fmt, path::PathBuf};
+use std::{
+    fmt,
+    path::{Path, PathBuf},
+};
 use wayword_formats::DatasetFormat;
-use wayword_run::check::args::AskedWorld;
 use wayword_run::settings::AskedPlatform;
+use wayword_run::{check::args::AskedWorld, error::CommandError};
 
 /// The format of an export.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -110,6 +113,19 @@ pub enum AgentDataset {
     Reverie,
     /// rxr_SPLIT_guide_enc_xlmr.jsonl.
     Rxr,
+}
+
+impl ExportArgs {
+    /// The run, for a format that takes one.
+    ///
+    /// # Errors
+    /// When there is none, or more than one.
+    pub(super) fn only_run(&self) -> Result<&Path, CommandError> {
+        match self.run.as_slice() {
+            [run] => Ok(run),
+            _ => Err(CommandError::usage("this format takes one run", "give --run once")),
+        }
+    }
 }
 
 /// `wayword export`.

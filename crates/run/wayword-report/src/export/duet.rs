@@ -19,7 +19,7 @@ const XLM_ROBERTA: &str = "hf/FacebookAI/xlm-roberta-base";
 
 /// The token ids of each text, and whether the tokenizer is XLM-RoBERTa's.
 pub(super) struct EncodedInstructions {
-    is_xlm: bool,
+    pub(super) is_xlm: bool,
     pub(super) ids: Vec<Vec<u32>>,
 }
 

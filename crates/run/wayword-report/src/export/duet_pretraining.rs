@@ -1,7 +1,7 @@
 //! Writes the lines from which VLN-DUET and ScaleVLN pre-train, and the table of the views in which a viewpoint's neighbours lie.
 
 use super::{
-    duet::{encode_instructions, refuse_without_viewpoints, usual_dataset},
+    duet::{EncodedInstructions, encode_instructions, refuse_without_viewpoints, usual_dataset},
     splits, tell_terms, tell_written,
 };
 use crate::export::args::{AgentDataset, ExportArgs};
@@ -40,9 +40,12 @@ pub(super) fn write_pretraining(
         }
     };
     let record_splits = splits::splits_of_records(args, records)?;
-    let ids = encode_instructions(args.tokenizer.as_deref(), records, output)?.ids;
-    let [run] = args.run.as_slice() else { return Err(CommandError::usage("--run is missing", "give one run")) };
-    let platform = platforms::open_platform(&read_run_settings(run)?)?;
+    let EncodedInstructions { is_xlm, ids } = encode_instructions(args.tokenizer.as_deref(), records, output)?;
+    if is_xlm {
+        let problem = "these lines hold the ids of BERT's tokenizer, and this one is XLM-RoBERTa's";
+        return Err(CommandError::usage(problem, "give BERT's: --tokenizer hf/google-bert/bert-base-uncased"));
+    }
+    let platform = platforms::open_platform(&read_run_settings(args.only_run()?)?)?;
     let (mut numbers, mut left_out) = (BTreeMap::<String, usize>::new(), 0);
     let mut lines_by_split: BTreeMap<&str, Vec<PretrainingLine>> = BTreeMap::new();
     let mut written_splits = Vec::new();
@@ -75,7 +78,8 @@ pub(super) fn write_pretraining(
     if left_out > 0 {
         let texts = count_phrase(left_out, "text");
         output.say(format_args!(
-            "{texts} left out: a path of less than two viewpoints, or one that passes a viewpoint twice, has no next step to learn"
+            "{texts} left out: a path of less than two viewpoints, or one that passes a viewpoint twice, has no next step to learn, and a \
+             line of REVERIE needs an object with a name without \"_\""
         ));
     }
     tell_terms(records, output);
@@ -83,8 +87,8 @@ pub(super) fn write_pretraining(
     Ok(())
 }
 
-/// The line of a text; `None` for a path from which nothing can be learnt: too short, or with a viewpoint twice, for which the label of
-/// the next step would be hidden.
+/// The line of a text; `None` for one from which nothing can be learnt: its path is too short, or has a viewpoint twice, for which the label
+/// of the next step would be hidden; or it lacks REVERIE's object.
 fn line_of_record(
     platform: &dyn Platform,
     dataset: AgentDataset,
@@ -101,6 +105,9 @@ fn line_of_record(
     // Loaders split the name at "_".
     let path_name = record.path_id().replace('_', "-");
     let target = record.path.target.as_ref().filter(|_| dataset == AgentDataset::Reverie);
+    if dataset == AgentDataset::Reverie && target.is_none_or(|target| target.object.as_str().contains('_')) {
+        return Ok(None);
+    }
     let seen_from = match target {
         Some(target) => platform.catalogue().visible_from(&record.path.scene, &target.object)?,
         None => None,

@@ -100,6 +100,10 @@ pub fn run_export(args: &ExportArgs, output: &CommandOutput) -> Result<Exit, Com
     refuse_several_styles(format, &records)?;
     if format.is_layout() && training_texts::are_of_recordings(&records) {
         records.retain(|record| style.is_none_or(|style| record.instruction.style == style));
+        if args.split.is_some() || args.val_share.is_some() || args.steps != AskedSteps::default() {
+            let problem = "the walks of this run are recordings: their pictures and splits are as they are";
+            return Err(CommandError::usage(problem, "leave out --split, --val-share and the flags of steps"));
+        }
         let output = &output.beside_data(&find_output_place(out)?);
         training_texts::put_texts_back(args, (format, out), &records, output)?;
         return Ok(Exit::Done);
@@ -113,7 +117,7 @@ pub fn run_export(args: &ExportArgs, output: &CommandOutput) -> Result<Exit, Com
         ExportFormat::Parquet => table::write_table(args, out, &records, output)?,
         ExportFormat::Hf => table::publish_tables(args, out, &records, output)?,
         ExportFormat::Steps => return steps::write_steps(args, out, &records, output),
-        ExportFormat::Rxrce => rxrce::write_rxrce(args, out, &records, output)?,
+        ExportFormat::Rxrce => return rxrce::write_rxrce(args, out, &records, output),
         ExportFormat::DuetPretrain => duet_pretraining::write_pretraining(args, out, &records, output)?,
         ExportFormat::Streamvln
         | ExportFormat::Internnav
@@ -201,7 +205,9 @@ fn refuse_unused_steps(format: ExportFormat, steps: &AskedSteps) -> Result<(), C
         ExportFormat::Steps => {
             (AskedSteps { shard: steps.shard, ..of_walks }, "--steps is for what is packed from steps")
         }
-        ExportFormat::Rxrce => (of_gait, "the flags of pictures are for --format steps and what is packed from it"),
+        ExportFormat::Rxrce => {
+            (of_gait, "--steps and the flags of pictures are for --format steps and what is packed from it")
+        }
         _ if format.is_layout() => (AskedSteps { shard: None, ..steps.clone() }, "--shard is for --format steps"),
         _ => (AskedSteps::default(), "the flags of steps are for --format steps and what is packed from it"),
     };

@@ -9,25 +9,33 @@ use std::{
     path::{Path, PathBuf},
 };
 use wayword_formats::{DatasetFormat, jsonl::InstructionRecord, vlnce, vlnce_actions, vlnce_actions::EpisodeActions};
-use wayword_run::{error::CommandError, output::CommandOutput};
+use wayword_run::{
+    error::{CommandError, Exit},
+    output::CommandOutput,
+};
 
 pub(super) fn write_rxrce(
     args: &ExportArgs,
     out: &Path,
     records: &[InstructionRecord],
     output: &CommandOutput,
-) -> Result<(), CommandError> {
+) -> Result<Exit, CommandError> {
     items::refuse_without_poses(ExportFormat::Rxrce, records)?;
     let record_splits = splits::splits_of_records(args, records)?;
-    let actions = walk_actions(args, records, &record_splits)?;
+    let actions = walk_actions(args, records, &record_splits, output)?;
     if actions.is_none() {
         output.say(format_args!(
             "no actions: this platform has no ground on which single steps can be taken; Habitat's own follower can take them"
         ));
     }
     let mut records_by_split: BTreeMap<&str, Vec<InstructionRecord>> = BTreeMap::new();
+    let mut written_splits = Vec::new();
     for (record, split) in records.iter().zip(&record_splits) {
-        records_by_split.entry(split).or_default().push(record.clone());
+        // The measure needs the actions of each episode.
+        if actions.as_ref().is_none_or(|actions| actions.contains_key(&record.path.id)) {
+            records_by_split.entry(split).or_default().push(record.clone());
+            written_splits.push(split.clone());
+        }
     }
     let mut files: Vec<PathBuf> = Vec::new();
     for (split, records) in records_by_split {
@@ -51,8 +59,8 @@ pub(super) fn write_rxrce(
         items::write_provenance(&guide, &records)?.into_iter().for_each(|file| files.push(file));
     }
     tell_terms(records, output);
-    tell_written(out, files, &record_splits, output);
-    Ok(())
+    tell_written(out, files, &written_splits, output);
+    Ok(if written_splits.len() < records.len() { Exit::WithLoss } else { Exit::Done })
 }
 
 /// The actions along each walk, by the name of its path; `None` if the platform has no ground.
@@ -61,8 +69,9 @@ fn walk_actions(
     args: &ExportArgs,
     records: &[InstructionRecord],
     record_splits: &[String],
+    output: &CommandOutput,
 ) -> Result<Option<BTreeMap<String, EpisodeActions>>, CommandError> {
-    super::steps::walk_actions(args, records, record_splits)
+    super::steps::walk_actions(args, records, record_splits, output)
 }
 
 #[cfg(not(feature = "habitat"))]
@@ -70,6 +79,7 @@ fn walk_actions(
     _args: &ExportArgs,
     _records: &[InstructionRecord],
     _record_splits: &[String],
+    _output: &CommandOutput,
 ) -> Result<Option<BTreeMap<String, EpisodeActions>>, CommandError> {
     Ok(None)
 }

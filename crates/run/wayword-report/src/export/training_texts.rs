@@ -11,21 +11,30 @@ use std::{
 use wayword_formats::{
     FormatError, detect_format,
     jsonl::InstructionRecord,
-    training::{episode_lines::write_internnav_texts, navila::write_navila_texts, streamvln::write_streamvln_texts},
+    training::{
+        TextsOfWalk, TextsPutBack, episode_lines::write_internnav_texts, navila::write_navila_texts,
+        streamvln::write_streamvln_texts,
+    },
 };
 use wayword_run::{
     count::count_phrase, error::CommandError, item::RECORDING_PLATFORM, output::CommandOutput,
-    run_folder::read_run_settings,
+    run_folder::read_run_settings, written_files::refuse_over_input,
 };
 
 /// Result of putting texts back.
 #[derive(Debug, Serialize)]
 struct WrittenTexts {
     instructions: usize,
+    walks: usize,
+    /// Walks that have no text now, or that cannot be written again.
+    left_out: usize,
     /// The file of the walks that they are about.
     source: PathBuf,
     file: PathBuf,
 }
+
+/// Writes the walks of a list again with other texts.
+type TextWriter = fn(&Path, &Path, TextsOfWalk<'_>) -> Result<TextsPutBack, FormatError>;
 
 /// Whether the texts are about recordings: their pictures exist already.
 pub(super) fn are_of_recordings(records: &[InstructionRecord]) -> bool {
@@ -39,8 +48,7 @@ pub(super) fn put_texts_back(
     records: &[InstructionRecord],
     output: &CommandOutput,
 ) -> Result<(), CommandError> {
-    let [run] = args.run.as_slice() else { return Err(CommandError::usage("--run is missing", "give one run")) };
-    let source = read_run_settings(run)?
+    let source = read_run_settings(args.only_run()?)?
         .episodes
         .filter(|source| detect_format(source).is_ok_and(|found| found.name() == format.to_string()));
     let Some(source) = source else {
@@ -48,10 +56,10 @@ pub(super) fn put_texts_back(
         let hint = "make the run with --episodes FILE, the layout's own list of walks, or export in another format";
         return Err(CommandError::usage(problem, hint));
     };
-    let write = match format {
-        ExportFormat::Streamvln => put_streamvln,
-        ExportFormat::Navila => put_navila,
-        ExportFormat::Internnav => put_internnav,
+    let write: TextWriter = match format {
+        ExportFormat::Streamvln => write_streamvln_texts,
+        ExportFormat::Navila => write_navila_texts,
+        ExportFormat::Internnav => write_internnav_texts,
         _ => {
             let problem = format!("texts cannot be put back into layout {format}");
             return Err(CommandError::usage(problem, "use streamvln, navila, internnav, or --format wayword"));
@@ -67,32 +75,29 @@ pub(super) fn put_texts_back(
         .into_iter()
         .find(|file| file.is_file())
         .unwrap_or(source);
-    replace_file(out, output, || Ok(write(&source, out, &of_scene)?))?;
+    refuse_over_input("--out", out, [source.clone()])?;
+    let put = replace_file(out, output, || Ok(write(&source, out, &of_scene)?))?;
     tell_terms(records, output);
-    let written = WrittenTexts { instructions: records.len(), source, file: out.to_owned() };
+    let written = WrittenTexts {
+        instructions: put.texts,
+        walks: put.walks,
+        left_out: put.left_out,
+        source,
+        file: out.to_owned(),
+    };
+    let left_out = match put.left_out {
+        0 => String::new(),
+        left_out => format!("; {} without a text left out", count_phrase(left_out, "walk")),
+    };
     output.print_result(
         &written,
         format_args!(
-            "{} put beside those of {}, in {}",
+            "{} for {} of {}, in {}{left_out}",
             count_phrase(written.instructions, "instruction"),
+            count_phrase(written.walks, "walk"),
             written.source.display(),
             out.display()
         ),
     );
     Ok(())
-}
-
-/// The texts about the walk of a name.
-type TextsOfWalk<'a> = &'a dyn Fn(&str) -> Vec<String>;
-
-fn put_streamvln(source: &Path, out: &Path, texts: TextsOfWalk<'_>) -> Result<(), FormatError> {
-    write_streamvln_texts(source, out, texts)
-}
-
-fn put_navila(source: &Path, out: &Path, texts: TextsOfWalk<'_>) -> Result<(), FormatError> {
-    write_navila_texts(source, out, texts)
-}
-
-fn put_internnav(source: &Path, out: &Path, texts: TextsOfWalk<'_>) -> Result<(), FormatError> {
-    write_internnav_texts(source, out, texts)
 }

@@ -176,6 +176,42 @@ fn a_camera_that_is_added_draws_only_its_own_pictures() {
 }
 
 #[test]
+fn lost_pictures_are_drawn_again_and_changed_ones_are_not_packed() {
+    let building = Building::new();
+    run(&building);
+    assert_eq!(export(&building, "steps", &[]).code, Some(0));
+    let whole = files(&building, "steps");
+    let walk = building.path("steps/cameras/125cm_0deg/rgb").join(&trajectories(&building, "steps")[1].id);
+    fs::remove_file(walk.join("0003.jpg")).unwrap();
+    assert_eq!(export(&building, "steps", &[]).code, Some(0));
+    assert!(files(&building, "steps") == whole);
+    fs::write(walk.join("0003.jpg"), "no picture").unwrap();
+    let pack = ["export", "--run", "run", "--steps", "steps", "--format", "streamvln", "--out", "streamvln"];
+    let ran = building.wayword(&pack);
+    assert!(ran.refused().contains("these pictures are not those that were written"), "{ran:?}");
+    assert!(!building.path("streamvln/train").exists());
+    fs::remove_dir_all(&walk).unwrap();
+    assert_eq!(building.wayword(&pack).code, Some(0));
+    assert!(files(&building, "steps") == whole);
+}
+
+#[test]
+fn walks_do_not_move_to_another_split_beside_the_files_of_the_old_one() {
+    let building = Building::new();
+    run(&building);
+    assert_eq!(export(&building, "steps", &[]).code, Some(0));
+    let whole = files(&building, "steps");
+    let ran = export(&building, "steps", &["--split", "val_seen"]);
+    assert!(ran.refused().contains("in split train, and now it would be in val_seen"), "{ran:?}");
+    assert!(files(&building, "steps") == whole);
+    // A layout takes its own splits, and leaves those of the steps alone.
+    let pack =
+        ["export", "--run", "run", "--steps", "steps", "--format", "navila", "--split", "val_seen", "--out", "navila"];
+    assert_eq!(building.wayword(&pack).code, Some(0));
+    assert!(building.path("navila/val_seen/annotations.json").is_file() && files(&building, "steps") == whole);
+}
+
+#[test]
 fn tar_shards_have_the_same_content_as_folders() {
     let building = Building::new();
     run(&building);

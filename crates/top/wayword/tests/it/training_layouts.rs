@@ -15,10 +15,12 @@ use std::{
 };
 use wayword_core::AgentAction;
 use wayword_formats::{
-    DatasetFormat, read_any_format,
+    DatasetFormat, FormatError, read_any_format,
     training::{
-        navila::read_navila_walks,
-        streamvln::{read_streamvln_file, write_streamvln_file},
+        TextsOfWalk, TextsPutBack,
+        episode_lines::write_internnav_texts,
+        navila::{read_navila_walks, write_navila_texts},
+        streamvln::{read_streamvln_file, write_streamvln_file, write_streamvln_texts},
     },
     trajectories::{ActionTrajectory, read_trajectories},
     vlnce_actions::read_actions,
@@ -108,6 +110,9 @@ fn layouts_share_their_pictures_and_are_the_same_bytes_each_time() {
     assert_eq!((cameras("run/steps"), cameras("run/steps_30deg")), (2, 1));
 }
 
+/// Puts texts back into a list of walks.
+type PutBack = fn(&Path, &Path, TextsOfWalk<'_>) -> Result<TextsPutBack, FormatError>;
+
 #[test]
 fn own_readers_find_what_was_exported() {
     let building = Building::new();
@@ -124,6 +129,21 @@ fn own_readers_find_what_was_exported() {
     assert_eq!(fs::read(again).unwrap(), fs::read(building.path("streamvln/train/annotations.json")).unwrap());
     let walks = read_navila_walks(&building.path("navila/train/annotations.json")).unwrap();
     assert_eq!(walks.into_iter().map(|walk| (walk.text, walk.actions.unwrap())).collect::<BTreeMap<_, _>>(), told);
+    // The same texts, put back into the lists that were read: the same bytes.
+    for (list, put_back) in [
+        ("streamvln/train/annotations.json", write_streamvln_texts as PutBack),
+        ("navila/train/annotations.json", write_navila_texts),
+        ("internnav/train/house2-1/meta/episodes.jsonl", write_internnav_texts),
+    ] {
+        let (list, out) = (building.path(list), building.path("again.json"));
+        let texts: BTreeMap<String, Vec<String>> = read_any_format(&list)
+            .unwrap()
+            .into_iter()
+            .map(|episode| (episode.scene.as_str().to_owned(), episode.instructions))
+            .collect();
+        put_back(&list, &out, &|scene| texts[scene].clone()).unwrap();
+        assert!(fs::read(&out).unwrap() == fs::read(&list).unwrap(), "{} differs", list.display());
+    }
     for (folder, format) in [
         ("streamvln/train", DatasetFormat::Streamvln),
         ("navila/train", DatasetFormat::Navila),
@@ -195,6 +215,9 @@ fn texts_for_walks_that_exist_are_put_back_beside_them() {
         let same = before.iter().find(|other| other.id == walk.id).unwrap();
         assert_eq!((&walk.video, &walk.actions), (&same.video, &same.actions));
     }
+    let own = "streamvln/train/annotations.json";
+    let over = building.wayword(&["export", "--run", "mine_streamvln", "--format", "streamvln", "--out", own]);
+    assert!(over.refused().contains("--out would overwrite streamvln/train/annotations.json"), "{over:?}");
     let wrong = building.wayword(&["export", "--run", "mine_streamvln", "--format", "navila", "--out", "x.json"]);
     assert!(wrong.refused().contains("its episodes are no file of layout navila"), "{wrong:?}");
 }
@@ -223,10 +246,23 @@ fn layouts_refuse_what_their_words_do_not_mean() {
         let ran = building.wayword(&[&["export", "--run", "run", "--out", "x"], more].concat());
         ran.refused().to_owned()
     };
-    assert!(refused(&["--format", "uninavid", "--turn-deg", "15"]).contains("mean turns of 30 degrees"));
+    assert!(
+        refused(&["--format", "uninavid", "--turn-deg", "15"])
+            .contains("turns of 30 degrees, and the steps have 0.25 m and 15 degrees")
+    );
+    for layout in ["navila", "streamvln", "internnav", "rxrce"] {
+        let told = refused(&["--format", layout, "--forward-m", "0.5"]);
+        assert!(told.contains("mean steps of 0.25 m"), "{layout}: {told}");
+    }
     assert!(refused(&["--format", "streamvln", "--shard", "3"]).contains("--shard is for --format steps"));
     assert!(refused(&["--format", "steps", "--steps", "y"]).contains("--steps is for what is packed from steps"));
     assert!(refused(&["--format", "lerobot", "--size-px", "33x32"]).contains("even sides"));
+    // Another command packs into the folder.
+    fs::create_dir_all(building.path("busy/.unfinished")).unwrap();
+    let lock = fs::File::create(building.path("busy/.unfinished/run.lock")).unwrap();
+    lock.try_lock().unwrap();
+    let busy = building.wayword(&["export", "--run", "run", "--format", "streamvln", "--out", "busy"]);
+    assert!(busy.code != Some(0) && building.path("busy/.unfinished/run.lock").exists(), "{busy:?}");
     let in_use = building.path("x");
     fs::create_dir_all(&in_use).unwrap();
     building.write("x/mine.txt", "notes");

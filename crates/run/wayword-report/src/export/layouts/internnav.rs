@@ -31,6 +31,8 @@ type DepthPicture = image::ImageBuffer<image::Luma<u16>, Vec<u16>>;
 const VLN_N1_GROUP: &str = "wayword";
 /// The loader skips walks with fewer actions.
 const MIN_ACTIONS: usize = 4;
+/// The loader of VLN-N1 crashes on walks with fewer rows.
+const MIN_ROWS: usize = 3;
 /// Depth pictures of steps count millimetres.
 const STEPS_DEPTH_PER_M: f64 = 1000.0;
 /// What stands this high over the floor is in the way, metres.
@@ -43,14 +45,7 @@ const OBSTACLE_PIXELS: u32 = 8;
 const OBSTACLE_REACH_M: f64 = 5.0;
 
 pub(super) fn pack_internnav(pack: &LayoutPack<'_>, output: &CommandOutput) -> Result<PackedCounts, CommandError> {
-    // The loader finds the other pictures of a frame by replacing these words in the whole path.
-    if let Ok(place) = fs::canonicalize(&pack.folder)
-        && ["rgb", ".jpg", "_0deg"].iter().any(|word| place.display().to_string().contains(word))
-    {
-        output.say(format_args!(
-            "InternNav's loader replaces \"rgb\", \".jpg\" and \"_0deg\" in the whole path of a picture: move the folder to a path without them"
-        ));
-    }
+    warn_of_replaced_words(pack, output);
     let mut counts = PackedCounts::default();
     for (scene, walks) in walks_by_scene(pack) {
         interrupt::check_interrupt()?;
@@ -83,6 +78,20 @@ pub(super) fn pack_internnav(pack: &LayoutPack<'_>, output: &CommandOutput) -> R
     Ok(counts)
 }
 
+/// Warns if the loader would not find pictures: it makes one path from another by replacing these words wherever they stand in it.
+fn warn_of_replaced_words(pack: &LayoutPack<'_>, output: &CommandOutput) {
+    const REPLACED: [&str; 3] = ["rgb", ".jpg", "_0deg"];
+    let place = fs::canonicalize(&pack.folder).unwrap_or_else(|_| pack.folder.clone()).display().to_string();
+    let scenes = pack.walks.iter().map(|walk| walk.trajectory.scene.as_str());
+    let mut names = std::iter::once(place.as_str()).chain(scenes);
+    if let Some(name) = names.find(|name| REPLACED.iter().any(|word| name.contains(word))) {
+        output.say(format_args!(
+            "InternNav's loader replaces \"rgb\", \".jpg\" and \"_0deg\" in the whole path of a picture, and {name} has one of them: give the \
+             folder or the scene another name"
+        ));
+    }
+}
+
 fn camera_columns(camera: &CameraIntrinsics, seen: &CameraWalk) -> InternNavCamera {
     let goal = |(step, goal): (usize, &Option<wayword_formats::trajectories::PixelGoal>)| {
         goal.map(|goal| (goal.pixel, goal.step - step))
@@ -108,6 +117,12 @@ pub(super) fn pack_vln_n1(pack: &LayoutPack<'_>, output: &CommandOutput) -> Resu
     let bar = output.progress_bar(pack.walks.len(), "walks");
     for (scene, walks) in walks_by_scene(pack) {
         let folder = Path::new(VLN_N1_GROUP).join(scene);
+        let (walks, short): (Vec<_>, Vec<_>) =
+            walks.into_iter().partition(|walk| walk.trajectory.actions.len() >= MIN_ROWS);
+        counts.left_out += short.len();
+        if walks.is_empty() {
+            continue;
+        }
         let longest = walks.iter().map(|walk| walk.trajectory.actions.len()).max().unwrap_or_default();
         // Pictures are found by the order of their names.
         let digits = longest.saturating_sub(1).to_string().len().max(3);

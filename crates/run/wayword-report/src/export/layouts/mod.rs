@@ -39,6 +39,9 @@ use wayword_run::{
     written_files::write_file,
 };
 
+/// The gait of VLN-CE's agents: length of a step, metres, and angle of a turn, degrees.
+const STEP_M: f64 = 0.25;
+const VLNCE_TURN_DEG: f64 = 15.0;
 /// The files beside the folders of the splits.
 const CARD_FILE: &str = "README.md";
 const CHECKS_FILE: &str = "checks.jsonl";
@@ -95,7 +98,11 @@ impl ExportFormat {
                 Self::Internnav => &[steps::USUAL_CAMERA, [1.25, -30.0]],
                 _ => &[steps::USUAL_CAMERA],
             },
-            turn_deg: (self == Self::Uninavid).then_some(wayword_formats::training::navid::NAVID_TURN_DEG),
+            gait: match self {
+                Self::Uninavid => Some([STEP_M, wayword_formats::training::navid::NAVID_TURN_DEG]),
+                Self::Streamvln | Self::Navila | Self::Internnav => Some([STEP_M, VLNCE_TURN_DEG]),
+                _ => None,
+            },
             has_video: self == Self::Lerobot,
         }
     }
@@ -255,19 +262,20 @@ impl LayoutPack<'_> {
         if let Some(folder) = places.first().and_then(|place| place.parent()) {
             fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the folder"))?;
         }
-        let set = walk.seen[camera].pictures(kind);
-        if let PictureLocation::Folder(folder) = &set.place {
-            let folder = self.steps.join(folder);
-            return places
-                .iter()
-                .enumerate()
-                .try_for_each(|(number, place)| link_or_copy(&folder.join(kind.file_name(number)), place));
+        let pictures = self.read_pictures(walk, camera, kind)?;
+        match &walk.seen[camera].pictures(kind).place {
+            PictureLocation::Folder(folder) => {
+                let folder = self.steps.join(folder);
+                let mut named = places.iter().enumerate();
+                named.try_for_each(|(number, place)| link_or_copy(&folder.join(kind.file_name(number)), place))
+            }
+            PictureLocation::Sample { .. } => {
+                places.iter().zip(pictures).try_for_each(|(place, picture)| write_picture(place, &picture))
+            }
         }
-        let pictures = read_pictures(self.steps, set, kind, places.len())?;
-        places.iter().zip(pictures).try_for_each(|(place, picture)| write_picture(place, &picture))
     }
 
-    /// The pictures of a walk by a camera.
+    /// The pictures of a walk by a camera, compared with their hash.
     fn read_pictures(
         &self,
         walk: &PackedWalk<'_>,

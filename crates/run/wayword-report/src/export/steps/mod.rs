@@ -34,10 +34,12 @@ use wayword_formats::{
     DatasetFormat,
     jsonl::InstructionRecord,
     trajectories::{
-        ActionTrajectory, CameraIntrinsics, CameraWalk, read_camera_walks, read_trajectories, write_trajectories,
+        ActionTrajectory, CameraIntrinsics, CameraWalk, PixelGoal, read_camera_walks, read_trajectories,
+        write_trajectories,
     },
     vlnce_actions::{self, EpisodeActions},
 };
+use wayword_habitat::walk::AgentGait;
 use wayword_run::{
     count::count_phrase,
     error::{CommandError, Exit},
@@ -47,8 +49,8 @@ use wayword_run::{
     run_folder::{FolderLock, file, keep_config, lock_folder, read_config, read_run_settings},
 };
 
-/// The angle of a turn in RxR-CE's task, degrees.
-const RXR_TURN_DEG: f64 = 30.0;
+/// The gait of RxR-CE's task: length of a step, metres, and angle of a turn, degrees.
+const RXR_GAIT: [f64; 2] = [0.25, 30.0];
 /// The folder in a run with the steps of its walks.
 const STEPS_FOLDER: &str = "steps";
 /// The camera of VLN-CE's agents: height in metres and pitch in degrees.
@@ -75,8 +77,8 @@ struct WrittenTrajectories {
 pub(super) struct LayoutNeeds {
     /// The cameras, if the user names none: heights in metres, and pitches in degrees.
     pub(super) cameras: &'static [[f64; 2]],
-    /// The angle of a turn, if the layout's words fix it, degrees.
-    pub(super) turn_deg: Option<f64>,
+    /// Length of a step, metres, and angle of a turn, degrees, if the layout's words fix them.
+    pub(super) gait: Option<[f64; 2]>,
     /// Whether pictures become videos with H.264, which have even sides.
     pub(super) has_video: bool,
 }
@@ -98,8 +100,26 @@ impl StepsFolder {
         &self,
         camera: &CameraIntrinsics,
     ) -> Result<BTreeMap<String, CameraWalk>, CommandError> {
-        let walks = read_camera_walks(&pictures_file(&self.folder, camera))?;
-        Ok(walks.into_iter().map(|walk| (walk.trajectory_id.clone(), walk)).collect())
+        let file = pictures_file(&self.folder, camera);
+        let counts: BTreeMap<&str, usize> =
+            self.trajectories.iter().map(|trajectory| (trajectory.id.as_str(), trajectory.actions.len())).collect();
+        let mut seen = BTreeMap::new();
+        for walk in read_camera_walks(&file)? {
+            let count = counts.get(walk.trajectory_id.as_str());
+            let is_shown = |goal: &PixelGoal| goal.pixel[0] < camera.width_px && goal.pixel[1] < camera.height_px;
+            if count.is_some_and(|count| *count != walk.world_from_camera.len())
+                || !walk.pixel_goals.iter().flatten().all(is_shown)
+            {
+                let problem =
+                    format!("{}: walk {} does not fit its actions and pictures", file.display(), walk.trajectory_id);
+                return Err(CommandError::usage(
+                    problem,
+                    "remove this file, and the same command draws its walks again",
+                ));
+            }
+            seen.insert(walk.trajectory_id.clone(), walk);
+        }
+        Ok(seen)
     }
 }
 
@@ -128,28 +148,24 @@ pub(super) fn make_steps_of_run(
     needs: &LayoutNeeds,
     output: &CommandOutput,
 ) -> Result<StepsFolder, CommandError> {
-    let [run] = args.run.as_slice() else { return Err(CommandError::usage("--run is missing", "give one run")) };
-    let folder = args.steps.steps.clone().unwrap_or_else(|| match needs.turn_deg {
-        None => run.join(STEPS_FOLDER),
-        Some(turn_deg) => run.join(format!("{STEPS_FOLDER}_{turn_deg}deg")),
+    let run = args.only_run()?;
+    let folder = args.steps.steps.clone().unwrap_or_else(|| match needs.gait {
+        Some([_, turn_deg]) if turn_deg != AgentGait::default().turn_deg() => {
+            run.join(format!("{STEPS_FOLDER}_{turn_deg}deg"))
+        }
+        _ => run.join(STEPS_FOLDER),
     });
     let before = match folder.join(file::CONFIG).exists() {
         true => Some(read_config::<StepExportSettings>(&folder)?),
         false => None,
     };
     let mut asked = args.steps.with_defaults_from(before.as_ref());
-    asked.turn_deg = asked.turn_deg.or(needs.turn_deg);
-    let settings = StepExportSettings::from_flags(&asked)?;
-    if let Some(turn_deg) = needs.turn_deg.filter(|turn_deg| *turn_deg != settings.turn_deg) {
-        let problem = format!(
-            "the words of this layout mean turns of {turn_deg} degrees, and the steps have {}",
-            settings.turn_deg
-        );
-        return Err(CommandError::usage(
-            problem,
-            format!("give --turn-deg {turn_deg}, or leave it out, and another --steps"),
-        ));
+    if let Some([forward_m, turn_deg]) = needs.gait {
+        asked.forward_m = asked.forward_m.or(Some(forward_m));
+        asked.turn_deg = asked.turn_deg.or(Some(turn_deg));
     }
+    let settings = StepExportSettings::from_flags(&asked)?;
+    settings.expect_gait(needs.gait)?;
     if needs.has_video && (settings.width_px % 2 == 1 || settings.height_px % 2 == 1) {
         let problem =
             format!("a video has even sides, and these pictures are {}x{}", settings.width_px, settings.height_px);
@@ -163,26 +179,31 @@ pub(super) fn make_steps_of_run(
 }
 
 /// The actions along each walk in RxR-CE's gait, by the name of its path; `None` if the platform has no ground. A walk that cannot be taken has
-/// none.
+/// none, and the user is told.
 pub(super) fn walk_actions(
     args: &ExportArgs,
     records: &[InstructionRecord],
     record_splits: &[String],
+    output: &CommandOutput,
 ) -> Result<Option<BTreeMap<String, EpisodeActions>>, CommandError> {
-    let [run] = args.run.as_slice() else { return Err(CommandError::usage("--run is missing", "give one run")) };
+    let run = args.only_run()?;
     let run_settings = read_run_settings(run)?;
     if !matches!(run_settings.platform.as_str(), "house" | "habitat") {
         return Ok(None);
     }
-    let turn_deg = args.steps.turn_deg.or(Some(RXR_TURN_DEG));
+    let turn_deg = args.steps.turn_deg.or(Some(RXR_GAIT[1]));
     let steps = StepExportSettings::from_flags(&AskedSteps { turn_deg, ..args.steps.clone() })?;
+    steps.expect_gait(Some(RXR_GAIT))?;
     let scenes = WalkingScenes::open_run(&run_settings, [steps.width_px, steps.height_px])?;
     let walks = walks_from_records(records, record_splits);
     let mut actions = BTreeMap::new();
     let take = |walk: &ExportedWalk<'_>| walks::trajectory_from_walk(walk, &scenes, &steps);
-    in_order(&walks, core_count(), take, |_, taken| {
-        if let Ok(taken) = taken? {
-            actions.insert(taken.id.clone(), EpisodeActions::from_positions(&taken.actions, &taken.positions));
+    in_order(&walks, core_count(), take, |walk, taken| {
+        match taken? {
+            Ok(taken) => {
+                actions.insert(taken.id.clone(), EpisodeActions::from_positions(&taken.actions, &taken.positions));
+            }
+            Err(failed) => output.say(format_args!("{} is left out: {}", walk.path.id, failed.reason)),
         }
         Ok::<bool, CommandError>(true)
     })?;
@@ -198,7 +219,7 @@ fn make_steps(
     output: &CommandOutput,
 ) -> Result<StepsFolder, CommandError> {
     items::refuse_without_poses(ExportFormat::Steps, records)?;
-    let [run] = args.run.as_slice() else { return Err(CommandError::usage("--run is missing", "give one run")) };
+    let run = args.only_run()?;
     let cameras = steps.cameras(&args.steps.camera, usual_cameras)?;
     let scenes = WalkingScenes::open_run(&read_run_settings(run)?, [steps.width_px, steps.height_px])?;
     fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the folder"))?;
@@ -231,11 +252,25 @@ fn renew_texts(trajectories: &mut [ActionTrajectory], walks: &[ExportedWalk<'_>]
 
 /// Writes the texts and splits of this command into its folder, if an earlier command left others.
 fn write_new_texts(made: &mut StepsFolder, walks: &[ExportedWalk<'_>], has_shards: bool) -> Result<(), CommandError> {
+    let by_id: BTreeMap<&str, &str> = walks.iter().map(|walk| (walk.path.id.as_str(), walk.split)).collect();
+    let moved = made.trajectories.iter().find_map(|trajectory| {
+        let split = by_id.get(trajectory.id.as_str())?;
+        (*split != trajectory.split).then_some((trajectory, split))
+    });
+    if let Some((trajectory, split)) = moved {
+        let problem = format!(
+            "{} has walk {} in split {}, and now it would be in {split}",
+            made.folder.display(),
+            trajectory.id,
+            trajectory.split
+        );
+        return Err(CommandError::usage(problem, "give a new folder, because the old split has files in this one"));
+    }
     if !renew_texts(&mut made.trajectories, walks) {
         return Ok(());
     }
     if has_shards {
-        let problem = format!("{}: its shards hold other texts or splits", made.folder.display());
+        let problem = format!("{}: its shards hold other texts", made.folder.display());
         return Err(CommandError::usage(problem, "give a new folder"));
     }
     Ok(write_trajectories(&made.folder.join(TRAJECTORIES_FILE), &made.trajectories)?)

@@ -72,6 +72,22 @@ impl StepExportSettings {
             .map_err(|error| CommandError::usage(error.to_string(), "see --forward-m and --turn-deg"))
     }
 
+    /// Refuses another gait than the words of a layout mean: length of a step, metres, and angle of a turn, degrees.
+    pub(super) fn expect_gait(&self, meant: Option<[f64; 2]>) -> Result<(), CommandError> {
+        let Some([forward_m, turn_deg]) = meant else { return Ok(()) };
+        if self.forward_m == forward_m && self.turn_deg == turn_deg {
+            return Ok(());
+        }
+        let problem = format!(
+            "the words of this layout mean steps of {forward_m} m and turns of {turn_deg} degrees, and the steps have {} m and {} degrees",
+            self.forward_m, self.turn_deg
+        );
+        Err(CommandError::usage(
+            problem,
+            "leave --forward-m and --turn-deg out, and give another --steps if you gave one",
+        ))
+    }
+
     /// The camera of a height and a pitch.
     fn camera(&self, height_m: f64, pitch_deg: f64) -> CameraIntrinsics {
         let [width, height] = [self.width_px, self.height_px].map(f64::from);

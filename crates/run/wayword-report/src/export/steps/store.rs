@@ -16,7 +16,7 @@ use std::{
 use wayword_core::FailureKind;
 use wayword_formats::trajectories::{
     ActionTrajectory, CameraIntrinsics, CameraWalk, PictureDigest, PictureKind, PictureLocation, PictureSet,
-    ShardWriter, camera_walk_line, read_trajectories, trajectory_line,
+    ShardWriter, camera_walk_line, read_camera_walks, read_trajectories, trajectory_line,
 };
 use wayword_run::{
     error::CommandError,
@@ -163,7 +163,19 @@ impl<'a> TrajectoryMaker<'a> {
             }
             done.insert(trajectory.id.clone(), trajectory);
         }
-        let pictured = store.pictures.iter().map(|journal| journal.keys().map(str::to_owned).collect()).collect();
+        let mut pictured = Vec::with_capacity(cameras.len());
+        for (camera, journal) in cameras.iter().zip(&store.pictures) {
+            let mut complete = BTreeSet::new();
+            if !journal.is_empty() {
+                for walk in read_camera_walks(&pictures_file(folder, camera))? {
+                    refuse_moved_sample(folder, &walk, walks)?;
+                    if has_pictures(folder, &walk) {
+                        complete.insert(walk.trajectory_id);
+                    }
+                }
+            }
+            pictured.push(complete);
+        }
         Ok(Self { folder, scenes, steps, cameras, done, pictured })
     }
 
@@ -264,7 +276,7 @@ impl<'a> TrajectoryMaker<'a> {
         let mut shard = ShardWriter::begin(&file).map_err(failed())?;
         let mut written = Vec::with_capacity(walks.len());
         for (number, trajectory, drawn) in walks {
-            let key = format!("{number:06}");
+            let key = sample_key(number);
             shard.add_walk(&key, trajectory, &drawn.kinds()).map_err(failed())?;
             let place = |_| PictureLocation::Sample { shard: name.clone(), key: key.clone() };
             written.push(camera_walk(trajectory, drawn, place));
@@ -272,6 +284,32 @@ impl<'a> TrajectoryMaker<'a> {
         shard.finish().map_err(failed())?;
         Ok(written)
     }
+}
+
+/// Refuses a shard with a walk that has another number now: new walks would be written over it.
+fn refuse_moved_sample(folder: &Path, walk: &CameraWalk, walks: &[ExportedWalk<'_>]) -> Result<(), CommandError> {
+    let PictureLocation::Sample { key, .. } = &walk.rgb.place else { return Ok(()) };
+    let number = walks.iter().position(|other| other.path.id == walk.trajectory_id);
+    if number.is_some_and(|number| sample_key(number) == *key) {
+        return Ok(());
+    }
+    let problem = format!("{}: the run has got other walks, and shards are written once", folder.display());
+    Err(CommandError::usage(problem, "give a new folder, or export without --shard"))
+}
+
+fn sample_key(number: usize) -> String {
+    format!("{number:06}")
+}
+
+/// Whether the files of a walk's pictures are there. What is in them is compared with its hash when they are read.
+fn has_pictures(folder: &Path, walk: &CameraWalk) -> bool {
+    [PictureKind::Rgb, PictureKind::Depth].into_iter().all(|kind| match &walk.pictures(kind).place {
+        PictureLocation::Folder(place) => {
+            let count = fs::read_dir(folder.join(place)).map_or(0, Iterator::count);
+            count == walk.world_from_camera.len()
+        }
+        PictureLocation::Sample { shard, .. } => folder.join(shard).is_file(),
+    })
 }
 
 /// The line of a camera about a walk, once its pictures are written.
