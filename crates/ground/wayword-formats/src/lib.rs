@@ -1,5 +1,5 @@
 //! Readers and writers of the field's dataset formats: R2R, REVERIE, RxR, VLN-CE and Wayword's own JSONL; tables as
-//! Parquet.
+//! Parquet; layouts for training.
 //!
 //! Files are untrusted. Sizes and counts are bounded, ids cannot name a folder, and an error names file, item and
 //! field. A file is written completely or not at all.
@@ -13,7 +13,8 @@
 //! - `beginning`: what a file holds, by its first item; `file_kind`: by its first bytes, where it is no JSON.
 //! - `limits`: all limits on a file. `input`, `bounded_tokens` and `strict_json` keep to them.
 //! - [`jsonl`]: Wayword's own records, with their version.
-//! - [`trajectories`]: walks in single actions, and their shards. [`vlnce_actions`] has VLN-CE's files of them.
+//! - [`trajectories`]: walks in single actions, what cameras see along them, and shards. [`vlnce_actions`] has VLN-CE's files of them.
+//! - [`training`]: the layouts that training code reads, a file for each. Those with texts about recordings are read too.
 //! - [`OutputFile`]: the one writer of files that a user names; [`OutputPlace`]: whether that is a file, a pipe or standard output.
 //! - `official`: the official splits of scenes.
 //! - `table`, with the feature `parquet`: the columns of tables, in `schema.txt` and in `columns.rs` in the same order.

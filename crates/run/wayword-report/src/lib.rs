@@ -5,7 +5,9 @@
 //! - `export/args.rs`, `mod.rs`: formats and their flags; `items.rs`: records as items; `splits.rs`: the split of a text.
 //! - `export/duet.rs`, `table.rs`, `habitat_scenes.rs`: files for agents, Parquet, and the scenes and distances of VLN-CE.
 //! - `export/card/`: the dataset card, its text in `card.md`.
-//! - `export/steps/`: walks in single actions: settings, parts of a text, pictures and shards, walking again.
+//! - `export/steps/`: walks in single actions: settings, parts of a text, cameras, pictures and shards, walking again.
+//! - `export/layouts/`: what training code reads, packed from steps; `rxrce.rs` and `duet_pretraining.rs` need no pictures, and
+//!   `training_texts.rs` puts texts back into a layout that was read.
 //! - `export/highlight.rs`, `pages/doubts/`: words to doubt.
 //! - `pages/suspicion.rs`: what speaks against a text, and which come first; `item_order.rs`, `rows.rs`, `report_files.rs`,
 //!   `picture_folder.rs`, `page.rs`: the items that a report shows, the list of texts, the files, the pictures beside them, the head.

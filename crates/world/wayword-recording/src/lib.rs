@@ -12,6 +12,7 @@
 //! - `photographs`: which pictures are depth maps or masks.
 //! - `describe`: the keys of `recording.toml`.
 //! - `choose/`: which pictures become frames.
+//! - `training_walks/`: walks of StreamVLN's, NaVILA's and InternNav's training data.
 //! - `mcap/topics.rs`, `lerobot/camera.rs`, `lerobot/pose_feature.rs`: which camera and which poses are taken.
 
 #![cfg_attr(
