@@ -91,27 +91,12 @@ pub fn run_export(args: &ExportArgs, output: &CommandOutput) -> Result<Exit, Com
     let (format, out) = check_dataset_args(args)?;
     refuse_what_does_not_fit(args, format)?;
     refuse_over_input("--out", out, args.run.iter().flat_map(|run| files_of_run(run)))?;
-    // A layout is packed from the steps of all texts, and chooses among them later.
-    let style = args.style.as_deref();
-    let mut records = read_records(&args.run, style)?;
-    if format.is_layout() && style.is_some() {
-        records = read_records(&args.run, None)?;
-    }
+    let records = read_records(args, args.style.as_deref())?;
     refuse_several_styles(format, &records)?;
     if format.is_layout() && training_texts::are_of_recordings(&records) {
-        records.retain(|record| style.is_none_or(|style| record.instruction.style == style));
-        if args.split.is_some() || args.val_share.is_some() || args.steps != AskedSteps::default() {
-            let problem = "the walks of this run are recordings: their pictures and splits are as they are";
-            return Err(CommandError::usage(problem, "leave out --split, --val-share and the flags of steps"));
-        }
-        let output = &output.beside_data(&find_output_place(out)?);
-        training_texts::put_texts_back(args, (format, out), &records, output)?;
-        return Ok(Exit::Done);
+        return training_texts::put_texts_back(args, (format, out), &records, output);
     }
     let output = &output_beside(format, out, output)?;
-    if let Some(share) = args.val_share {
-        split_by_scene(&mut records, share, args.seed);
-    }
     match format {
         ExportFormat::Duet => duet::write_duet(args, out, &records, output)?,
         ExportFormat::Parquet => table::write_table(args, out, &records, output)?,
@@ -124,7 +109,7 @@ pub fn run_export(args: &ExportArgs, output: &CommandOutput) -> Result<Exit, Com
         | ExportFormat::InternnavN1
         | ExportFormat::Navila
         | ExportFormat::Uninavid
-        | ExportFormat::Lerobot => return layouts::export_layout(args, (format, out), &records, output),
+        | ExportFormat::Lerobot => return layouts::export_layout(args, (format, out), output),
         ExportFormat::R2r | ExportFormat::Reverie | ExportFormat::Rxr | ExportFormat::Vlnce | ExportFormat::Wayword => {
             write_one_file(args, format, out, &records, output)?;
         }
@@ -225,8 +210,9 @@ fn refuse_several_styles(format: ExportFormat, records: &[InstructionRecord]) ->
     Err(CommandError::usage(problem, "choose one with --style"))
 }
 
-/// The records of runs, merged; only those of one style if it is named.
-fn read_records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<InstructionRecord>, CommandError> {
+/// The records of the runs, merged; only those of one style if it is named. With `--val-share` each has its split.
+fn read_records(args: &ExportArgs, style: Option<&str>) -> Result<Vec<InstructionRecord>, CommandError> {
+    let runs = &args.run;
     for run in runs {
         expect_texts(run)?;
         refuse_torn_line(run)?;
@@ -246,6 +232,9 @@ fn read_records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<Instruction
                 CommandError::usage(format!("{runs}: no instruction"), "see errors.jsonl and rejected.jsonl of the run")
             }
         });
+    }
+    if let Some(share) = args.val_share {
+        split_by_scene(&mut records, share, args.seed);
     }
     Ok(records)
 }

@@ -2,7 +2,6 @@
 
 use crate::export::args::{ExportArgs, ExportFormat};
 use std::path::Path;
-use wayword_formats::jsonl::InstructionRecord;
 use wayword_run::{
     error::{CommandError, Exit},
     output::CommandOutput,
@@ -11,7 +10,6 @@ use wayword_run::{
 pub(super) fn export_layout(
     _args: &ExportArgs,
     (format, _out): (ExportFormat, &Path),
-    _records: &[InstructionRecord],
     _output: &CommandOutput,
 ) -> Result<Exit, CommandError> {
     Err(CommandError::not_built(format!("--format {format}: this build has no platform habitat, and so no navmeshes")))

@@ -2,7 +2,10 @@
 //! another name.
 
 use super::{replace_file, tell_terms};
-use crate::export::args::{ExportArgs, ExportFormat};
+use crate::export::{
+    args::{ExportArgs, ExportFormat},
+    steps_args::AskedSteps,
+};
 use serde::Serialize;
 use std::{
     collections::BTreeMap,
@@ -17,8 +20,12 @@ use wayword_formats::{
     },
 };
 use wayword_run::{
-    count::count_phrase, error::CommandError, item::RECORDING_PLATFORM, output::CommandOutput,
-    run_folder::read_run_settings, written_files::refuse_over_input,
+    count::count_phrase,
+    error::{CommandError, Exit},
+    item::RECORDING_PLATFORM,
+    output::CommandOutput,
+    run_folder::read_run_settings,
+    written_files::{find_output_place, refuse_over_input},
 };
 
 /// Result of putting texts back.
@@ -47,7 +54,12 @@ pub(super) fn put_texts_back(
     (format, out): (ExportFormat, &Path),
     records: &[InstructionRecord],
     output: &CommandOutput,
-) -> Result<(), CommandError> {
+) -> Result<Exit, CommandError> {
+    if args.split.is_some() || args.val_share.is_some() || args.steps != AskedSteps::default() {
+        let problem = "the walks of this run are recordings: their pictures and splits are as they are";
+        return Err(CommandError::usage(problem, "leave out --split, --val-share and the flags of steps"));
+    }
+    let output = &output.beside_data(&find_output_place(out)?);
     let source = read_run_settings(args.only_run()?)?
         .episodes
         .filter(|source| detect_format(source).is_ok_and(|found| found.name() == format.to_string()));
@@ -99,5 +111,5 @@ pub(super) fn put_texts_back(
             out.display()
         ),
     );
-    Ok(())
+    Ok(Exit::Done)
 }

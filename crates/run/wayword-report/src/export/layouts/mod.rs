@@ -10,7 +10,7 @@ mod navila;
 mod streamvln;
 
 use super::{
-    card, splits,
+    card, read_records, splits,
     steps::{self, LayoutNeeds, StepsFolder},
     tell_terms,
     unfinished_folder::UnfinishedFolder,
@@ -112,9 +112,10 @@ impl ExportFormat {
 pub(super) fn export_layout(
     args: &ExportArgs,
     (format, out): (ExportFormat, &Path),
-    records: &[InstructionRecord],
     output: &CommandOutput,
 ) -> Result<Exit, CommandError> {
+    // The steps are those of all styles, so that layouts of several styles share them.
+    let records = &read_records(args, None)?;
     // Before anything is drawn, so that a folder in use is refused at once.
     let folder = UnfinishedFolder::begin(out)?;
     let made = steps::make_steps_of_run(args, records, &format.layout_needs(), output)?;
