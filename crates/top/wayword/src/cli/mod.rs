@@ -75,7 +75,7 @@ pub enum WaywordCommand {
     Align(AlignArgs),
     /// Learn from people's texts how far labels agree with single names of objects and rooms.
     Calibrate(CalibrateArgs),
-    /// Write a run as one file, in the format of R2R, REVERIE, RxR, VLN-CE or Wayword.
+    /// Write a run for other programs: in a dataset's format, as a table, or with pictures and actions as training code reads them.
     Export(Box<ExportArgs>),
     /// Write a run as HTML pages: map, frames, dialogue, captions, instructions and checks.
     Report(ReportArgs),

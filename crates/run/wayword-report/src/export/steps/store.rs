@@ -128,6 +128,9 @@ fn key_of(line: &Value) -> Option<String> {
     Some(line.get("trajectory_id")?.as_str()?.to_owned())
 }
 
+/// A walk with its number among all.
+type NumberedWalk = (usize, ActionTrajectory);
+
 /// Takes walks and draws what the cameras see along them.
 pub(super) struct TrajectoryMaker<'a> {
     folder: &'a Path,
@@ -163,12 +166,14 @@ impl<'a> TrajectoryMaker<'a> {
             }
             done.insert(trajectory.id.clone(), trajectory);
         }
+        let numbers: BTreeMap<&str, usize> =
+            walks.iter().enumerate().map(|(number, walk)| (walk.path.id.as_str(), number)).collect();
         let mut pictured = Vec::with_capacity(cameras.len());
         for (camera, journal) in cameras.iter().zip(&store.pictures) {
             let mut complete = BTreeSet::new();
             if !journal.is_empty() {
                 for walk in read_camera_walks(&pictures_file(folder, camera))? {
-                    refuse_moved_sample(folder, &walk, walks)?;
+                    refuse_moved_sample(folder, &walk, &numbers)?;
                     if has_pictures(folder, &walk) {
                         complete.insert(walk.trajectory_id);
                     }
@@ -186,7 +191,7 @@ impl<'a> TrajectoryMaker<'a> {
         unit: &[usize],
     ) -> Result<TrajectoryBatch, CommandError> {
         let mut batch = TrajectoryBatch::default();
-        let mut taken = Vec::new();
+        let mut taken: Vec<NumberedWalk> = Vec::new();
         for (number, walk) in unit.iter().filter_map(|number| Some((*number, walks.get(*number)?))) {
             let trajectory = match self.done.get(&walk.path.id) {
                 Some(done) => Ok(done.clone()),
@@ -197,36 +202,45 @@ impl<'a> TrajectoryMaker<'a> {
                 Err(reason) => batch.failed.push(reason),
             }
         }
-        for (index, camera) in self.cameras.iter().enumerate() {
+        for index in 0..self.cameras.len() {
             // A shard is written anew only if a walk can be taken that could not before.
-            if taken.iter().all(|(_, trajectory)| self.pictured[index].contains(&trajectory.id)) {
-                continue;
+            if !taken.iter().all(|(_, trajectory)| self.pictured[index].contains(&trajectory.id)) {
+                taken = self.picture_walks(index, taken, &mut batch)?;
             }
-            let mut drawn = Vec::new();
-            let mut lost = BTreeSet::new();
-            for (number, trajectory) in &taken {
-                interrupt::check_interrupt()?;
-                match draw_walk(self.scenes, camera, self.steps.jpeg_quality, trajectory) {
-                    Ok(pictures) => drawn.push((*number, trajectory, pictures)),
-                    Err(error) => {
-                        batch.failed.push(failed_item(trajectory, error)?);
-                        lost.insert(trajectory.id.clone());
-                    }
-                }
-            }
-            let written = match self.steps.shard {
-                Some(walks_per_shard) => self.write_shard(camera, drawn, walks_per_shard)?,
-                None => drawn
-                    .into_iter()
-                    .map(|(_, trajectory, pictures)| self.write_folders(camera, trajectory, pictures))
-                    .collect::<Result<_, _>>()?,
-            };
-            batch.pictured.extend(written.into_iter().map(|walk| (index, walk)));
-            taken.retain(|(_, trajectory)| !lost.contains(&trajectory.id));
         }
         let new = taken.into_iter().map(|(_, trajectory)| trajectory);
         batch.taken = new.filter(|trajectory| !self.done.contains_key(&trajectory.id)).collect();
         Ok(batch)
+    }
+
+    /// Draws and writes what a camera sees along the walks of a unit. Returns the walks that it can see; the others fail.
+    fn picture_walks(
+        &self,
+        index: usize,
+        taken: Vec<NumberedWalk>,
+        batch: &mut TrajectoryBatch,
+    ) -> Result<Vec<NumberedWalk>, CommandError> {
+        let camera = &self.cameras[index];
+        let (mut seen, mut drawn) = (Vec::new(), Vec::new());
+        for (number, trajectory) in taken {
+            interrupt::check_interrupt()?;
+            match draw_walk(self.scenes, camera, self.steps.jpeg_quality, &trajectory) {
+                Ok(pictures) => {
+                    seen.push((number, trajectory));
+                    drawn.push(pictures);
+                }
+                Err(error) => batch.failed.push(failed_item(&trajectory, error)?),
+            }
+        }
+        let walks = seen.iter().zip(drawn);
+        let written: Vec<CameraWalk> = match self.steps.shard {
+            Some(walks_per_shard) => self.write_shard(camera, walks.collect(), walks_per_shard)?,
+            None => walks
+                .map(|((_, trajectory), pictures)| self.write_folders(camera, trajectory, pictures))
+                .collect::<Result<_, _>>()?,
+        };
+        batch.pictured.extend(written.into_iter().map(|walk| (index, walk)));
+        Ok(seen)
     }
 
     /// Writes what a camera sees along a walk into a folder for each kind.
@@ -263,10 +277,10 @@ impl<'a> TrajectoryMaker<'a> {
     fn write_shard(
         &self,
         camera: &CameraIntrinsics,
-        walks: Vec<(usize, &ActionTrajectory, DrawnWalk)>,
+        walks: Vec<(&NumberedWalk, DrawnWalk)>,
         walks_per_shard: usize,
     ) -> Result<Vec<CameraWalk>, CommandError> {
-        let Some((first, ..)) = walks.first() else { return Ok(Vec::new()) };
+        let Some(((first, _), _)) = walks.first() else { return Ok(Vec::new()) };
         let folder = format!("{}/{SHARDS_FOLDER}", camera_folder(camera));
         let place = self.folder.join(&folder);
         fs::create_dir_all(&place).map_err(CommandError::io(&place, "make the folder"))?;
@@ -275,8 +289,8 @@ impl<'a> TrajectoryMaker<'a> {
         let failed = || CommandError::io(&file, "write");
         let mut shard = ShardWriter::begin(&file).map_err(failed())?;
         let mut written = Vec::with_capacity(walks.len());
-        for (number, trajectory, drawn) in walks {
-            let key = sample_key(number);
+        for ((number, trajectory), drawn) in walks {
+            let key = sample_key(*number);
             shard.add_walk(&key, trajectory, &drawn.kinds()).map_err(failed())?;
             let place = |_| PictureLocation::Sample { shard: name.clone(), key: key.clone() };
             written.push(camera_walk(trajectory, drawn, place));
@@ -287,10 +301,9 @@ impl<'a> TrajectoryMaker<'a> {
 }
 
 /// Refuses a shard with a walk that has another number now: new walks would be written over it.
-fn refuse_moved_sample(folder: &Path, walk: &CameraWalk, walks: &[ExportedWalk<'_>]) -> Result<(), CommandError> {
+fn refuse_moved_sample(folder: &Path, walk: &CameraWalk, numbers: &BTreeMap<&str, usize>) -> Result<(), CommandError> {
     let PictureLocation::Sample { key, .. } = &walk.rgb.place else { return Ok(()) };
-    let number = walks.iter().position(|other| other.path.id == walk.trajectory_id);
-    if number.is_some_and(|number| sample_key(number) == *key) {
+    if numbers.get(walk.trajectory_id.as_str()).is_some_and(|number| sample_key(*number) == *key) {
         return Ok(());
     }
     let problem = format!("{}: the run has got other walks, and shards are written once", folder.display());
