@@ -49,7 +49,8 @@ pub fn read_any_format(file: &Path) -> Result<Vec<Episode>, FormatError> {
 }
 
 /// The file with the texts of a dataset's folder, which people name instead of it; `path` itself if it is no such folder.
-fn file_in_dataset(path: &Path) -> PathBuf {
+#[must_use]
+pub fn file_in_dataset(path: &Path) -> PathBuf {
     let inside = ["annotations.json", "meta/episodes.jsonl"].map(|name| path.join(name));
     inside.into_iter().find(|file| file.is_file()).unwrap_or_else(|| path.to_owned())
 }

@@ -44,6 +44,8 @@ mod input;
 mod item;
 mod json_fault;
 pub mod jsonl;
+#[cfg(feature = "parquet")]
+mod leaf_column;
 mod limits;
 mod matterport;
 mod official;
@@ -69,7 +71,7 @@ mod vocabulary;
 pub use dataset_format::{DatasetFormat, UnknownFormat};
 pub use episode::{Episode, InHabitat};
 pub use error::{FormatError, ItemPlace, WrongItem, disk_advice};
-pub use format::{detect_format, read_any_format};
+pub use format::{detect_format, file_in_dataset, read_any_format};
 pub(crate) use item::DatasetItem;
 pub use official::OfficialSplit;
 pub use output::write_sidecar;

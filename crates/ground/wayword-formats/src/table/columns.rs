@@ -1,8 +1,8 @@
 //! Writes the columns of the Parquet table, in the order of its schema.
 
-use super::{
-    ParquetRow,
-    shred::{LeafColumn, list_column, optional_column, optional_list, optional_points, required_column},
+use super::ParquetRow;
+use crate::leaf_column::{
+    LeafColumn, list_column, optional_column, optional_list, optional_points, required_column, write_leaf,
 };
 use parquet::{
     data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type},
@@ -36,10 +36,7 @@ struct ColumnWriter<'g, 'w, W: Write> {
 impl<W: Write + Send> ColumnWriter<'_, '_, W> {
     /// Writes the next column of the schema.
     fn put_column<T: DataType>(&mut self, leaf: &LeafColumn<T::T>) -> Result<(), ParquetError> {
-        let column = self.group.next_column()?;
-        let mut column = column.ok_or_else(|| ParquetError::General("the schema has fewer columns".to_owned()))?;
-        column.typed::<T>().write_batch(&leaf.values, leaf.def.as_deref(), leaf.rep.as_deref())?;
-        column.close()
+        write_leaf::<T>(self.group, leaf)
     }
 
     /// Writes a column of texts.

@@ -1,10 +1,9 @@
 //! Records as a table: a Parquet file with a row for each instruction, and flat, typed columns.
 //!
-//! `columns.rs` fills the columns and `schema.txt` gives their types, in the same order; `shred.rs` computes Parquet's
-//! levels for the rows.
+//! `columns.rs` fills the columns and `schema.txt` gives their types, in the same order; `leaf_column`
+//! computes Parquet's levels for the rows.
 
 mod columns;
-mod shred;
 
 use crate::{FormatError, jsonl::InstructionRecord, output};
 use parquet::{

@@ -1,9 +1,12 @@
 //! Parquet files with the columns that loaders in Python expect: numbers, texts, lists, matrices and LeRobot's language rows.
 
-use crate::{FormatError, OutputFile};
+use crate::{
+    FormatError, OutputFile,
+    leaf_column::{field_of_entries, matrix_column, required_column, write_leaf},
+};
 use parquet::{
     basic::{Compression, LogicalType, Repetition, Type as PhysicalType},
-    data_type::{ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type},
+    data_type::{ByteArray, ByteArrayType, DoubleType, FloatType, Int32Type, Int64Type},
     errors::ParquetError,
     file::{
         metadata::KeyValue,
@@ -175,15 +178,19 @@ impl ColumnValues {
     fn write_rows<W: Write + Send>(&self, group: &mut SerializedRowGroupWriter<'_, W>) -> Result<(), ParquetError> {
         let bytes = |text: &String| ByteArray::from(text.as_bytes().to_vec());
         match self {
-            Self::Int64(values) => put::<Int64Type>(group, &Leaf::plain(values, |value| *value)),
-            Self::Int32(values) => put::<Int32Type>(group, &Leaf::plain(values, |value| *value)),
-            Self::Float32(values) => put::<FloatType>(group, &Leaf::plain(values, |value| *value)),
-            Self::Float64(values) => put::<DoubleType>(group, &Leaf::plain(values, |value| *value)),
-            Self::Text(values) => put::<ByteArrayType>(group, &Leaf::plain(values, bytes)),
-            Self::Int32List(lists) => put::<Int32Type>(group, &Leaf::lists(lists, |value| *value)),
-            Self::Float32List(lists) => put::<FloatType>(group, &Leaf::lists(lists, |value| *value)),
-            Self::TextList(lists) => put::<ByteArrayType>(group, &Leaf::lists(lists, bytes)),
-            Self::Float32Matrix(matrices) => put::<FloatType>(group, &Leaf::matrices(matrices)),
+            Self::Int64(values) => write_leaf::<Int64Type>(group, &required_column(values, |value| *value)),
+            Self::Int32(values) => write_leaf::<Int32Type>(group, &required_column(values, |value| *value)),
+            Self::Float32(values) => write_leaf::<FloatType>(group, &required_column(values, |value| *value)),
+            Self::Float64(values) => write_leaf::<DoubleType>(group, &required_column(values, |value| *value)),
+            Self::Text(values) => write_leaf::<ByteArrayType>(group, &required_column(values, bytes)),
+            Self::Int32List(lists) => write_leaf::<Int32Type>(group, &field_of_entries(lists, 1, |value| Some(*value))),
+            Self::Float32List(lists) => {
+                write_leaf::<FloatType>(group, &field_of_entries(lists, 1, |value| Some(*value)))
+            }
+            Self::TextList(lists) => {
+                write_leaf::<ByteArrayType>(group, &field_of_entries(lists, 1, |value| Some(bytes(value))))
+            }
+            Self::Float32Matrix(matrices) => write_leaf::<FloatType>(group, &matrix_column(matrices)),
             Self::LanguagePersistent(lists) => put_language(group, lists, true),
             Self::LanguageEvents(lists) => put_language(group, lists, false),
         }
@@ -204,85 +211,21 @@ fn language_type(name: &str, has_time: bool) -> Result<TypePtr, ParquetError> {
     list_of(name, Arc::new(row.build()?), required)
 }
 
-/// The values of a leaf of the schema, with Parquet's definition and repetition levels.
-struct Leaf<T> {
-    values: Vec<T>,
-    def: Option<Vec<i16>>,
-    rep: Option<Vec<i16>>,
-}
-
-impl<T> Leaf<T> {
-    /// A value in each row.
-    fn plain<V>(rows: &[V], value: impl Fn(&V) -> T) -> Self {
-        Self { values: rows.iter().map(value).collect(), def: None, rep: None }
-    }
-
-    /// A list in each row.
-    fn lists<V>(rows: &[Vec<V>], value: impl Fn(&V) -> T) -> Self {
-        Self::optional_in_lists(rows, 1, |element| Some(value(element)))
-    }
-
-    /// In each row a list of entries that may lack this value; `present` is the definition level of a value. An entry without the
-    /// value has the level below it.
-    fn optional_in_lists<V>(rows: &[Vec<V>], present: i16, value: impl Fn(&V) -> Option<T>) -> Self {
-        let (mut values, mut def, mut rep) = (Vec::new(), Vec::new(), Vec::new());
-        for list in rows {
-            if list.is_empty() {
-                def.push(0);
-                rep.push(0);
-            }
-            for (index, element) in list.iter().enumerate() {
-                let found = value(element);
-                def.push(if found.is_some() { present } else { 1 });
-                rep.push(i16::from(index > 0));
-                values.extend(found);
-            }
-        }
-        Self { values, def: Some(def), rep: Some(rep) }
-    }
-}
-
-impl Leaf<f32> {
-    /// A matrix in each row; no matrix and no row of one is empty.
-    fn matrices(rows: &[Vec<Vec<f32>>]) -> Self {
-        let (mut values, mut rep) = (Vec::new(), Vec::new());
-        for matrix in rows {
-            for (line, numbers) in matrix.iter().enumerate() {
-                for (column, number) in numbers.iter().enumerate() {
-                    rep.push(if column > 0 { 2 } else { i16::from(line > 0) });
-                    values.push(*number);
-                }
-            }
-        }
-        Self { def: Some(vec![2; values.len()]), rep: Some(rep), values }
-    }
-}
-
-fn put<T: DataType>(
-    group: &mut SerializedRowGroupWriter<'_, impl Write + Send>,
-    leaf: &Leaf<T::T>,
-) -> Result<(), ParquetError> {
-    let column = group.next_column()?;
-    let mut column = column.ok_or_else(|| ParquetError::General("the schema has fewer columns".to_owned()))?;
-    column.typed::<T>().write_batch(&leaf.values, leaf.def.as_deref(), leaf.rep.as_deref())?;
-    column.close()
-}
-
 fn put_language(
     group: &mut SerializedRowGroupWriter<'_, impl Write + Send>,
     rows: &[Vec<LanguageRow>],
     has_time: bool,
 ) -> Result<(), ParquetError> {
     let text = |text: &str| ByteArray::from(text.as_bytes().to_vec());
-    put::<ByteArrayType>(group, &Leaf::optional_in_lists(rows, 1, |row| Some(text(row.role))))?;
-    put::<ByteArrayType>(group, &Leaf::optional_in_lists(rows, 2, |row| Some(text(&row.content))))?;
-    put::<ByteArrayType>(group, &Leaf::optional_in_lists(rows, 2, |row| Some(text(row.style))))?;
+    write_leaf::<ByteArrayType>(group, &field_of_entries(rows, 1, |row| Some(text(row.role))))?;
+    write_leaf::<ByteArrayType>(group, &field_of_entries(rows, 2, |row| Some(text(&row.content))))?;
+    write_leaf::<ByteArrayType>(group, &field_of_entries(rows, 2, |row| Some(text(row.style))))?;
     if has_time {
-        put::<FloatType>(group, &Leaf::optional_in_lists(rows, 1, |row| Some(row.time_s)))?;
+        write_leaf::<FloatType>(group, &field_of_entries(rows, 1, |row| Some(row.time_s)))?;
     }
-    put::<ByteArrayType>(group, &Leaf::optional_in_lists(rows, 2, |row| row.camera.as_deref().map(text)))?;
+    write_leaf::<ByteArrayType>(group, &field_of_entries(rows, 2, |row| row.camera.as_deref().map(text)))?;
     // No row calls a tool: the list is null.
-    put::<ByteArrayType>(group, &Leaf::optional_in_lists(rows, 2, |_| None))
+    write_leaf::<ByteArrayType>(group, &field_of_entries(rows, 2, |_| None))
 }
 
 #[cfg(test)]
