@@ -3,8 +3,19 @@
 use crate::{FormatError, ItemPlace, WrongItem, limits};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
-use std::path::Path;
+use std::path::{Component, Path};
 use wayword_core::{DVec3, Heading, ObjectId, SceneId, ViewpointId};
+
+/// Longest path below a folder, bytes.
+const MAX_RELATIVE_PATH_BYTES: usize = 512;
+
+/// Whether a path leads to a place below its folder, on every system.
+pub(crate) fn is_path_below(path: &str) -> bool {
+    !path.is_empty()
+        && path.len() <= MAX_RELATIVE_PATH_BYTES
+        && !path.contains('\\')
+        && Path::new(path).components().all(|part| matches!(part, Component::Normal(_)))
+}
 
 /// An object of a dataset file. A reader takes the fields that it knows; the others are kept as unknown fields.
 pub(crate) struct DatasetItem<'a> {

@@ -6,7 +6,7 @@
 //! picture was taken.
 
 use super::put_back::{TextsOfWalk, TextsPutBack};
-use crate::{DatasetItem, Episode, FormatError, input, limits, output, read_tally::ReadTally};
+use crate::{DatasetItem, Episode, FormatError, input, item::is_path_below, limits, output, read_tally::ReadTally};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use wayword_core::{AgentAction, SceneId};
@@ -15,8 +15,6 @@ use wayword_core::{AgentAction, SceneId};
 const DUMMY_ACTION: i64 = -1;
 /// Most actions of a walk.
 const MAX_ACTIONS: usize = 25_000;
-/// Longest path of a folder of pictures, bytes.
-const MAX_VIDEO_BYTES: usize = 512;
 
 /// A walk of StreamVLN's file.
 #[derive(Debug, Clone, PartialEq)]
@@ -126,11 +124,7 @@ fn take_actions(item: &DatasetItem<'_>, value: &Value) -> Result<Vec<AgentAction
 /// A path below the folder of the file.
 pub(super) fn take_relative_path(item: &DatasetItem<'_>, field: &str, value: &Value) -> Result<String, FormatError> {
     let path = item.checked_text(field, value)?;
-    let is_below = !path.is_empty()
-        && path.len() <= MAX_VIDEO_BYTES
-        && !path.contains('\\')
-        && Path::new(path).components().all(|part| matches!(part, std::path::Component::Normal(_)));
-    if is_below {
+    if is_path_below(path) {
         return Ok(path.to_owned());
     }
     Err(item.wrong_field(field, "it leads out of the folder", "write a path below the folder of this file"))

@@ -12,7 +12,7 @@ mod read;
 mod shard;
 
 pub use camera::{CameraIntrinsics, CameraWalk, PixelGoal, camera_walk_line, read_camera_walks};
-pub use pictures::{PictureDigest, PictureKind, PictureLocation, PictureSet, read_pictures};
+pub use pictures::{DEPTH_PER_M, PictureDigest, PictureKind, PictureLocation, PictureSet, read_pictures};
 pub use read::read_trajectories;
 pub use shard::ShardWriter;
 

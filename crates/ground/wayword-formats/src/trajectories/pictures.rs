@@ -1,13 +1,13 @@
 //! Reads the pictures of walks from folders or shards, and checks their hash.
 
-use crate::{DatasetItem, FormatError};
+use crate::{DatasetItem, FormatError, item::is_path_below};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 use std::{
     fs::File,
     io::{self, Read},
-    path::{Component, Path},
+    path::Path,
 };
 use wayword_core::hex_text;
 
@@ -15,9 +15,10 @@ use wayword_core::hex_text;
 const MAX_PICTURE_BYTES: u64 = 32 << 20;
 /// Most files of one shard that are looked at; pictures behind them count as missing.
 const MAX_SHARD_FILES: usize = 4_000_000;
-/// Longest path of a folder or shard, bytes.
-const MAX_PLACE_BYTES: usize = 512;
 const REWRITE_HINT: &str = "remove this folder or shard, and `wayword export` draws it again";
+
+/// A depth picture counts millimetres.
+pub const DEPTH_PER_M: f64 = 1000.0;
 
 /// What a picture shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -84,11 +85,8 @@ pub(super) fn take_picture_set(
         PictureLocation::Folder(folder) => (folder, None),
         PictureLocation::Sample { shard, key } => (shard, Some(key)),
     };
-    let is_below = path.len() <= MAX_PLACE_BYTES
-        && Path::new(path).components().all(|part| matches!(part, Component::Normal(_)))
-        && !path.is_empty();
     let refused = |part: &str, problem, hint| Err(item.wrong_field(&format!("{field}.{part}"), problem, hint));
-    if !is_below {
+    if !is_path_below(path) {
         return refused(
             "place",
             "it leads out of the folder",

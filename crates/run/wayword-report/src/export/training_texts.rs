@@ -12,7 +12,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use wayword_formats::{
-    FormatError, detect_format,
+    FormatError, detect_format, file_in_dataset,
     jsonl::InstructionRecord,
     training::{
         TextsOfWalk, TextsPutBack, episode_lines::write_internnav_texts, navila::write_navila_texts,
@@ -82,11 +82,7 @@ pub(super) fn put_texts_back(
         texts.entry(record.path.scene.as_str()).or_default().push(record.instruction.text.clone());
     }
     let of_scene = |scene: &str| texts.get(scene).cloned().unwrap_or_default();
-    let source = ["annotations.json", "meta/episodes.jsonl"]
-        .map(|name| source.join(name))
-        .into_iter()
-        .find(|file| file.is_file())
-        .unwrap_or(source);
+    let source = file_in_dataset(&source);
     refuse_over_input("--out", out, [source.clone()])?;
     let put = replace_file(out, output, || Ok(write(&source, out, &of_scene)?))?;
     tell_terms(records, output);

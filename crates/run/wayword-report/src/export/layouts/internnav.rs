@@ -1,6 +1,6 @@
 //! InternNav's layouts: VLN-CE walks with pixel goals, and VLN-N1 with poses, depths of its own scale and obstacles.
 
-use super::{LayoutPack, PackedCounts, PackedWalk, walks_by_scene, write_picture};
+use super::{LayoutPack, PackedCounts, PackedWalk, walks_by_scene, write_files};
 use crate::export::steps::encode_png16;
 use image::codecs::png::CompressionType;
 use std::{
@@ -15,7 +15,7 @@ use wayword_formats::{
         InternNavCamera, InternNavEpisode, VLN_N1_DEPTH_PER_M, VlnN1Episode, internnav_picture, vln_n1_picture,
         write_internnav_scene, write_vln_n1_scene,
     },
-    trajectories::{CameraIntrinsics, CameraWalk, PictureKind, SubInstruction, TrajectoryInstruction},
+    trajectories::{CameraIntrinsics, CameraWalk, DEPTH_PER_M, PictureKind, SubInstruction, TrajectoryInstruction},
 };
 use wayword_run::{
     error::CommandError,
@@ -33,8 +33,6 @@ const VLN_N1_GROUP: &str = "wayword";
 const MIN_ACTIONS: usize = 4;
 /// The loader of VLN-N1 crashes on walks with fewer rows.
 const MIN_ROWS: usize = 3;
-/// Depth pictures of steps count millimetres.
-const STEPS_DEPTH_PER_M: f64 = 1000.0;
 /// What stands this high over the floor is in the way, metres.
 const OBSTACLE_HEIGHTS_M: std::ops::Range<f64> = 0.15..1.2;
 /// Places in the way are kept once for each square of this side, metres.
@@ -59,7 +57,9 @@ pub(super) fn pack_internnav(pack: &LayoutPack<'_>, output: &CommandOutput) -> R
             for (number, camera) in pack.cameras.iter().map(CameraIntrinsics::name).enumerate() {
                 for (kind, ending) in [(PictureKind::Rgb, "jpg"), (PictureKind::Depth, "png")] {
                     let name = |picture| internnav_picture(index, kind.name(), &camera, picture, ending);
-                    pack.place_pictures(walk, number, kind, |picture| [scene.into(), name(picture)].iter().collect())?;
+                    let pictures = pack.read_pictures(walk, number, kind)?;
+                    let place = |picture| [scene.into(), name(picture)].iter().collect();
+                    pack.place_pictures(walk, (number, kind), &pictures, place)?;
                 }
             }
             let seen = pack.cameras.iter().zip(&walk.seen);
@@ -135,11 +135,12 @@ pub(super) fn pack_vln_n1(pack: &LayoutPack<'_>, output: &CommandOutput) -> Resu
                 interrupt::check_interrupt()?;
                 let (depths, found) = rescaled?;
                 obstacles.squares.extend(found.squares);
+                let rgb = pack.read_pictures(walk, 0, PictureKind::Rgb)?;
                 for text in &walk.texts {
                     let index = episodes.len();
                     let name =
                         |kind, number, ending: &str| folder.join(vln_n1_picture(index, kind, number, digits, ending));
-                    pack.place_pictures(walk, 0, PictureKind::Rgb, |number| name("rgb", number, "jpg"))?;
+                    pack.place_pictures(walk, (0, PictureKind::Rgb), &rgb, |number| name("rgb", number, "jpg"))?;
                     let places: Vec<PathBuf> =
                         (0..depths.len()).map(|number| pack.folder.join(name("depth", number, "png"))).collect();
                     write_files(&places, &depths)?;
@@ -154,14 +155,6 @@ pub(super) fn pack_vln_n1(pack: &LayoutPack<'_>, output: &CommandOutput) -> Resu
     }
     bar.finish_and_clear();
     Ok(counts)
-}
-
-/// Writes files into the folder that they share.
-fn write_files(places: &[PathBuf], contents: &[Vec<u8>]) -> Result<(), CommandError> {
-    if let Some(folder) = places.first().and_then(|place| place.parent()) {
-        fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the folder"))?;
-    }
-    places.iter().zip(contents).try_for_each(|(place, bytes)| write_picture(place, bytes))
 }
 
 fn vln_n1_episode(
@@ -200,7 +193,7 @@ impl ObstacleMap {
         let floor_m = walk.trajectory.floor_position(step).unwrap_or_default().z;
         let world_from_camera = wayword_pose(walk.seen[0].world_from_camera[step]);
         for (u, v, pixel) in depth.enumerate_pixels() {
-            let depth_m = f64::from(pixel.0[0]) / STEPS_DEPTH_PER_M;
+            let depth_m = f64::from(pixel.0[0]) / DEPTH_PER_M;
             let is_looked_at = u % OBSTACLE_PIXELS == 0 && v % OBSTACLE_PIXELS == 0;
             if !is_looked_at || depth_m <= 0.0 || depth_m > OBSTACLE_REACH_M {
                 continue;
@@ -229,7 +222,7 @@ fn rescaled_depths(pack: &LayoutPack<'_>, walk: &PackedWalk<'_>) -> Result<(Vec<
             })?
             .into_luma16();
         obstacles.add_picture(&pack.cameras[0], walk, step, &depth);
-        let scale = VLN_N1_DEPTH_PER_M / STEPS_DEPTH_PER_M;
+        let scale = VLN_N1_DEPTH_PER_M / DEPTH_PER_M;
         // What is too far for 16 bits is unknown.
         let scaled = |value: &u16| u16::try_from((f64::from(*value) * scale) as u32).unwrap_or(0);
         let pixels: Vec<u16> = depth.as_raw().iter().map(scaled).collect();

@@ -26,6 +26,7 @@ use std::{
 use wayword_core::Verdict;
 use wayword_formats::{
     jsonl::InstructionRecord,
+    training::motion_jpeg::motion_jpeg_video,
     trajectories::{
         ActionTrajectory, CameraIntrinsics, CameraWalk, PictureKind, PictureLocation, TrajectoryInstruction,
         read_pictures,
@@ -64,7 +65,7 @@ struct LayoutPack<'a> {
 }
 
 /// What a layout got.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default)]
 struct PackedCounts {
     /// Entries that a loader makes samples of: walks, or decisions of a walk by a text.
     entries: usize,
@@ -250,29 +251,24 @@ impl LayoutPack<'_> {
         }
     }
 
-    /// Puts the pictures of a walk by a camera into the split's folder, under the names that `name` gives them. All lie in one folder.
+    /// Puts the pictures of a walk by a camera, which were read, into the split's folder, under the names that `name` gives them. All lie
+    /// in one folder.
     fn place_pictures(
         &self,
         walk: &PackedWalk<'_>,
-        camera: usize,
-        kind: PictureKind,
+        (camera, kind): (usize, PictureKind),
+        pictures: &[Vec<u8>],
         name: impl Fn(usize) -> PathBuf,
     ) -> Result<(), CommandError> {
-        let places: Vec<PathBuf> =
-            (0..walk.trajectory.actions.len()).map(|number| self.folder.join(name(number))).collect();
-        if let Some(folder) = places.first().and_then(|place| place.parent()) {
-            fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the folder"))?;
-        }
-        let pictures = self.read_pictures(walk, camera, kind)?;
+        let places: Vec<PathBuf> = (0..pictures.len()).map(|number| self.folder.join(name(number))).collect();
         match &walk.seen[camera].pictures(kind).place {
             PictureLocation::Folder(folder) => {
+                make_shared_folder(&places)?;
                 let folder = self.steps.join(folder);
                 let mut named = places.iter().enumerate();
                 named.try_for_each(|(number, place)| link_or_copy(&folder.join(kind.file_name(number)), place))
             }
-            PictureLocation::Sample { .. } => {
-                places.iter().zip(pictures).try_for_each(|(place, picture)| write_picture(place, &picture))
-            }
+            PictureLocation::Sample { .. } => write_files(&places, pictures),
         }
     }
 
@@ -296,8 +292,32 @@ fn link_or_copy(from: &Path, to: &Path) -> Result<(), CommandError> {
     Ok(())
 }
 
-fn write_picture(place: &Path, picture: &[u8]) -> Result<(), CommandError> {
-    fs::write(place, picture).map_err(CommandError::io(place, "write"))
+/// Makes the folder that files share.
+fn make_shared_folder(places: &[PathBuf]) -> Result<(), CommandError> {
+    match places.first().and_then(|place| place.parent()) {
+        Some(folder) => fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the folder")),
+        None => Ok(()),
+    }
+}
+
+/// Writes files into the folder that they share.
+fn write_files(places: &[PathBuf], contents: &[Vec<u8>]) -> Result<(), CommandError> {
+    make_shared_folder(places)?;
+    places
+        .iter()
+        .zip(contents)
+        .try_for_each(|(place, bytes)| fs::write(place, bytes).map_err(CommandError::io(place, "write")))
+}
+
+/// Writes a video of JPEG pictures as they are.
+fn write_motion_jpeg(
+    place: &Path,
+    pictures: &[Vec<u8>],
+    camera: &CameraIntrinsics,
+    fps: u32,
+) -> Result<(), CommandError> {
+    let video = motion_jpeg_video(pictures, [camera.width_px, camera.height_px], fps);
+    fs::write(place, video.map_err(CommandError::io(place, "write"))?).map_err(CommandError::io(place, "write"))
 }
 
 /// Walks by their scene, in the order of the scenes.

@@ -1,11 +1,11 @@
 //! The layouts of Uni-NaVid (`uninavid.json`) and NaVid (`navid.json`), which share their videos: one for each decision, with all views
 //! up to it.
 
-use super::{LayoutPack, PackedCounts, write_picture};
+use super::{LayoutPack, PackedCounts, write_motion_jpeg};
 use std::fs;
 use wayword_formats::{
     training::{
-        motion_jpeg::motion_jpeg_video,
+        ActionRun,
         navid::{NavidPolicy, navid_decisions, navid_sample, write_navid_file},
     },
     trajectories::PictureKind,
@@ -24,11 +24,9 @@ pub(super) fn pack_navid(pack: &LayoutPack<'_>, output: &CommandOutput) -> Resul
     for walk in &pack.walks {
         interrupt::check_interrupt()?;
         let pictures = pack.read_pictures(walk, 0, PictureKind::Rgb)?;
-        let size = [pack.cameras[0].width_px, pack.cameras[0].height_px];
         for run in navid_decisions(&walk.trajectory.actions) {
             let place = pack.folder.join(video_name(&walk.trajectory.id, run.first));
-            let video = motion_jpeg_video(&pictures[..=run.first], size, VIDEO_FPS);
-            write_picture(&place, &video.map_err(CommandError::io(&place, "write"))?)?;
+            write_motion_jpeg(&place, &pictures[..=run.first], &pack.cameras[0], VIDEO_FPS)?;
         }
         bar.inc(1);
     }
@@ -39,7 +37,7 @@ pub(super) fn pack_navid(pack: &LayoutPack<'_>, output: &CommandOutput) -> Resul
             let (id, actions) = (&walk.trajectory.id, &walk.trajectory.actions);
             walk.texts.iter().enumerate().flat_map(move |(number, text)| {
                 let name = format!("VLN_{id}-{number}");
-                let sample = move |run: wayword_formats::training::ActionRun| {
+                let sample = move |run: ActionRun| {
                     navid_sample(policy, (&name, video_name(id, run.first)), &text.text, actions, run)
                 };
                 navid_decisions(actions).into_iter().map(sample)

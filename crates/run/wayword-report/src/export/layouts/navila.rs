@@ -1,13 +1,10 @@
 //! NaVILA's layouts: decisions of a policy with all pictures before them (`annotations.json`, `frames/`), and videos for which the
 //! instruction is the answer (`speaker.json`, `videos/`).
 
-use super::{LayoutPack, PackedCounts, write_picture};
+use super::{LayoutPack, PackedCounts, write_motion_jpeg};
 use std::fs;
 use wayword_formats::{
-    training::{
-        motion_jpeg::motion_jpeg_video,
-        navila::{NavilaSpeakerItem, navila_samples, write_navila_samples, write_navila_speaker},
-    },
+    training::navila::{NavilaSpeakerItem, navila_samples, write_navila_samples, write_navila_speaker},
     trajectories::PictureKind,
 };
 use wayword_run::{error::CommandError, interrupt};
@@ -22,13 +19,11 @@ pub(super) fn pack_navila(pack: &LayoutPack<'_>) -> Result<PackedCounts, Command
     for walk in &pack.walks {
         interrupt::check_interrupt()?;
         let id = &walk.trajectory.id;
-        pack.place_pictures(walk, 0, PictureKind::Rgb, |number| format!("frames/{}", frame_name(id, number)).into())?;
-        let camera = &pack.cameras[0];
         let pictures = pack.read_pictures(walk, 0, PictureKind::Rgb)?;
+        let frame = |number| format!("frames/{}", frame_name(id, number)).into();
+        pack.place_pictures(walk, (0, PictureKind::Rgb), &pictures, frame)?;
         let name = format!("{id}.avi");
-        let place = videos.join(&name);
-        let video = motion_jpeg_video(&pictures, [camera.width_px, camera.height_px], VIDEO_FPS);
-        write_picture(&place, &video.map_err(CommandError::io(&place, "write"))?)?;
+        write_motion_jpeg(&videos.join(&name), &pictures, &pack.cameras[0], VIDEO_FPS)?;
         let item = |text: &str| NavilaSpeakerItem { video: name.clone(), instruction: text.to_owned() };
         speaker.extend(walk.texts.iter().map(|text| item(&text.text)));
     }

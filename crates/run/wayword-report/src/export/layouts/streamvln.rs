@@ -16,7 +16,9 @@ pub(super) fn pack_streamvln(pack: &LayoutPack<'_>) -> Result<PackedCounts, Comm
         // Readers split the name at "_".
         let scene = walk.trajectory.scene.as_str().replace('_', "-");
         let video = format!("images/{scene}_{SET_NAME}_{number:06}");
-        pack.place_pictures(walk, 0, PictureKind::Rgb, |picture| format!("{video}/rgb/{picture:04}.jpg").into())?;
+        let pictures = pack.read_pictures(walk, 0, PictureKind::Rgb)?;
+        let name = |picture| format!("{video}/rgb/{picture:04}.jpg").into();
+        pack.place_pictures(walk, (0, PictureKind::Rgb), &pictures, name)?;
         walks.push(StreamVlnWalk {
             id: number.into(),
             video,

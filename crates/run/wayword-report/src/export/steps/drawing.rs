@@ -8,13 +8,11 @@ use image::{
 use wayword_core::{DMat4, DVec3, Image};
 use wayword_formats::{
     habitat::habitat_from_wayword,
-    trajectories::{ActionTrajectory, CameraIntrinsics, PictureKind, PixelGoal},
+    trajectories::{ActionTrajectory, CameraIntrinsics, DEPTH_PER_M, PictureKind, PixelGoal},
 };
 use wayword_render::{PinholeCamera, RenderedPicture};
 use wayword_run::{error::CommandError, pictures::encode_jpeg};
 
-/// A depth picture counts millimetres.
-const DEPTH_PER_M: f32 = 1000.0;
 /// A goal is seen if its pixel shows a place this near to it, metres, or nearer than the pixel is wide there. Rounding of the depth picture
 /// stays below the rest to [`super::replay`]'s bound.
 const SAME_PLACE_M: f64 = 0.098;
@@ -121,7 +119,7 @@ fn seen_pixel(
 fn encode_depth(picture: &RenderedPicture) -> Result<Vec<u8>, CommandError> {
     // The cast gives 0 for what is not a number; what lies too far or is background becomes 0 too.
     let millimetres = |depth_m: &f32| {
-        let scaled = (depth_m * DEPTH_PER_M).round();
+        let scaled = (depth_m * DEPTH_PER_M as f32).round();
         if scaled <= f32::from(u16::MAX) { scaled as u16 } else { 0 }
     };
     let pixels: Vec<u16> = picture.depth_m.iter().map(millimetres).collect();

@@ -129,11 +129,12 @@ pub(super) fn write_steps(
     records: &[InstructionRecord],
     output: &CommandOutput,
 ) -> Result<Exit, CommandError> {
+    items::refuse_without_poses(ExportFormat::Steps, records)?;
     let splits = splits::splits_of_records(args, records)?;
     let settings = StepExportSettings::from_flags(&args.steps)?;
     let has_shards = settings.shard.is_some();
-    let mut made = make_steps(args, (out, settings), (records, &splits), &[USUAL_CAMERA], output)?;
     let walks = walks_from_records(records, &splits);
+    let mut made = make_steps(args, (out, settings), &walks, &[USUAL_CAMERA], output)?;
     write_new_texts(&mut made, &walks, has_shards)?;
     write_episodes(args, out, &walks, &made.trajectories, output)?;
     tell_terms(records, output);
@@ -148,6 +149,7 @@ pub(super) fn make_steps_of_run(
     needs: &LayoutNeeds,
     output: &CommandOutput,
 ) -> Result<StepsFolder, CommandError> {
+    items::refuse_without_poses(ExportFormat::Steps, records)?;
     let run = args.only_run()?;
     let folder = args.steps.steps.clone().unwrap_or_else(|| match needs.gait {
         Some([_, turn_deg]) if turn_deg != AgentGait::default().turn_deg() => {
@@ -172,9 +174,10 @@ pub(super) fn make_steps_of_run(
         return Err(CommandError::usage(problem, "give another --size-px, and another --steps"));
     }
     let splits = splits::splits_of_records(args, records)?;
-    let mut made = make_steps(args, (&folder, settings), (records, &splits), needs.cameras, output)?;
+    let walks = walks_from_records(records, &splits);
+    let mut made = make_steps(args, (&folder, settings), &walks, needs.cameras, output)?;
     // The folder may be a dataset of its own, with texts and splits of its own: they stay as they are there.
-    renew_texts(&mut made.trajectories, &walks_from_records(records, &splits));
+    renew_texts(&mut made.trajectories, &walks);
     Ok(made)
 }
 
@@ -210,26 +213,24 @@ pub(super) fn walk_actions(
     Ok(Some(actions))
 }
 
-/// Takes the walks of records in single actions, and draws what the cameras see, as far as the folder does not have it.
+/// Takes walks in single actions, and draws what the cameras see, as far as the folder does not have it.
 fn make_steps(
     args: &ExportArgs,
     (folder, steps): (&Path, StepExportSettings),
-    (records, splits): (&[InstructionRecord], &[String]),
+    walks: &[ExportedWalk<'_>],
     usual_cameras: &[[f64; 2]],
     output: &CommandOutput,
 ) -> Result<StepsFolder, CommandError> {
-    items::refuse_without_poses(ExportFormat::Steps, records)?;
     let run = args.only_run()?;
     let cameras = steps.cameras(&args.steps.camera, usual_cameras)?;
     let scenes = WalkingScenes::open_run(&read_run_settings(run)?, [steps.width_px, steps.height_px])?;
     fs::create_dir_all(folder).map_err(CommandError::io(folder, "make the folder"))?;
     let held = lock_folder(folder)?;
     keep_config(folder, &steps)?;
-    let walks = walks_from_records(records, splits);
     let mut store = TrajectoryStore::open(folder, &cameras)?;
-    let maker = TrajectoryMaker::continue_folder(folder, &scenes, &steps, &cameras, (&store, &walks))?;
-    take_walks(&walks, &maker, &mut store, output)?;
-    store.sort_and_sync(&walks)?;
+    let maker = TrajectoryMaker::continue_folder(folder, &scenes, &steps, &cameras, (&store, walks))?;
+    take_walks(walks, &maker, &mut store, output)?;
+    store.sort_and_sync(walks)?;
     // Reads the file back, so that what is reported and packed is what is there.
     let trajectories = read_trajectories(&folder.join(TRAJECTORIES_FILE))?;
     Ok(StepsFolder { folder: folder.to_owned(), trajectories, cameras, failed: store.failed_count(), _held: held })

@@ -10,7 +10,7 @@ use wayword_formats::{
     habitat::wayword_from_habitat,
     jsonl,
     trajectories::{
-        ActionTrajectory, CameraIntrinsics, CameraWalk, PictureKind, read_camera_walks, read_pictures,
+        ActionTrajectory, CameraIntrinsics, CameraWalk, DEPTH_PER_M, PictureKind, read_camera_walks, read_pictures,
         read_trajectories,
     },
 };
@@ -119,7 +119,7 @@ fn place_in_depth(
     depth_png: &[u8],
 ) -> Option<(DVec3, f64)> {
     let depth = image::load_from_memory(depth_png).ok()?.into_luma16();
-    let depth_m = f64::from(depth.get_pixel_checked(pixel[0], pixel[1])?.0[0]) / 1000.0;
+    let depth_m = f64::from(depth.get_pixel_checked(pixel[0], pixel[1])?.0[0]) / DEPTH_PER_M;
     let world_from_camera = walk.world_from_camera.get(step)?;
     let place = world_from_camera.transform_point3(camera.ray_through(pixel) * depth_m);
     Some((wayword_from_habitat(place), depth_m / camera.focal_px))
