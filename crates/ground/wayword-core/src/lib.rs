@@ -16,6 +16,7 @@
 //! - [`file_start`]: the kinds of files by their first bytes.
 //! - [`depth`]: how far away a detector's find is.
 //! - [`doubt`]: what a doubt consists of, and how doubts about the same words are put together.
+//! - [`film_motion`], [`film_turns`]: how the camera of a film moves, and its turns.
 //! - [`walk_cuts`]: all ways to divide a walk among the parts of a text.
 //! - [`id`]: which names from outside are refused.
 
@@ -30,6 +31,8 @@ pub mod doubt;
 pub mod encoder;
 pub mod failure;
 pub mod file_start;
+pub mod film_motion;
+pub mod film_turns;
 pub mod graph;
 pub mod ground;
 pub mod heading;
@@ -69,6 +72,8 @@ pub use doubt::{DoubtAlternative, DoubtCause, DoubtGrade, TextDoubt};
 pub use encoder::{PhraseGrounder, TextEncoder};
 pub use failure::FailureKind;
 pub use file_start::{FILE_START_BYTES, FileGroup, FileStart};
+pub use film_motion::{CameraMotion, CameraStep, MotionSource};
+pub use film_turns::{FilmTurn, FilmTurnRules, find_film_turns};
 pub use glam::{DMat3, DMat4, DVec3};
 pub use graph::{ViewpointGraph, ViewpointRoute};
 pub use ground::{GroundCover, GroundIsland, GroundRoute};

@@ -12,6 +12,7 @@
 //! - `photographs`: which pictures are depth maps or masks.
 //! - `describe`: the keys of `recording.toml`.
 //! - `choose/`: which pictures become frames.
+//! - `film_motion/`: how the camera moves from picture to picture, by poses or by the pictures.
 //! - `training_walks/`: walks of StreamVLN's, NaVILA's and InternNav's training data.
 //! - `mcap/topics.rs`, `lerobot/camera.rs`, `lerobot/pose_feature.rs`: which camera and which poses are taken.
 
@@ -29,6 +30,7 @@ mod axes;
 mod choose;
 mod describe;
 mod file_kind;
+mod film_motion;
 mod folder;
 #[cfg(feature = "lerobot")]
 mod lerobot;
@@ -50,4 +52,5 @@ mod training_walks;
 #[cfg(feature = "video")]
 mod video;
 
-pub use platform::RecordingPlatform;
+pub use film_motion::estimate_film_steps;
+pub use platform::{MAX_OPEN_RECORDINGS, RecordingPlatform};

@@ -225,7 +225,7 @@ fn open_one(path: &Path) -> Result<Option<RecordingEntry>, PlatformError> {
     let other = |source| Some(RecordingEntry::Other(source));
     if path.is_dir() {
         if path.join("meta").join("info.json").is_file() {
-            return open_lerobot(path).map(other);
+            return open_lerobot(path, None).map(other);
         }
         if let Some(walks) = training_walks::open_annotated(path)? {
             return Ok(other(Box::new(walks)));
@@ -271,18 +271,20 @@ fn is_recording_file(name: &str) -> bool {
     is_video_name(name) || has_ending(name, &["mcap"])
 }
 
+/// Opens a dataset of LeRobot or InternNav. `camera` wins over that of its recording.toml.
 #[cfg(feature = "lerobot")]
-fn open_lerobot(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
+pub(crate) fn open_lerobot(path: &Path, camera: Option<&str>) -> Result<Box<dyn RecordingSource>, PlatformError> {
     if let Some(walks) = training_walks::open_internnav(path)? {
         return Ok(Box::new(walks));
     }
     let file = path.join(crate::describe::FOLDER_FILE);
-    let described = RecordingDescription::read(&file)?.refuse_pose_file_settings(&file)?;
+    let mut described = RecordingDescription::read(&file)?.refuse_pose_file_settings(&file)?;
+    described.camera = camera.map(str::to_owned).or(described.camera);
     Ok(Box::new(crate::lerobot::LeRobotDataset::open(path, described)?))
 }
 
 #[cfg(not(feature = "lerobot"))]
-fn open_lerobot(path: &Path) -> Result<Box<dyn RecordingSource>, PlatformError> {
+fn open_lerobot(path: &Path, _: Option<&str>) -> Result<Box<dyn RecordingSource>, PlatformError> {
     Err(error_for_missing_feature(path, "LeRobot datasets"))
 }
 

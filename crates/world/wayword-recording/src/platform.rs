@@ -4,6 +4,7 @@
 
 use crate::{
     choose::{FrameChoice, candidate_pictures, choose_frames},
+    film_motion::{sampled_pictures, steps_by_pictures, steps_by_poses},
     open, poses,
     reel::{Recording, RecordingSource},
     track::CameraTrack,
@@ -17,13 +18,14 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    DVec3, Frame, Heading, Image, ObjectId, Path, PathMotion, PathRequest, Platform, PlatformError, Pose, RecentCache,
-    SceneCatalogue, SceneFiles, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId, path::PathStop, seeded_rng,
+    CameraMotion, DVec3, Frame, Heading, Image, MotionSource, ObjectId, Path, PathMotion, PathRequest, Platform,
+    PlatformError, Pose, RecentCache, SceneCatalogue, SceneFiles, SceneId, View, ViewGaze, ViewpointGraph, ViewpointId,
+    path::PathStop, seeded_rng,
 };
 use wayword_world::{files, output_lines::OutputListener};
 
-/// Most recordings that stay open.
-const MAX_OPEN_RECORDINGS: usize = 8;
+/// Most recordings that stay open. Who works at more of them at the same time opens each again and again.
+pub const MAX_OPEN_RECORDINGS: usize = 8;
 /// Most pictures that stay in memory: 1.2 MB each at most.
 const MAX_CACHED_PICTURES: usize = 256;
 /// Frames that are read together, because a video has to be decoded from a key picture on, whichever picture is wanted.
@@ -75,14 +77,27 @@ impl RecordingPlatform {
     /// When there is none, or this build cannot read its kind.
     pub fn open(path: &FilePath, hear: OutputListener) -> Result<Self, PlatformError> {
         let source = open::open_source(path, &*hear)?;
-        Ok(Self {
+        Ok(Self::over(path, source, hear))
+    }
+
+    /// Opens a LeRobot dataset, to be seen through one of its cameras.
+    ///
+    /// # Errors
+    /// When it is no such dataset, or has no such camera.
+    #[cfg(feature = "lerobot")]
+    pub fn open_dataset_camera(path: &FilePath, camera: &str, hear: OutputListener) -> Result<Self, PlatformError> {
+        Ok(Self::over(path, open::open_lerobot(path, Some(camera))?, hear))
+    }
+
+    fn over(path: &FilePath, source: Box<dyn RecordingSource>, hear: OutputListener) -> Self {
+        Self {
             path: path.to_owned(),
             source,
             hear,
             heard: Mutex::default(),
             opened: RecentCache::one_at_a_time(MAX_OPEN_RECORDINGS),
             pictures: RecentCache::new(MAX_CACHED_PICTURES),
-        })
+        }
     }
 
     fn open_scene(&self, scene: &SceneId) -> Result<Arc<OpenedRecording>, PlatformError> {
@@ -163,6 +178,28 @@ impl OpenedRecording {
         let graph = chain_graph(&ids, &places, &breaks)
             .map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
         Ok(Self { recording, stops, ids, places, breaks, graph: Arc::new(graph) })
+    }
+
+    /// How its camera moves; `None` where the source is poses, and it has none.
+    fn film_motion(&self, source: MotionSource) -> Result<Option<CameraMotion>, PlatformError> {
+        let all_s = self.recording.reel.times_s();
+        let pictures = sampled_pictures(all_s);
+        let times_s: Vec<f64> = pictures.iter().map(|number| all_s[*number]).collect();
+        let steps = match (source, &self.recording.track) {
+            (MotionSource::Pictures, _) => {
+                steps_by_pictures(&self.recording, &pictures, view_width(&self.recording).0)?
+            }
+            (MotionSource::Poses, Some(track)) => steps_by_poses(track, &times_s),
+            (MotionSource::Poses, None) => return Ok(None),
+        };
+        let nearest = |stop: usize| {
+            let after = pictures.partition_point(|number| *number < stop).min(pictures.len() - 1);
+            let before = after.saturating_sub(1);
+            let off = |at: usize| pictures[at].abs_diff(stop);
+            if off(before) < off(after) { before } else { after }
+        };
+        let frames = self.ids.iter().cloned().zip(self.stops.iter().map(|stop| nearest(*stop))).collect();
+        Ok(Some(CameraMotion { source, pictures, times_s, steps, frames, picture_count: all_s.len() }))
     }
 
     /// Whether turns and distances between the frames are known.
@@ -253,6 +290,11 @@ impl Platform for RecordingPlatform {
     /// The frames in order, each joined to the next unless the way between them is unknown; empty without poses.
     fn graph_for_scene(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
         Ok(self.open_scene(scene)?.graph.clone())
+    }
+
+    /// Estimates from pictures are made anew each time: they need all pictures of the recording.
+    fn film_motion(&self, scene: &SceneId, source: MotionSource) -> Result<Option<CameraMotion>, PlatformError> {
+        self.open_scene(scene)?.film_motion(source)
     }
 
     /// The whole recording if its length fits, else a stretch of it. Without poses the number of hops counts instead of

@@ -13,7 +13,7 @@ pub use error::{PlatformError, is_lost_disk};
 pub use files::SceneFiles;
 pub use ground::Ground;
 
-use crate::{Frame, Path, SceneId, View, ViewGaze, ViewpointGraph};
+use crate::{CameraMotion, Frame, MotionSource, Path, SceneId, View, ViewGaze, ViewpointGraph};
 use catalogue::NoCatalogue;
 use files::NoFiles;
 use ground::NoGround;
@@ -56,6 +56,14 @@ pub trait Platform: Send + Sync {
     /// When the scene does not exist or cannot be read, or has gaps that no path crosses.
     fn whole_path(&self, scene: &SceneId) -> Result<Option<Path>, PlatformError> {
         self.inner().map_or(Ok(None), |inner| inner.whole_path(scene))
+    }
+
+    /// How the camera moves over all of a scene that is one film; `None` for other scenes, and where the film has no such source.
+    ///
+    /// # Errors
+    /// When the scene does not exist or its pictures cannot be read.
+    fn film_motion(&self, scene: &SceneId, source: MotionSource) -> Result<Option<CameraMotion>, PlatformError> {
+        self.inner().map_or(Ok(None), |inner| inner.film_motion(scene, source))
     }
 
     /// The view from a frame in one direction.
@@ -119,6 +127,10 @@ macro_rules! forward_pointers {
 
             fn whole_path(&self, scene: &SceneId) -> Result<Option<Path>, PlatformError> {
                 (**self).whole_path(scene)
+            }
+
+            fn film_motion(&self, scene: &SceneId, source: MotionSource) -> Result<Option<CameraMotion>, PlatformError> {
+                (**self).film_motion(scene, source)
             }
 
             fn look_from(&self, scene: &SceneId, from: &Frame, gaze: ViewGaze) -> Result<View, PlatformError> {
