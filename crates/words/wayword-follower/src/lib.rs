@@ -31,6 +31,7 @@ mod made_buildings;
 mod nearness;
 mod one_walk;
 pub mod online;
+pub mod pair;
 mod posterior;
 pub mod route;
 pub mod swap;
