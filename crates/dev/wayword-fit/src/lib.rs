@@ -4,8 +4,10 @@
 //! # Where things are
 //! - [`fit_alignment`]: the weights of the alignment, `alignment/fitted.json` of `wayword-follower`, and its figures by people's stretches.
 //! - [`fit_evidence`]: the weights of the checks in an open world, `open/weights.toml` of `wayword-checks`.
+//! - [`logistic`]: logistic regression.
 //! - [`fit_follower`]: the weights of the follower, with the map and without, and the table by which its thresholds are chosen.
 
 pub mod fit_alignment;
 pub mod fit_evidence;
 pub mod fit_follower;
+pub mod logistic;

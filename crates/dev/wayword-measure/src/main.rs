@@ -7,8 +7,8 @@ use std::{path::PathBuf, process::ExitCode};
 use wayword_fit::{fit_alignment, fit_evidence, fit_follower};
 use wayword_quality::{
     arrivals, budget, checked_texts, claims, corrupt_people, corruption_findings, corruptions, coverage, critics,
-    detector, doubts, eye, house_faults, house_views, people, reader_figures, refined, remembered, reuse, sample,
-    skeleton, stage, steps, study_coverage, sweep, tell_apart, texts, walker,
+    detector, doubts, eye, house_faults, house_views, pairs, people, reader_figures, refined, remembered, reuse,
+    sample, skeleton, stage, steps, study_coverage, sweep, tell_apart, texts, walker,
 };
 use wayword_run::{error::CommandError, output::CommandOutput};
 
@@ -158,6 +158,8 @@ enum Measurement {
     #[command(mut_arg("show", |show| show.help("Show at most this many findings about words that people called right")))]
     #[command(after_long_help = "")]
     People(checked_texts::JudgingArgs),
+    /// Score pairs of a film and a text that are made wrong in known ways, or fit the weights of that score.
+    Pairs(pairs::PairsArgs),
     /// Make people's own texts wrong, without the words of the program's reader: a file of texts and its key.
     CorruptPeople(corrupt_people::CorruptPeopleArgs),
     /// Compare the findings of `wayword check` with the key of a corrupted file: corruptions found, and false alarms.
@@ -201,6 +203,7 @@ fn main() -> ExitCode {
         Measurement::HouseViews(flags) => flags.json,
         Measurement::StudyCoverage(flags) => flags.json,
         Measurement::Align(flags) => flags.json,
+        Measurement::Pairs(flags) => flags.json,
         _ => false,
     };
     let output = CommandOutput::new(is_json, false);
@@ -247,6 +250,7 @@ fn run_measurement(what: Measurement, output: &CommandOutput) -> Result<(), Comm
             fit_evidence::fit_evidence_weights(&data, &episodes, out.as_deref(), output)
         }
         Measurement::Steps(flags) => steps::replay_steps(&flags, output),
+        Measurement::Pairs(flags) => pairs::measure_pairs(&flags, output),
         Measurement::People(flags) => people::measure_people(flags, output),
         Measurement::CorruptPeople(flags) => corrupt_people::write_corruptions(&flags, output),
         Measurement::Found(flags) => corruption_findings::measure_corruption_findings(flags, output),

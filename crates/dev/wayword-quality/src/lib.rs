@@ -32,6 +32,7 @@ mod eye_check;
 pub mod house_faults;
 pub mod house_views;
 pub mod key;
+pub mod pairs;
 pub mod people;
 pub mod reader_figures;
 pub mod refined;

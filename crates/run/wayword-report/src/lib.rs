@@ -12,11 +12,15 @@
 //! - `pages/suspicion.rs`: what speaks against a text, and which come first; `item_order.rs`, `rows.rs`, `report_files.rs`,
 //!   `picture_folder.rs`, `page.rs`: the items that a report shows, the list of texts, the files, the pictures beside them, the head.
 //!   The templates lie beside them, and the only script, `report.js`.
+//! - `pair_check.rs`, `annotate.rs`, `pages/curate/`: `check --by pictures` and `annotate`, and their pages.
 //! - `pages/comparison/`, `pages/replay/`: tables, page and replays of a comparison.
 //! - `view/path/`, `view/film/`, `view/map/`: what `wayword view` writes.
 
+#[cfg(all(feature = "lerobot", feature = "parquet"))]
+pub mod annotate;
 pub mod export;
 pub mod pages;
+pub mod pair_check;
 pub mod view;
 #[cfg(feature = "habitat")]
 pub mod walking;

@@ -12,6 +12,7 @@
 //! - [`run_folder`]: what a run keeps and how it continues; `run_folder/world_data.rs`: which files may not change; `folder_lock.rs`: one process at a time.
 //! - `generate/keep.rs`, `progress.rs`: what becomes of failed items; `losses`: when a run ends because of them; `pace.rs`: the time left.
 //! - `generate/workers/`: one worker of many. [`stores`]: addresses of object stores in place of folders.
+//! - `annotate/`: language for datasets of LeRobot. [`pairs`]: how likely a text is wrong about its film.
 //! - [`check`]: `check/worlds.rs` chooses the world of a text, `detecting.rs` is `--detector`, `run_texts.rs` for texts edited after an export,
 //!   `again.rs` for those of a report.
 //! - [`follow`], [`doubts`], [`walk_ranking`]: what the program does with the follower.
@@ -21,6 +22,9 @@
 
 mod advice;
 pub mod align;
+#[cfg(all(feature = "lerobot", feature = "parquet"))]
+pub mod annotate;
+pub mod annotate_args;
 pub mod calibrate;
 pub mod calibration;
 pub mod calls;
@@ -44,6 +48,7 @@ pub mod lookout;
 pub mod losses;
 pub mod output;
 pub mod own_format;
+pub mod pairs;
 pub mod parallel;
 pub mod people;
 pub mod pictures;

@@ -1,8 +1,12 @@
 //! Encodes, writes and reads the pictures of a run's frames, JPEG files named ITEM_FRAME.jpg.
 
 use crate::error::CommandError;
-use image::{ExtendedColorType, ImageEncoder, ImageError, ImageFormat, ImageReader, codecs::jpeg::JpegEncoder};
+use image::{
+    ExtendedColorType, ImageEncoder, ImageError, ImageFormat, ImageReader, RgbImage, codecs::jpeg::JpegEncoder,
+    imageops::thumbnail,
+};
 use std::{
+    collections::BTreeSet,
     fs::{self, File},
     io::{Cursor, Read},
     path::{Component, Path, PathBuf},
@@ -46,6 +50,48 @@ pub fn encode_jpeg(image: &Image, quality: u8) -> Result<Vec<u8>, ImageError> {
     let encoder = JpegEncoder::new_with_quality(&mut jpeg, quality);
     encoder.write_image(image.rgb_bytes(), image.width_px(), image.height_px(), ExtendedColorType::Rgb8)?;
     Ok(jpeg)
+}
+
+/// Longer side of the small pictures of pages, pixels.
+const SMALL_PICTURE_PX: u32 = 320;
+/// Their JPEG quality, percent.
+const SMALL_PICTURE_QUALITY: u8 = 75;
+
+/// Most pictures of a walk that a page shows.
+pub const MOST_PICTURES: usize = 24;
+
+/// Which of so many frames are shown, if at most `most` can be: the first, the last, and others at equal distances between them.
+pub fn evenly_chosen(count: usize, most: usize) -> BTreeSet<usize> {
+    let shown = count.min(most);
+    (0..shown).map(|at| at * (count - 1) / shown.saturating_sub(1).max(1)).collect()
+}
+
+/// The name of a picture's file, its width and its height in pixels.
+pub type WrittenPicture = (String, u32, u32);
+
+/// Writes the picture of a view, shrunk, for a page; `None` where it has none.
+///
+/// # Errors
+/// When it cannot be written.
+pub fn write_small_picture(folder: &Path, name: String, view: &View) -> Result<Option<WrittenPicture>, CommandError> {
+    let Some(image) = &view.image else { return Ok(None) };
+    let image = shrink_picture(image, SMALL_PICTURE_PX);
+    let jpeg = encode_jpeg(&image, SMALL_PICTURE_QUALITY).map_err(|error| {
+        CommandError::usage(format!("a picture cannot be written as JPEG: {error}"), "report this as a bug")
+    })?;
+    let file = folder.join(&name);
+    fs::write(&file, jpeg).map_err(CommandError::io(&file, "write"))?;
+    Ok(Some((name, image.width_px(), image.height_px())))
+}
+
+/// A picture whose longer side has at most so many pixels.
+fn shrink_picture(image: &Image, longer_px: u32) -> Image {
+    let (width, height) = (image.width_px(), image.height_px());
+    let pixels = RgbImage::from_raw(width, height, image.rgb_bytes().to_vec());
+    let Some(pixels) = pixels.filter(|_| width.max(height) > longer_px) else { return image.clone() };
+    let side = |side: u32| (u64::from(side) * u64::from(longer_px) / u64::from(width.max(height))).max(1) as u32;
+    let small = thumbnail(&pixels, side(width), side(height));
+    Image::new(small.width(), small.height(), small.into_raw()).unwrap_or_else(|_| image.clone())
 }
 
 /// The file of the picture of a frame.

@@ -76,10 +76,15 @@ pub fn find_styles(names: &[String]) -> Result<Vec<MeasuredStyle>, CommandError>
         if let Some((_, other)) = styles.iter().zip(names).find(|(other, _)| other.style.name == style.name) {
             return Err(same_name_error(&style.name, other, name));
         }
-        let (profile, hash) = (StyleProfile::for_style(&style), hash_style(&style));
-        styles.push(MeasuredStyle { style, profile, hash });
+        styles.push(measure_style(style));
     }
     Ok(styles)
+}
+
+/// A style with its measures.
+pub(crate) fn measure_style(style: InstructionStyle) -> MeasuredStyle {
+    let (profile, hash) = (StyleProfile::for_style(&style), hash_style(&style));
+    MeasuredStyle { style, profile, hash }
 }
 
 /// The error for two styles with one name; `first` and `second` are how they were given.

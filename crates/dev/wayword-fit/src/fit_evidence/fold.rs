@@ -1,7 +1,7 @@
 //! Fits the weights of claims by cross-validation over buildings, and chooses the likelihood ratio at which a claim fails so that only a
 //! small share of people's true texts fails.
 
-use super::logistic::{self, WeighedClaimSample};
+use crate::logistic::{self, WeighedSample};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_checks::open::{ClaimCase, MissedClaim, SilenceWeights, WeightTable};
 use wayword_run::people::{ClaimSample, belongs_to_case, is_known};
@@ -101,9 +101,9 @@ fn fit_case(case_samples: &[&ClaimSample], case: ClaimCase) -> BTreeMap<String, 
     let weigh = |sample: &&ClaimSample| {
         let features = failing_miss(sample, case)?.features.clone();
         let weight = if sample.wrong { wrong_weight } else { 1.0 };
-        Some(WeighedClaimSample { features, wrong: sample.wrong, weight })
+        Some(WeighedSample { features, wrong: sample.wrong, weight })
     };
-    let weighed: Vec<WeighedClaimSample> = case_samples.iter().filter_map(weigh).collect();
+    let weighed: Vec<WeighedSample> = case_samples.iter().filter_map(weigh).collect();
     let weights = logistic::fit_weights(&weighed, ridge_for_case(case));
     weights.into_iter().map(|(name, weight)| (name, (weight * 1e3).round() / 1e3)).collect()
 }

@@ -6,7 +6,6 @@
 
 mod fold;
 mod homes;
-mod logistic;
 
 use fold::{CASE_GROUPS, building_numbers, claims_for_case, failing_miss, fit_tables};
 use std::{

@@ -154,7 +154,7 @@ fn list_of(name: &str, element: TypePtr, repetition: Repetition) -> Result<TypeP
 }
 
 impl ColumnValues {
-    fn field_type(&self, name: &str) -> Result<TypePtr, ParquetError> {
+    pub(super) fn field_type(&self, name: &str) -> Result<TypePtr, ParquetError> {
         let required = Repetition::REQUIRED;
         let element = |kind, is_text| primitive("element", kind, required, is_text);
         match self {
@@ -175,7 +175,10 @@ impl ColumnValues {
         }
     }
 
-    fn write_rows<W: Write + Send>(&self, group: &mut SerializedRowGroupWriter<'_, W>) -> Result<(), ParquetError> {
+    pub(super) fn write_rows<W: Write + Send>(
+        &self,
+        group: &mut SerializedRowGroupWriter<'_, W>,
+    ) -> Result<(), ParquetError> {
         let bytes = |text: &String| ByteArray::from(text.as_bytes().to_vec());
         match self {
             Self::Int64(values) => write_leaf::<Int64Type>(group, &required_column(values, |value| *value)),

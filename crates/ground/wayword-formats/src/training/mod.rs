@@ -5,12 +5,16 @@
 
 mod action_runs;
 #[cfg(feature = "parquet")]
+mod arrow_schema;
+#[cfg(feature = "parquet")]
 pub mod columns;
 pub mod episode_lines;
 #[cfg(feature = "parquet")]
 pub mod internnav;
 #[cfg(feature = "parquet")]
 pub mod lerobot;
+#[cfg(feature = "parquet")]
+pub mod lerobot_language;
 #[cfg(feature = "parquet")]
 pub mod lerobot_texts;
 pub mod motion_jpeg;

@@ -142,6 +142,7 @@ Examples:
   wayword export --run runs/houses --format streamvln --out streamvln      (layouts share the pictures in runs/houses/steps)
   wayword export --run runs/houses --format lerobot --out lerobot
   wayword export --run runs/val_seen --style r2r --highlight doubts
+  wayword export --pairs STREAMVLN_FOLDER --decisions decisions.jsonl --out accepted.json
   wayword export --texts R2R_val_seen.json --platform matterport --data DATA --highlight doubts")]
 pub struct ExportArgs {
     /// Run folder. Several can be merged in the formats wayword, parquet and hf.
@@ -186,6 +187,13 @@ pub struct ExportArgs {
     /// episodes; else the official split of the scene; else train]
     #[arg(long, value_name = "NAME")]
     pub split: Option<String>,
+    /// What curators decided on the page of `wayword check --by pictures`: what they rejected is left out. May be given several times; of
+    /// several decisions about one pair the latest counts.
+    #[arg(long, value_name = "FILE")]
+    pub decisions: Vec<PathBuf>,
+    /// Instead of a run, write this dataset again without what --decisions rejects: StreamVLN, NaVILA, InternNav, R2R, REVERIE or RxR.
+    #[arg(long, value_name = "DATASET", requires = "decisions", conflicts_with_all = ["run", "highlight", "format"])]
+    pub pairs: Option<PathBuf>,
     /// With hf: confirm that you may publish texts about the scenes of this platform. Every platform but house needs it: its scenes are
     /// somebody's.
     #[arg(long)]

@@ -3,6 +3,7 @@
 pub mod args;
 #[cfg(any(feature = "habitat", feature = "parquet"))]
 mod card;
+mod decided;
 mod duet;
 mod duet_pretraining;
 mod habitat_scenes;
@@ -87,6 +88,9 @@ struct WrittenSplits {
 pub fn run_export(args: &ExportArgs, output: &CommandOutput) -> Result<Exit, CommandError> {
     if let Some(name) = &args.highlight {
         return highlight::write_highlights(args, name, output);
+    }
+    if let Some(dataset) = &args.pairs {
+        return decided::write_accepted(args, dataset, output);
     }
     let (format, out) = check_dataset_args(args)?;
     refuse_what_does_not_fit(args, format)?;
@@ -220,6 +224,7 @@ fn read_records(args: &ExportArgs, style: Option<&str>) -> Result<Vec<Instructio
     let files: Vec<PathBuf> = runs.iter().map(|run| run.join(file::INSTRUCTIONS)).collect();
     let mut records = jsonl::merge_records(&files)?;
     let styles: BTreeSet<String> = records.iter().map(|record| record.instruction.style.clone()).collect();
+    decided::leave_out_rejected(&mut records, &args.decisions)?;
     records.retain(|record| style.is_none_or(|style| record.instruction.style == style));
     if records.is_empty() {
         let runs = runs.iter().map(|run| run.display().to_string()).collect::<Vec<_>>().join(", ");

@@ -200,7 +200,7 @@ fn direction_words(gaze: Heading, walker: Heading) -> &'static str {
 }
 
 /// The name of the icon for a turn, in the page's `signs.html`.
-fn turn_sign(turn: TurnKind) -> &'static str {
+pub(super) fn turn_sign(turn: TurnKind) -> &'static str {
     match turn {
         TurnKind::Straight => "straight",
         TurnKind::SlightLeft => "slight-left",

@@ -6,6 +6,7 @@
 
 #[cfg(feature = "experiments")]
 pub mod comparison;
+pub mod curate;
 pub(crate) mod data_uri;
 pub mod doubts;
 mod frames;
@@ -257,7 +258,7 @@ fn load_templates() -> Result<Environment<'static>, minijinja::Error> {
     templates.add_template("head.html", include_str!("head.html"))?;
     templates.add_template("rows.html", include_str!("rows.html"))?;
     templates.add_global("script", SCRIPT);
-    templates.add_global("script_hash", format!("sha256-{}", data_uri::encode_base64(&Sha256::digest(SCRIPT))));
+    templates.add_global("script_hash", script_hash(SCRIPT));
     templates.add_template("script.html", include_str!("script.html"))?;
     templates.add_template("list_controls.html", include_str!("list_controls.html"))?;
     templates.add_template("item.css", include_str!("item.css"))?;
@@ -278,8 +279,17 @@ fn load_templates() -> Result<Environment<'static>, minijinja::Error> {
     templates.add_template("doubts.html", include_str!("doubts/page.html"))?;
     templates.add_template("doubts_leaf.html", include_str!("doubts/leaf.html"))?;
     templates.add_template("doubted_text.html", include_str!("doubts/text.html"))?;
+    templates.add_template("curate.css", include_str!("curate/style.css"))?;
+    templates.add_template("curate.html", include_str!("curate/page.html"))?;
+    templates.add_template("annotations.html", include_str!("curate/annotations.html"))?;
+    templates.add_template("curated_pair.html", include_str!("curate/pair.html"))?;
     templates.add_template("replay.html", include_str!("replay/replay.html"))?;
     Ok(templates)
+}
+
+/// The hash of a script as a content security policy has it.
+fn script_hash(script: &str) -> String {
+    format!("sha256-{}", data_uri::encode_base64(&Sha256::digest(script)))
 }
 
 /// Writes a value into a page, as minijinja does, with its unseen characters shown.

@@ -2,6 +2,7 @@
 
 use crate::{
     lookout::NO_PROPOSALS,
+    pairs::args::PairArgs,
     settings::{AskedPlatform, AskedRoles, AskedSettings, EvidenceSources, Service, Writing},
     styles,
 };
@@ -16,9 +17,14 @@ Examples:
   wayword check R2R_val_seen.json --platform matterport --data DATA --style r2r --json
   wayword check runs/houses/instructions.jsonl --platform house --style r2r
   wayword check R2R_val_seen.json --platform matterport --data DATA --show fail
-  wayword check edited.json --run runs/houses")]
+  wayword check edited.json --run runs/houses
+  wayword check STREAMVLN_FOLDER --by pictures --see openai/gpt-4.1-mini --max-usd 5 --out pairs
+      How likely each text is wrong about its film, the worst first, with a page to accept or reject them by keys.
+  wayword check LEROBOT_DATASET --by pictures --detector hf/google/owlv2-base-patch16-ensemble --out pairs
+  wayword check train.json.gz --by pictures --platform recording --data FRAMES --see ollama/llava --out pairs
+      Frames of VLN-CE\'s episodes: a folder for each, with the name of the episode.")]
 pub struct CheckArgs {
-    /// File of instructions: R2R, REVERIE, RxR, VLN-CE or Wayword.
+    /// File of instructions: R2R, REVERIE, RxR, VLN-CE or Wayword; or a folder of training data, as docs/FORMATS.md lists them.
     pub file: PathBuf,
     /// The platform.
     #[command(flatten)]
@@ -55,6 +61,9 @@ pub struct CheckArgs {
     /// A detector that looks for what the texts name.
     #[command(flatten)]
     pub detecting: CheckDetectorArgs,
+    /// Pairs of pictures and texts.
+    #[command(flatten)]
+    pub pairs: PairArgs,
     /// Which of the instructions that did not pass are shown, those that failed first: at most N, fail (each that failed) or all.
     #[arg(long, value_name = "N|fail|all", default_value = "10")]
     pub show: ShownTexts,
@@ -84,8 +93,9 @@ pub struct CheckDetectorArgs {
     /// of the first use is kept, and later ones must equal it.
     #[arg(long, value_name = "SHA256", requires = "detector")]
     pub trust: Option<String>,
-    /// File of the ledger, which keeps what it found. [default: wayword/ledger.db in the data folder of your system]
-    #[arg(long, value_name = "FILE", requires = "detector")]
+    /// File of the ledger, which keeps what it found, and what the model of --see answered. [default: wayword/ledger.db in the data folder
+    /// of your system]
+    #[arg(long, value_name = "FILE")]
     pub ledger: Option<PathBuf>,
 }
 

@@ -59,7 +59,7 @@ pub(super) fn detector_evidence(
 }
 
 /// The things that a text names, as far as the lexicon has them.
-fn named_things(text: &str) -> Vec<String> {
+pub(crate) fn named_things(text: &str) -> Vec<String> {
     let events = read_instruction(text, &BTreeSet::new()).events.into_iter();
     let places = events.filter_map(|event| match event.what {
         EventContent::Place(place) => (place.is_thing && find_thing(&place.name).is_some()).then_some(place.name),

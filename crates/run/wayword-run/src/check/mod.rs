@@ -3,7 +3,7 @@
 
 mod again;
 pub mod args;
-mod detecting;
+pub(crate) mod detecting;
 pub(crate) mod path_texts;
 mod report;
 mod run_texts;

@@ -16,7 +16,10 @@ use wayword_experiments::{
     robustness::args::RobustnessArgs, similarity::args::SimilarityArgs, study_args::StudyArgs,
 };
 use wayword_report::{export::args::ExportArgs, view::args::ViewArgs};
-use wayword_run::{align::AlignArgs, calibrate::CalibrateArgs, check::args::CheckArgs, generate::args::GenerateArgs};
+use wayword_run::{
+    align::AlignArgs, annotate_args::AnnotateArgs, calibrate::CalibrateArgs, check::args::CheckArgs,
+    generate::args::GenerateArgs,
+};
 
 pub use parsing::parse_arguments;
 
@@ -70,7 +73,9 @@ pub enum WaywordCommand {
     /// Write instructions for paths, check them, and repair or reject those that fail.
     Generate(Box<GenerateArgs>),
     /// Check anyone's instructions against what their paths show.
-    Check(CheckArgs),
+    Check(Box<CheckArgs>),
+    /// Write language into a copy of a LeRobot dataset: what is done now, what is left to do, other words, questions and answers.
+    Annotate(Box<AnnotateArgs>),
     /// Find for each part of anyone's instructions the frames of its path that it describes.
     Align(AlignArgs),
     /// Learn from people's texts how far labels agree with single names of objects and rooms.

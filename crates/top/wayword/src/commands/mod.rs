@@ -9,12 +9,13 @@ use crate::{
 use wayword_experiments::{compare, evaluate, perceive, robustness, similarity};
 #[cfg(feature = "study")]
 use wayword_experiments::{study, study_args::StudyCommand};
-use wayword_report::{export, view};
+use wayword_report::{export, pair_check, view};
 use wayword_run::{
     align, calibrate, check,
     error::{CommandError, Exit},
     generate,
     output::CommandOutput,
+    pairs::args::CheckBy,
 };
 
 /// Runs a command.
@@ -26,7 +27,14 @@ pub fn run_command(command: WaywordCommand, output: &CommandOutput) -> Result<Ex
     match command {
         WaywordCommand::Demo(args) => demo::run_demo(&args, output),
         WaywordCommand::Generate(args) => generate::run_generate(&args, output),
+        WaywordCommand::Check(args) if args.pairs.by == CheckBy::Pictures => pair_check::run_pair_check(&args, output),
         WaywordCommand::Check(args) => check::run_check(&args, output),
+        #[cfg(all(feature = "lerobot", feature = "parquet"))]
+        WaywordCommand::Annotate(args) => wayword_report::annotate::run_annotate(&args, output),
+        #[cfg(not(all(feature = "lerobot", feature = "parquet")))]
+        WaywordCommand::Annotate(_) => Err(CommandError::not_built(
+            "datasets cannot be annotated: this build reads no LeRobot datasets or writes no tables",
+        )),
         WaywordCommand::Align(args) => align::run_align(&args, output),
         WaywordCommand::Calibrate(args) => calibrate::run_calibrate(&args, output),
         WaywordCommand::Export(args) => export::run_export(&args, output),
@@ -75,6 +83,7 @@ fn long_command_name(command: &WaywordCommand) -> Option<&'static str> {
         WaywordCommand::Demo(_) => "demo",
         WaywordCommand::Generate(_) => "generate",
         WaywordCommand::Check(_) => "check",
+        WaywordCommand::Annotate(_) => "annotate",
         WaywordCommand::Align(_) => "align",
         WaywordCommand::Calibrate(_) => "calibrate",
         WaywordCommand::Export(_) => "export",

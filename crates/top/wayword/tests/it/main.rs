@@ -37,6 +37,7 @@ mod model_kills;
 mod models;
 mod models_in_process;
 mod outputs;
+mod pairs;
 mod platforms;
 mod provider_faults;
 mod real_data;

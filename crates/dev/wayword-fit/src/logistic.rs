@@ -2,22 +2,22 @@
 
 use std::collections::BTreeMap;
 
-/// One observation: a claim with its features.
-pub(crate) struct WeighedClaimSample {
+/// One observation with its features: a claim, a pair.
+pub struct WeighedSample {
     /// The names and values of the features that are not zero.
-    pub(crate) features: Vec<(String, f64)>,
-    /// Whether the claim is wrong: the outcome that the regression predicts.
-    pub(crate) wrong: bool,
+    pub features: Vec<(String, f64)>,
+    /// Whether it is wrong: the outcome that the regression predicts.
+    pub wrong: bool,
     /// How many observations this one counts as.
-    pub(crate) weight: f64,
+    pub weight: f64,
 }
 
 /// Newton steps of a fit at most. A fit that has not converged by then keeps the weights it has; most converge earlier.
 const MAX_NEWTON_STEPS: usize = 25;
 
-/// Fits a weight for each feature. The sum of a claim's weights is the natural logarithm of the odds that it is wrong. `ridge` pulls all
+/// Fits a weight for each feature. The sum of its weights is the natural logarithm of the odds that it is wrong. `ridge` pulls all
 /// weights except the bias to zero.
-pub(crate) fn fit_weights(samples: &[WeighedClaimSample], ridge: f64) -> BTreeMap<String, f64> {
+pub fn fit_weights(samples: &[WeighedSample], ridge: f64) -> BTreeMap<String, f64> {
     let mut places: BTreeMap<&str, usize> = BTreeMap::new();
     for (name, _) in samples.iter().flat_map(|sample| &sample.features) {
         let next = places.len();
