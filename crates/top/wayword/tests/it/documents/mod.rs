@@ -17,7 +17,7 @@ use wayword_testkit::documents::{self, DocumentedCommand};
 use reader_folder::{ReaderFolder, RunExtent};
 
 /// Commands that a test cannot run: a word by which to recognise them, and what they need. The test runs all others.
-const NEEDS: [(&str, &str); 9] = [
+const NEEDS: [(&str, &str); 10] = [
     ("--platform tdw", "ThreeDWorld's simulator"),
     ("--platform virtualhome", "VirtualHome's simulator"),
     ("--platform process", "Python and a simulator"),
@@ -25,6 +25,7 @@ const NEEDS: [(&str, &str); 9] = [
     ("wayword_db", "PostgreSQL"),
     ("s3://", "a bucket"),
     ("similarity runs/val_seen#reverie", "the weights of a sentence encoder"),
+    ("--decisions decisions.jsonl", "what a curator saved"),
     ("DATASET", "a LeRobot dataset of the reader's own"),
     ("--data NAME", "a recording of the reader's own"),
 ];
