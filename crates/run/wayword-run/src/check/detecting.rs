@@ -38,7 +38,13 @@ pub(super) fn open_lookout(
     output: &CommandOutput,
 ) -> Result<Option<DetectorLookout>, CommandError> {
     if args.detector.is_none() {
-        return Ok(None);
+        return match args.ledger {
+            Some(_) => Err(CommandError::usage(
+                "--ledger has no effect, because nobody looks at pictures",
+                "give --detector MODEL, or --by pictures with --see MODEL; or leave it out",
+            )),
+            None => Ok(None),
+        };
     }
     let job = args.to_asked().into_job()?;
     ModelCalls::check_ready(&job, output)?;

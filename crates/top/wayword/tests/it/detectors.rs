@@ -470,12 +470,12 @@ fn a_check_refuses_what_does_not_fit_its_detector() {
     let world = ["check", &file, "--platform", "matterport", "--data", "data"];
     let none = building.wayword(&[&world[..], &["--evidence", "detector"]].concat());
     assert!(none.refused().contains("no detector is named"), "{none:?}");
-    for args in
-        [["--detector-figures", "of_dino.toml"], ["--ledger", "ledger.db"], ["--memory-gib", "8"], ["--trust", "0123"]]
-    {
+    for args in [["--detector-figures", "of_dino.toml"], ["--memory-gib", "8"], ["--trust", "0123"]] {
         let ran = building.wayword(&[&world[..], &args[..]].concat());
         assert!(ran.code == Some(2) && ran.err.contains("--detector <MODEL>"), "{args:?}: {ran:?}");
     }
+    let unused = building.wayword(&[&world[..], &["--ledger", "ledger.db"]].concat());
+    assert!(unused.refused().contains("--ledger has no effect"), "{unused:?}");
     let ran = building.wayword(&["check", &file, "--run", "run", "--detector", &owl]);
     assert!(ran.code == Some(2) && ran.err.contains("--run"), "{ran:?}");
 }
