@@ -25,8 +25,6 @@ pub struct CameraMotion {
     pub steps: Vec<CameraStep>,
     /// Which of these is nearest to each frame of the walk: its index in `pictures`.
     pub frames: BTreeMap<ViewpointId, usize>,
-    /// Number of pictures of the whole film.
-    pub picture_count: usize,
 }
 
 /// The way from a picture to the next.

@@ -199,7 +199,7 @@ impl OpenedRecording {
             if off(before) < off(after) { before } else { after }
         };
         let frames = self.ids.iter().cloned().zip(self.stops.iter().map(|stop| nearest(*stop))).collect();
-        Ok(Some(CameraMotion { source, pictures, times_s, steps, frames, picture_count: all_s.len() }))
+        Ok(Some(CameraMotion { source, pictures, times_s, steps, frames }))
     }
 
     /// Whether turns and distances between the frames are known.

@@ -183,7 +183,6 @@ mod tests {
             times_s: (0..=steps.len()).map(|at| at as f64 / 4.0).collect(),
             steps: steps.iter().map(step).collect(),
             frames: BTreeMap::new(),
-            picture_count: steps.len() + 1,
         }
     }
 

@@ -65,9 +65,9 @@ pub struct AnnotationReport {
     pub dataset: String,
     /// Episodes with language.
     pub episodes: usize,
-    /// Their parts, and how many of these are told by their motion alone.
+    /// The parts of these episodes.
     pub parts: usize,
-    /// Parts that are told by their motion alone.
+    /// Parts whose words speak of the motion alone.
     pub by_motion: usize,
     /// Texts about whole episodes.
     pub texts: usize,
@@ -77,7 +77,7 @@ pub struct AnnotationReport {
     pub questions: usize,
     /// Texts that were not kept.
     pub dropped: usize,
-    /// Files that were linked, and those that were copied.
+    /// Files that were linked.
     pub linked: usize,
     /// Files that were copied.
     pub copied: usize,

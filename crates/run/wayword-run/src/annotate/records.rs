@@ -1,6 +1,6 @@
 //! The record of an annotated episode: a line of `annotations.jsonl`.
 
-use crate::pairs::PairPartState;
+use crate::{pairs::PairPartState, pictures::WrittenPicture};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -76,7 +76,7 @@ pub struct AnnotatedFrame {
     pub frame: usize,
     /// The file of its picture, with its width and height in pixels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub picture: Option<(String, u32, u32)>,
+    pub picture: Option<WrittenPicture>,
     /// The things that were seen.
     pub seen: Vec<String>,
     /// The room.

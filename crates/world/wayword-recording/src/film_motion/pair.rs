@@ -64,8 +64,6 @@ pub(super) struct PicturePairScores {
     pub(super) agreement: f32,
     /// How well they agree on the best of the other yaws.
     pub(super) rival: f32,
-    /// How well they agree on no turn.
-    pub(super) agreement_ahead: f32,
     /// Sum of the patches' weights: how many there are that fit few places.
     pub(super) weight: f32,
     /// Share of the patches that have not moved at all.
@@ -112,17 +110,9 @@ fn scores(patches: &[PicturePatch], from: &PicturePanorama) -> PicturePairScores
     }
     let far = |at: &usize| at.abs_diff(best.1) > PEAK_COLUMNS;
     let rival = (0..curve.len()).filter(far).filter_map(|at| curve.get(at).copied()).fold(0.0, f32::max);
-    let agreement_ahead = curve.get(model.most_turn).copied().unwrap_or(0.0);
     let shift = SHIFTS_DOWN.get(best.2).copied().unwrap_or(0);
     let column = model.refined(patches, &profiles, best.1.cast_signed() - model.most_turn.cast_signed(), shift);
-    PicturePairScores {
-        best_yaw_rad: column * from.column_rad,
-        agreement: best.0,
-        rival,
-        agreement_ahead,
-        weight,
-        still,
-    }
+    PicturePairScores { best_yaw_rad: column * from.column_rad, agreement: best.0, rival, weight, still }
 }
 
 /// Where the peak of a parabola through a value and its two neighbours lies, in steps from that value.

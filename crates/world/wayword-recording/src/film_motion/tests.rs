@@ -125,7 +125,6 @@ fn a_fixed_camera_does_not_move_when_a_box_does() {
         times_s: (0..pictures.len()).map(|at| at as f64 / 4.0).collect(),
         steps,
         frames: BTreeMap::new(),
-        picture_count: pictures.len(),
     };
     assert!(film.stands_still(), "{film:?}");
     assert_eq!(find_film_turns(&film.turns_rad(), FilmTurnRules::at_rate(4.0)), vec![]);

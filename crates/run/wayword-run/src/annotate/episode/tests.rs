@@ -56,7 +56,6 @@ fn film(source: MotionSource, steps: &[[f64; 2]]) -> CameraMotion {
         times_s: (0..=steps.len()).map(|at| at as f64 / 4.0).collect(),
         steps: steps.iter().map(step).collect(),
         frames: (0..=steps.len()).step_by(4).map(|at| (id(at), at)).collect(),
-        picture_count: 2 * steps.len() + 1,
     }
 }
 
