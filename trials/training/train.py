@@ -19,6 +19,7 @@ from world import World, read_world, words_of
 MAX_STEPS_TRAINING = 8
 MAX_STEPS = 15
 SUCCESS_M = 3.0
+FORGOTTEN_SHARE = 0.1  # of the words of a training text, so that the follower learns to do without a word that it does not know
 
 
 @dataclass
@@ -211,7 +212,9 @@ def main():
     generator = torch.Generator().manual_seed(args.seed)
     for update in range(args.updates):
         batch = next(batches)
-        loss = train_batch(model, tensors, world, batch, as_tokens(batch, vocabulary), generator)
+        tokens = as_tokens(batch, vocabulary)
+        forgotten = (torch.rand(tokens.shape, generator=generator) < FORGOTTEN_SHARE) & (tokens != PAD)
+        loss = train_batch(model, tensors, world, batch, tokens.masked_fill(forgotten, UNKNOWN), generator)
         optimizer.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(model.parameters(), 2.0)
