@@ -89,6 +89,8 @@ class Follower(nn.Module):
         self.advance = nn.Linear(sizes.state, 2)
         nn.init.zeros_(self.advance.weight)
         nn.init.constant_(self.advance.bias, -1.8)  # a seventh of the text for each hop, and a seventh wide
+        self.turning = nn.Linear(geometry, sizes.way)
+        self.judge_turn = nn.Linear(sizes.state + text, sizes.way)
         self.judge = nn.Sequential(nn.Linear(sizes.state + text, sizes.way), nn.Tanh(), nn.Dropout(dropout))
         self.stop = nn.Sequential(nn.Linear(sizes.state + text + sizes.way + 4, 96), nn.ReLU(), nn.Linear(96, 1))
         self.match = nn.Linear(6, 1, bias=False)
@@ -139,17 +141,19 @@ class Follower(nn.Module):
 
         # The ways out.
         angle = world.way_heading[way] - heading[row]
-        turned = [f(k * angle) for k in range(1, HARMONICS + 1) for f in (torch.sin, torch.cos)]
+        waves = [f(k * angle) for k in range(1, HARMONICS + 1) for f in (torch.sin, torch.cos)]
         back = (to == came_from[row]).float()
         rise, length = world.way_rise[way], world.way_length[way]
-        geometry = torch.stack([*turned, rise, rise / length, length / 5, back, torch.full_like(back, time / 10)], 1)
+        geometry = torch.stack([*waves, rise, rise / length, length / 5, back, torch.full_like(back, time / 10)], 1)
         seen = self.see_way(torch.cat([view, there, room, room - self.bag(here_room)[row], geometry], 1))
-        decided = self.judge(torch.cat([state, context], 1))
+        said = torch.cat([state, context], 1)
+        decided, turn = self.judge(said), self.judge_turn(said)
         fits = torch.stack([
             best_fit(row, world.way_labels[way]), best_fit(row, world.node_labels[to]),
             best_fit(row, world.node_rooms[to]), (wanted[row] * view).sum(1), (wanted[row] * there).sum(1), (wanted[row] * room).sum(1),
         ], 1)
-        score = (decided[row] * seen).sum(1) / math.sqrt(seen.shape[1]) + self.match(fits)[:, 0]
+        turned = torch.tanh(self.turning(geometry))  # a path of its own for turns, or the labels drown them
+        score = (decided[row] * seen + turn[row] * turned).sum(1) / math.sqrt(seen.shape[1]) + self.match(fits)[:, 0]
 
         # Stopping here.
         every = torch.arange(len(nodes))

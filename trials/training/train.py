@@ -16,8 +16,7 @@ from torch.nn import functional as F
 from follower import MAX_WORDS, PAD, UNKNOWN, Follower, WorldTensors
 from world import World, read_world, words_of
 
-MAX_STEPS_TRAINING = 8
-MAX_STEPS = 15
+MAX_STEPS = 10
 SUCCESS_M = 3.0
 FORGOTTEN_SHARE = 0.1  # of the words of a training text, so that the follower learns to do without a word that it does not know
 
@@ -109,7 +108,7 @@ def train_batch(model, tensors, world, walks, tokens, generator):
         drawn = torch.multinomial(F.softmax(scores.detach(), 1), 1, generator=generator)[:, 0]
         return torch.where(led[rows], right, drawn)
 
-    roll_out(model, tensors, walks, tokens, MAX_STEPS_TRAINING, choose)
+    roll_out(model, tensors, walks, tokens, MAX_STEPS, choose)
     return torch.cat(losses).mean()
 
 
