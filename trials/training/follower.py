@@ -1,5 +1,6 @@
 """A small follower that learns: a text's words attend over what labels say of the viewpoint and of each way out. No pre-trained weights."""
 
+import copy
 import math
 from dataclasses import dataclass
 
@@ -44,6 +45,14 @@ class WorldTensors:
         self.way_heading = torch.tensor(world.way_heading, dtype=torch.float32)
         self.way_rise = torch.tensor(world.way_rise, dtype=torch.float32)
         self.way_length = torch.tensor(world.way_length, dtype=torch.float32)
+
+    def with_hidden(self, share: float, generator: torch.Generator) -> "WorldTensors":
+        """The same world, seen by an eye that misses this share of the words of labels and rooms."""
+        seen = copy.copy(self)
+        for name in ("node_labels", "node_rooms", "way_labels"):
+            numbers = getattr(self, name)
+            setattr(seen, name, numbers.masked_fill(torch.rand(numbers.shape, generator=generator) < share, PAD))
+        return seen
 
     def ways_out(self, nodes: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
         """All ways out of these nodes in one list: the row of each in `nodes`, its place there, and its number."""

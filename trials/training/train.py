@@ -18,6 +18,7 @@ from world import World, read_world, words_of
 
 MAX_STEPS = 10
 SUCCESS_M = 3.0
+HIDDEN_SHARE = 0.4  # of the labels and rooms while it learns
 FORGOTTEN_SHARE = 0.1  # of the words of a training text, so that the follower learns to do without a word that it does not know
 
 
@@ -213,7 +214,8 @@ def main():
         batch = next(batches)
         tokens = as_tokens(batch, vocabulary)
         forgotten = (torch.rand(tokens.shape, generator=generator) < FORGOTTEN_SHARE) & (tokens != PAD)
-        loss = train_batch(model, tensors, world, batch, tokens.masked_fill(forgotten, UNKNOWN), generator)
+        seen = tensors.with_hidden(HIDDEN_SHARE, generator)
+        loss = train_batch(model, seen, world, batch, tokens.masked_fill(forgotten, UNKNOWN), generator)
         optimizer.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(model.parameters(), 2.0)
