@@ -2,7 +2,10 @@
 //! the path's.
 
 use super::new_finding;
-use crate::evidence::{Evidence, EvidenceSource, FrameEvidence, is_wide};
+use crate::{
+    evidence::{Evidence, EvidenceSource, FrameEvidence, is_wide},
+    memory::{frames_at_doors, is_door},
+};
 use wayword_core::{CheckFinding, CheckKind, Verdict};
 use wayword_language::{
     lexicon::{ThingClass, find_thing, is_fabric, names_agree, room_name, same_room},
@@ -28,11 +31,14 @@ pub(super) fn check_goal(reading: &TextReading, evidence: &Evidence, object: Opt
     // Captions give no distances: a walker at the end may have passed the landmark by one step.
     let first = if evidence.source == EvidenceSource::Labels { last } else { last.saturating_sub(1) };
     let near = &evidence.frames[first..];
+    // The last hop leads through a door, and not far beyond it.
+    let ends_near = evidence.moves.last().is_some_and(|hop| hop.distance_m <= MAX_STOP_DISTANCE_M);
+    let ends_at_door = |name: &str| ends_near && is_door(name) && frames_at_doors(evidence).contains(&last);
     let wrong = |(at, place): (usize, &PlaceMention)| {
         let (verdict, reason) = match (place.is_room, place.is_thing) {
             (true, false) if place.link != PlaceLink::Beside => wrong_room(&place.name, near),
             (false, true) => find_distant_stop(&place.name, &evidence.frames[last], reading)
-                .or_else(|| wrong_thing(&place.name, near, evidence.source)),
+                .or_else(|| wrong_thing(&place.name, near, evidence.source).filter(|_| !ends_at_door(&place.name))),
             // A name that may mean either, as "stairs".
             _ => None,
         }?;

@@ -117,9 +117,27 @@ fn a_thing_at_the_end_is_open_where_labels_may_lack_it() {
     for name in ["door", "stairs", "wall", "zorble"] {
         passed.frames[0].things.push(SeenThing { name: name.into(), ..SeenThing::default() });
     }
+    // The last hop leads far beyond the door.
+    passed.moves[1].distance_m = 4.0;
     for name in ["door", "zorble"] {
         assert_eq!(verdict(&format!("Stop at the {name}."), &passed), Verdict::Unverified, "{name}");
     }
+}
+
+#[test]
+fn a_walk_ends_in_the_doorway_through_which_its_last_hop_leads() {
+    let path = to_the_bedroom();
+    for text in ["Stop in the doorway.", "Wait at the door.", "Turn right and stop in the doorway to the bedroom."] {
+        has_no_mistake(CheckKind::Landmarks, text, &path);
+    }
+    let mut beyond = to_the_bedroom();
+    beyond.moves[1].distance_m = 2.6;
+    is_unverified(CheckKind::Landmarks, "Stop in the doorway.", &beyond);
+    let mut open = to_the_bedroom();
+    for (frame, room) in open.frames.iter_mut().zip(["kitchen", "kitchen", "dining room"]) {
+        frame.rooms = vec![room.into()];
+    }
+    is_unverified(CheckKind::Landmarks, "Stop in the doorway.", &open);
 }
 
 #[test]
