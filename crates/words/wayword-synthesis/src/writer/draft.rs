@@ -39,7 +39,10 @@ impl<'a> TextDraft<'a> {
     ) -> Self {
         // "Walk straight. Go forward": once is enough.
         told.dedup_by(|next, before| next.kind == ClauseKind::Straight && before.kind == ClauseKind::Straight);
-        let mut names = ChosenNames::for_way(&brief.profile.way, dice);
+        if task.is_none() && leaves_out_stop(&told, brief, dice) {
+            told.pop();
+        }
+        let mut names = ChosenNames::for_way(brief, dice);
         let mut phrases: Vec<ClausePhrase> =
             (0..told.len()).map(|at| names.clause_phrase(&told, at, brief, dice)).collect();
         if let Some(task) = task {
@@ -106,6 +109,32 @@ impl<'a> TextDraft<'a> {
         let all: Vec<(f64, ClauseJoint)> = shares.map(|(joint, share)| (*share, *joint)).collect();
         draw_option(&all, rng).unwrap_or(old)
     }
+}
+
+/// Whether a text says no "and stop": the clause before it tells where the way ends.
+fn leaves_out_stop(told: &[WayClause], brief: &WritingBrief<'_>, dice: TextDice) -> bool {
+    let [.., before, stop] = told else { return false };
+    if !brief.memory.is_on_graph() {
+        return false;
+    }
+    let arrives = matches!(
+        before.kind,
+        ClauseKind::Enter
+            | ClauseKind::EnterOnSide
+            | ClauseKind::EnterThroughDoor
+            | ClauseKind::EnterWith
+            | ClauseKind::LeaveEnter
+            | ClauseKind::PassEnter
+            | ClauseKind::TurnInto
+            | ClauseKind::To
+            | ClauseKind::Up
+            | ClauseKind::Down
+    );
+    let share = brief.profile.way.silent_stop_share();
+    stop.kind == ClauseKind::Stop
+        && told.len() > 2
+        && arrives
+        && stop.clause_rng("silent stop", dice).random_bool(share)
 }
 
 /// Draws the joints between the phrases with the style's shares, and keeps to its number of sentences.

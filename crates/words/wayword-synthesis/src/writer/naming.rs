@@ -10,7 +10,7 @@ use super::{
 use crate::style::way::{ClauseKind, WayWording, is_door_word, is_until};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{PathMotion, Side};
 use wayword_language::lexicon::{ThingClass, counted_name, find_thing, names_agree, room_name, to_plural};
 
@@ -79,12 +79,19 @@ pub(super) struct ChosenNames<'a> {
     way: &'a WayWording,
     /// The chosen name of each room and thing, by the name in the evidence.
     chosen: BTreeMap<String, String>,
+    /// The usual names of the rooms of the walk.
+    walk_rooms: BTreeSet<&'static str>,
+    /// Whether the walk leads over the graph of a scan. Labels of scans say how a room was built, and people say how it looks; generated and
+    /// drawn rooms are what they are called.
+    is_scan: bool,
     dice: TextDice,
 }
 
 impl<'a> ChosenNames<'a> {
-    pub(super) fn for_way(way: &'a WayWording, dice: TextDice) -> Self {
-        Self { way, chosen: BTreeMap::new(), dice }
+    pub(super) fn for_way(brief: &'a WritingBrief<'_>, dice: TextDice) -> Self {
+        let walk_rooms = brief.memory.stays.iter().filter_map(|stay| room_name(&stay.room)).collect();
+        let is_scan = brief.memory.is_on_graph();
+        Self { way: &brief.profile.way, chosen: BTreeMap::new(), walk_rooms, is_scan, dice }
     }
 
     /// Clause number `at` of a text in words. The clauses around it decide what its words may leave out.
@@ -195,7 +202,23 @@ impl<'a> ChosenNames<'a> {
     }
 
     fn name_room(&mut self, room: &str) -> String {
-        self.chosen_name(room, room_name(room).and_then(|usual| self.way.rooms.get(usual)))
+        let usual = room_name(room);
+        let by_label = usual.and_then(|usual| self.way.rooms_by_label.get(usual)).filter(|_| self.is_scan);
+        match by_label {
+            Some(names) => self.chosen_name(room, Some(&self.free_names(room, usual, names))),
+            None => self.chosen_name(room, usual.and_then(|usual| self.way.rooms.get(usual))),
+        }
+    }
+
+    /// The names that a room of a scan may get. No two rooms of a text get one name, and none gets that of another room of the walk: a
+    /// family room is not called "living room" on the way to the living room.
+    fn free_names(&self, room: &str, usual: Option<&str>, names: &BTreeMap<String, f64>) -> BTreeMap<String, f64> {
+        let is_free = |name: &String| {
+            let is_taken = self.chosen.iter().any(|(other, chosen)| other != room && chosen == name);
+            let other = room_name(name).filter(|other| Some(*other) != usual);
+            !is_taken && !other.is_some_and(|other| self.walk_rooms.contains(other))
+        };
+        names.iter().filter(|(name, _)| is_free(name)).map(|(name, texts)| (name.clone(), *texts)).collect()
     }
 
     /// A label that is more precise than the usual name ("round table") often stays as it is.
@@ -259,14 +282,21 @@ fn number_door(shape: &str, number: usize) -> Option<String> {
 /// clause mentions it, or no earlier clause named it.
 fn has_to_name(clauses: &[WayClause], at: usize, brief: &WritingBrief<'_>) -> bool {
     let Some(room) = &clauses[at].room else { return false };
-    let speaks_of_it = |clause: &WayClause| clause.room.as_ref() == Some(room) || clause.from.as_ref() == Some(room);
+    let on_graph = brief.memory.is_on_graph();
+    let speaks_of_it = |clause: &WayClause| {
+        let names_it = clause.room.as_ref() == Some(room) && (!on_graph || clause.kind.names_room());
+        names_it || clause.from.as_ref() == Some(room)
+    };
     let (before, after) = (clauses[..at].iter().any(speaks_of_it), clauses[at + 1..].iter().any(speaks_of_it));
+    // On a graph, a thing or a doorway to stop at fixes the end as well.
+    let fixes_end = |stop: &WayClause| on_graph && (stop.thing.is_some() || stop.kind == ClauseKind::StopInDoorway);
+    let end = brief.memory.room_at(brief.memory.frame_count().saturating_sub(1));
     match clauses[at].kind {
         ClauseKind::Leave | ClauseKind::LeaveByDoor => at > 0 && !before,
         ClauseKind::StopIn => !before,
         // The thing in the room identifies it.
         ClauseKind::EnterWith => after,
-        _ => after || brief.memory.room_at(brief.memory.frame_count().saturating_sub(1)) == Some(room),
+        _ => after || end == Some(room) && !clauses.last().is_some_and(fixes_end),
     }
 }
 
@@ -348,5 +378,46 @@ impl<'a> ClauseLengths<'a> {
             }
             if texts > 0.0 { words / texts } else { 3.0 }
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{style::built_in, walk::ObservedWalk};
+    use wayword_checks::{Evidence, WalkMemory};
+    use wayword_core::{Path, SceneId};
+
+    /// The names that texts with these draws give to two rooms of a walk.
+    fn names_of(rooms: [&'static str; 2], draws: usize) -> BTreeSet<[String; 2]> {
+        let path = Path {
+            id: "p".into(),
+            scene: SceneId::new("s").unwrap(),
+            frames: Vec::new(),
+            motion: PathMotion::Known,
+            target: None,
+        };
+        let memory = WalkMemory::from_path(&Evidence::for_path_alone(&path), &path);
+        let (walk, style) = (ObservedWalk::new(path, Vec::new()), built_in("r2r").unwrap());
+        let profile = crate::style::StyleProfile::for_style(&style);
+        let brief = WritingBrief::new(&walk, &memory, &style, &profile, 0);
+        let dice = TextDice::for_brief(&brief);
+        let named = |number| {
+            let mut names = ChosenNames::for_way(&brief, dice.other_draws(number));
+            names.walk_rooms = rooms.into_iter().filter_map(room_name).collect();
+            names.is_scan = true;
+            rooms.map(|room| names.name_room(room))
+        };
+        (0..draws).map(named).collect()
+    }
+
+    #[test]
+    fn a_room_is_called_as_people_call_it_and_like_no_other_room_of_the_walk() {
+        let alone: BTreeSet<String> =
+            names_of(["family room", "kitchen"], 60).into_iter().map(|[name, _]| name).collect();
+        assert!(alone.contains("living room"), "{alone:?}");
+        for [family, living] in names_of(["family room", "living room"], 60) {
+            assert!(family != living && family != "living room", "{family}, {living}");
+        }
     }
 }

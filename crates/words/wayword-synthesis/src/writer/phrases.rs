@@ -61,7 +61,10 @@ pub(super) fn fill_gaps(template: &str, gaps: &[(&str, &str)]) -> String {
         *gap == "{r}" && matches!(room_name(room.trim_start_matches("the ")), Some("porch" | "balcony"))
     });
     if open_air {
-        text.replace("into the", "onto the").replace(" inside the", " on the").replace(" in the", " on the")
+        // But one stands in its doorway.
+        let parts =
+            text.replace("into the", "onto the").replace(" inside the", " on the").replace(" in the", " on the");
+        parts.replace(" on the doorway", " in the doorway").replace(" on the entrance", " in the entrance")
     } else {
         text
     }

@@ -35,8 +35,13 @@ pub struct WayWording {
     pub turn_joints: BTreeMap<ClauseJoint, f64>,
     /// The same before the clause to stop.
     pub stop_joints: BTreeMap<ClauseJoint, f64>,
+    /// Share of the texts that say to stop, from 0 to 1.
+    pub stop_share: f64,
     /// The names of each room, by its usual name.
     pub rooms: BTreeMap<String, BTreeMap<String, f64>>,
+    /// What people call the rooms of a scan, by the usual name of their label: also names of other rooms, which they do not keep apart from
+    /// it, and "room" for no name.
+    pub rooms_by_label: BTreeMap<String, BTreeMap<String, f64>>,
     /// The names of each thing, by its usual name.
     pub things: BTreeMap<String, BTreeMap<String, f64>>,
 }
@@ -70,9 +75,13 @@ impl WayWording {
     #[must_use]
     pub fn from_texts<'a>(texts: impl IntoIterator<Item = (&'a str, &'a TextReading)>) -> Self {
         let mut way = Self::default();
+        let (mut count, mut stops) = (0.0, 0.0);
         for (text, reading) in texts {
             way.add_text(text, reading);
+            count += 1.0;
+            stops += f64::from(u8::from(reading.events.iter().any(|event| event.what == EventContent::Stop)));
         }
+        way.stop_share = if count < ENOUGH_CLAUSES { BUILT_IN.way.stop_share } else { stops / count };
         way.keep_common();
         way.fill_from_built_in();
         way
@@ -162,6 +171,8 @@ impl WayWording {
                 *measured = built_in.clone();
             }
         }
+        // Texts alone do not tell how a room is labelled.
+        self.rooms_by_label = built_in.rooms_by_label.clone();
         for (measured, built_in) in [(&mut self.rooms, &built_in.rooms), (&mut self.things, &built_in.things)] {
             let is_small = measured.values().flat_map(BTreeMap::values).sum::<f64>() < ENOUGH_CLAUSES * ENOUGH_CLAUSES;
             if is_small {
@@ -180,6 +191,27 @@ impl WayWording {
     #[must_use]
     pub fn kind_count(&self, kind: ClauseKind) -> f64 {
         self.kinds.get(&kind).copied().unwrap_or_default()
+    }
+
+    /// Share of the plain orders to stop ("and stop") that is left out, so that as many texts as in the references say none.
+    #[must_use]
+    pub fn silent_stop_share(&self) -> f64 {
+        let stops = |kind: &ClauseKind| {
+            matches!(
+                kind,
+                ClauseKind::Stop
+                    | ClauseKind::StopAt
+                    | ClauseKind::StopAtIn
+                    | ClauseKind::StopIn
+                    | ClauseKind::StopInDoorway
+                    | ClauseKind::StopInDoorwayOf
+                    | ClauseKind::StopAtTop
+                    | ClauseKind::StopAtBottom
+            )
+        };
+        let all: f64 = self.kinds.iter().filter(|(kind, _)| stops(kind)).map(|(_, count)| count).sum();
+        let plain = self.kind_count(ClauseKind::Stop) / all.max(1.0);
+        ((1.0 - self.stop_share) / plain.max(f64::EPSILON)).clamp(0.0, 1.0)
     }
 
     /// How often things of that usual name are mentioned.

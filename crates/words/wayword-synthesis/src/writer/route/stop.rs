@@ -27,8 +27,9 @@ impl WayPlanner<'_> {
         };
         let flight = self.memory.flights.last().filter(ends_here).map(|flight| flight.climb);
         let last_hop_m = self.brief.walk.moves.last().map_or(f64::INFINITY, |step| step.distance_m);
-        // A doorway that no caption shows could not be checked.
-        let shows_doorway = self.memory.seen_from(end).any(|seen| names_agree(&seen.name, "doorway"));
+        // A doorway that no caption shows could not be checked. On a graph a room with walls is entered through one, whatever is labelled.
+        let shows_doorway = self.memory.is_on_graph() && self.memory.openings.last().is_some_and(|door| door.has_door)
+            || self.memory.seen_from(end).any(|seen| names_agree(&seen.name, "doorway"));
         let door = self.memory.openings.last().filter(|opening| opening.behind == end && shows_doorway);
         // If the walker is in another room according to the text, the stop names the last room.
         let misleads = !is_told && self.names_another(room.as_deref());
@@ -56,6 +57,13 @@ impl WayPlanner<'_> {
         let in_room = if room.as_deref().and_then(room_name) == Some("hallway") { 0.4 } else { 1.0 };
         if room.is_some() && !is_told {
             kinds.push((self.kind_count(ClauseKind::StopIn) * 1.5 * in_room + 1.0, ClauseKind::StopIn));
+            // "Go through the door on the left and stop": behind a door the room needs no name.
+            let through_door = self.clauses.last().is_some_and(|before| {
+                matches!(before.kind, ClauseKind::ThroughDoor | ClauseKind::DoorOnSide | ClauseKind::TurnThroughDoor)
+            });
+            if self.memory.is_on_graph() && through_door {
+                kinds.push((self.kind_count(ClauseKind::Stop) * 0.5, ClauseKind::Stop));
+            }
         } else {
             let has_place = self
                 .clauses
