@@ -6,8 +6,10 @@
 //! - [`fit_evidence`]: the weights of the checks in an open world, `open/weights.toml` of `wayword-checks`.
 //! - [`logistic`]: logistic regression.
 //! - [`fit_follower`]: the weights of the follower, with the map and without, and the table by which its thresholds are chosen.
+//! - [`fit_wording`]: the constructions of `style/builtin/way.toml` of `wayword-synthesis`, with how often people use them.
 
 pub mod fit_alignment;
 pub mod fit_evidence;
 pub mod fit_follower;
+pub mod fit_wording;
 pub mod logistic;

@@ -4,7 +4,7 @@
 
 use clap::{Parser, Subcommand};
 use std::{path::PathBuf, process::ExitCode};
-use wayword_fit::{fit_alignment, fit_evidence, fit_follower};
+use wayword_fit::{fit_alignment, fit_evidence, fit_follower, fit_wording};
 use wayword_quality::{
     arrivals, budget, checked_texts, claims, corrupt_people, corruption_findings, corruptions, coverage, critics,
     detector, doubts, eye, house_faults, house_views, pairs, people, reader_figures, refined, remembered, reuse,
@@ -47,6 +47,8 @@ enum Measurement {
     },
     /// Fit the weights of the follower to people's texts, and print how it does on the buildings that were left out.
     FitFollower(fit_follower::FitFollowerArgs),
+    /// Count the constructions by which people's texts describe a way, for the style that is built in.
+    FitWording(fit_wording::FitWordingArgs),
     /// Fit the weights of the alignment to stretches of walks that people gave to parts of texts.
     FitAlignment(fit_alignment::FitAlignmentArgs),
     /// Measure the alignment by such stretches, next to what word counts alone give.
@@ -246,6 +248,7 @@ fn run_measurement(what: Measurement, output: &CommandOutput) -> Result<(), Comm
         Measurement::Claims(flags) => claims::measure_claims(&flags, output),
         Measurement::Detector(flags) => detector::measure_played_detector(&flags, output),
         Measurement::Reuse { world, paths } => reuse::measure_reuse(&world, paths, output),
+        Measurement::FitWording(flags) => fit_wording::fit_wording(&flags, output),
         Measurement::FitEvidence { data, episodes, out } => {
             fit_evidence::fit_evidence_weights(&data, &episodes, out.as_deref(), output)
         }
