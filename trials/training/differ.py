@@ -28,11 +28,12 @@ def share_found(files: list[Path], name: str) -> dict[str, float]:
     return {item: float(np.mean([run[item] for run in runs])) for item in runs[0]}
 
 
-def standard_score(lost: int, lost_texts: int, kept: int, kept_texts: int) -> float:
-    """How far two shares differ, in standard errors."""
-    share = (lost + kept) / (lost_texts + kept_texts)
+def standard_score(feature: str, lost: Counter, kept: Counter) -> float:
+    """How far the shares of two groups of texts that have a feature differ, in standard errors."""
+    lost_texts, kept_texts = lost["<texts>"], kept["<texts>"]
+    share = (lost[feature] + kept[feature]) / (lost_texts + kept_texts)
     error = math.sqrt(share * (1 - share) * (1 / lost_texts + 1 / kept_texts))
-    return (lost / lost_texts - kept / kept_texts) / error if error > 0 else 0.0
+    return (lost[feature] / lost_texts - kept[feature] / kept_texts) / error if error > 0 else 0.0
 
 
 def main():
@@ -61,13 +62,15 @@ def main():
         for entry in written:
             for text in entry["instructions"]:
                 usage[row].update(features_of(text) | {"<texts>"})
-    print("texts that (a) finds: " + ", ".join(f"half {half + 1}: {counts[half, 'lost']['<texts>']} that (b) loses, {counts[half, 'kept']['<texts>']} that it finds" for half in (0, 1)))
+    for half in (0, 1):
+        lost, kept = (counts[half, group]["<texts>"] for group in ("lost", "kept"))
+        print(f"half {half + 1} of the buildings: of the texts that (a) finds, (b) loses {lost} and finds {kept}")
     listed = []
     for feature in set(counts[0, "lost"]) | set(counts[0, "kept"]):
         together = [counts[half, "lost"][feature] + counts[half, "kept"][feature] for half in (0, 1)]
         if feature == "<texts>" or min(together) < MIN_TEXTS:
             continue
-        scores = [standard_score(counts[half, "lost"][feature], counts[half, "lost"]["<texts>"], counts[half, "kept"][feature], counts[half, "kept"]["<texts>"]) for half in (0, 1)]
+        scores = [standard_score(feature, counts[half, "lost"], counts[half, "kept"]) for half in (0, 1)]
         if scores[0] * scores[1] > 0:
             listed.append((sum(scores) / math.sqrt(2), feature, scores, together))
     print("standard score (both halves together; each) | words | texts with them | share of people's training texts | share of ours")
