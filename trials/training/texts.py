@@ -3,6 +3,7 @@
 import json
 import math
 import random
+import re
 import subprocess
 from pathlib import Path
 
@@ -31,17 +32,7 @@ def walk_key(entry: dict) -> tuple[str, str, str]:
 def swap_sides(text: str) -> str:
     """The text with left and right exchanged."""
     swap = {"left": "right", "right": "left", "Left": "Right", "Right": "Left"}
-    return "".join(swap.get(word, word) for word in split_words(text))
-
-
-def split_words(text: str) -> list[str]:
-    words, current = [], ""
-    for letter in text:
-        if current and letter.isalpha() != current[-1].isalpha():
-            words.append(current)
-            current = ""
-        current += letter
-    return [*words, current]
+    return re.sub(r"[^\W\d_]+", lambda word: swap.get(word[0], word[0]), text)
 
 
 class Template:
