@@ -1,5 +1,6 @@
 //! Counts how people's texts describe a way, for `style/builtin/way.toml` of `wayword-synthesis`.
 
+use crate::matterport::open_matterport;
 use clap::Args;
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -14,8 +15,6 @@ use wayword_run::{
     error::CommandError,
     output::CommandOutput,
     people::{PeopleText, PeopleWalk, left_out, read_people_walks},
-    platforms,
-    settings::{AskedPlatform, AskedSettings},
 };
 use wayword_synthesis::style::way::WayWording;
 
@@ -45,12 +44,7 @@ type RoomNames = BTreeMap<String, BTreeMap<String, f64>>;
 /// # Errors
 /// When the texts or the data cannot be read.
 pub fn fit_wording(flags: &FitWordingArgs, output: &CommandOutput) -> Result<(), CommandError> {
-    let matterport = AskedPlatform {
-        platform: Some("matterport".into()),
-        data: Some(flags.data.clone()),
-        ..AskedPlatform::default()
-    };
-    let platform = platforms::open_platform(&AskedSettings::from(matterport).resolve()?)?;
+    let platform = open_matterport(&flags.data)?;
     let (mut walks, _) = read_people_walks(platform.as_ref(), &flags.texts)?;
     let scenes: BTreeSet<SceneId> = walks.iter().map(|walk| walk.path.scene.clone()).collect();
     let apart = left_out(&scenes);

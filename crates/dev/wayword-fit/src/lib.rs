@@ -13,3 +13,4 @@ pub mod fit_evidence;
 pub mod fit_follower;
 pub mod fit_wording;
 pub mod logistic;
+mod matterport;

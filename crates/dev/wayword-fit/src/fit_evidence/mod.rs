@@ -7,6 +7,7 @@
 mod fold;
 mod homes;
 
+use crate::matterport::open_matterport;
 use fold::{CASE_GROUPS, building_numbers, claims_for_case, failing_miss, fit_tables};
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -18,8 +19,6 @@ use wayword_run::{
     error::CommandError,
     output::CommandOutput,
     people::{ClaimSample, LabelNames, PeopleWalk, left_out, read_people_walks, sample_claims},
-    platforms,
-    settings::{AskedPlatform, AskedSettings},
     written_files::write_file,
 };
 
@@ -47,9 +46,7 @@ pub fn fit_evidence_weights(
     out: Option<&Path>,
     output: &CommandOutput,
 ) -> Result<(), CommandError> {
-    let matterport =
-        AskedPlatform { platform: Some("matterport".into()), data: Some(data.to_owned()), ..AskedPlatform::default() };
-    let platform = platforms::open_platform(&AskedSettings::from(matterport).resolve()?)?;
+    let platform = open_matterport(data)?;
     let (walks, mut surveys) = read_people_walks(platform.as_ref(), episodes)?;
     let scenes: BTreeSet<SceneId> = walks.iter().map(|walk| walk.path.scene.clone()).collect();
     let out_scenes = left_out(&scenes);

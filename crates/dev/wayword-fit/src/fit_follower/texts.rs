@@ -1,5 +1,6 @@
 //! Reads people's texts with their walks and buildings.
 
+use crate::matterport::open_matterport;
 use rayon::prelude::*;
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -11,12 +12,7 @@ use wayword_core::{
 };
 use wayword_follower::{Guide, KnownBuilding};
 use wayword_formats::Episode;
-use wayword_run::{
-    error::CommandError,
-    people::read_episodes,
-    platforms,
-    settings::{AskedPlatform, AskedSettings},
-};
+use wayword_run::{error::CommandError, people::read_episodes};
 use wayword_world::{path_over_viewpoints, survey_scene};
 
 /// A building as the follower and the platform know it.
@@ -91,12 +87,6 @@ pub fn read_texts(data: &Path, files: &[PathBuf]) -> Result<(Vec<FollowerScene>,
 /// When the data of a building cannot be read.
 pub fn read_scenes(data: &Path, names: &BTreeSet<&SceneId>) -> Result<Vec<FollowerScene>, CommandError> {
     survey_scenes(open_matterport(data)?.as_ref(), names)
-}
-
-fn open_matterport(data: &Path) -> Result<Box<dyn Platform>, CommandError> {
-    let matterport =
-        AskedPlatform { platform: Some("matterport".into()), data: Some(data.to_owned()), ..AskedPlatform::default() };
-    platforms::open_platform(&AskedSettings::from(matterport).resolve()?)
 }
 
 fn survey_scenes(platform: &dyn Platform, names: &BTreeSet<&SceneId>) -> Result<Vec<FollowerScene>, CommandError> {
