@@ -10,7 +10,7 @@
 //! - `BARE_REFUSAL`: words of a reply that is nothing but a refusal ("I'm sorry, but I can't").
 
 crate::data::lists! {
-    "words/chatter.txt";
+    "languages/en/chatter.txt";
     words: ANNOUNCED, BARE_REFUSAL;
     phrases: AGREEING, ANNOUNCING, PARTING, REFUSING, UNHELPING;
 }

@@ -1,4 +1,4 @@
-//! The reader of the word lists in `words/`.
+//! The reader of the word lists in `languages/en/`.
 //!
 //! In every file a line that begins with `#` is a comment. Tables have one row per line, with bars between columns and
 //! commas between names. A closed list has its name in brackets, and then words separated by spaces, or phrases

@@ -7,7 +7,7 @@
 use crate::{data, reading::ReadWord, text::TextToken};
 use std::{collections::BTreeMap, fmt, sync::LazyLock};
 
-const LANGUAGE_LISTS: &str = include_str!("words/languages.txt");
+const LANGUAGE_LISTS: &str = include_str!("languages/en/languages.txt");
 
 /// The language of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +37,7 @@ static SMALL_WORDS: LazyLock<BTreeMap<&'static str, Vec<&'static str>>> = LazyLo
     languages
 });
 
-/// For each language the code that tags begin with, its list in `words/languages.txt` (empty where its script is enough),
+/// For each language the code that tags begin with, its list in `languages/en/languages.txt` (empty where its script is enough),
 /// and its name.
 const LANGUAGE_NAMES: [(&str, &str, &str); 20] = [
     ("hi", "hindi", "Hindi"),
@@ -138,7 +138,7 @@ impl fmt::Display for Language {
 /// of the text.
 #[must_use]
 pub(crate) fn language_of(text: &str, tokens: &[TextToken], words: &[ReadWord]) -> Language {
-    let script_language = by_script(text);
+    let script_language = script_language(text);
     if script_language != Language::English {
         return script_language;
     }
@@ -161,7 +161,7 @@ pub(crate) fn language_of(text: &str, tokens: &[TextToken], words: &[ReadWord]) 
 }
 
 /// The language by the scripts of the letters.
-fn by_script(text: &str) -> Language {
+pub(crate) fn script_language(text: &str) -> Language {
     let mut latin = 0;
     let mut others: BTreeMap<&'static str, usize> = BTreeMap::new();
     for letter in text.chars().filter(|letter| letter.is_alphabetic()) {

@@ -8,7 +8,7 @@ use crate::{
 use std::borrow::Cow;
 
 crate::data::lists! {
-    "words/rewording.txt";
+    "languages/en/rewording.txt";
     words: SIDES, CLIMBS, TURNING, BEFORE_TURN, BELONGING, LINKING, BEFORE_NAME, PREPOSITIONS, WAY_VERBS, WALKING;
     phrases:;
 }

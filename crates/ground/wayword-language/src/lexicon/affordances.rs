@@ -7,9 +7,9 @@ use super::{
 use crate::data;
 use std::sync::LazyLock;
 
-const AFFORDANCE_LIST: &str = include_str!("../words/affordances.txt");
+const AFFORDANCE_LIST: &str = include_str!("../languages/en/affordances.txt");
 
-/// A thing that one can do with some things: a row of `words/affordances.txt`.
+/// A thing that one can do with some things: a row of `languages/en/affordances.txt`.
 struct ThingAffordance {
     verbs: Vec<&'static str>,
     classes: Vec<ThingClass>,

@@ -3,9 +3,11 @@
 use crate::data;
 use std::sync::LazyLock;
 
-/// Colours that people use for one another, as lists: one list for each line of `words/colours.txt`.
+/// Colours that people use for one another, as lists: one list for each line of `languages/en/colours.txt`.
 static COLOUR_FAMILIES: LazyLock<Vec<Vec<&'static str>>> = LazyLock::new(|| {
-    data::content_lines(include_str!("../words/colours.txt")).map(|line| data::split_names(line).collect()).collect()
+    data::content_lines(include_str!("../languages/en/colours.txt"))
+        .map(|line| data::split_names(line).collect())
+        .collect()
 });
 
 /// Whether two colours may describe one thing: they are equal up to a shade ("dark brown", "brown"), or near each

@@ -4,9 +4,9 @@ use super::normalise_name;
 use crate::data;
 use std::{collections::BTreeMap, sync::LazyLock};
 
-const ROOM_LIST: &str = include_str!("../words/rooms.txt");
+const ROOM_LIST: &str = include_str!("../languages/en/rooms.txt");
 
-/// The rooms of `words/rooms.txt`. Names on one line mean the same room.
+/// The rooms of `languages/en/rooms.txt`. Names on one line mean the same room.
 struct RoomLexicon {
     /// The line of each name, by its normal spelling.
     line_of: BTreeMap<String, usize>,

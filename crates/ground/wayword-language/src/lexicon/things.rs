@@ -5,7 +5,7 @@ use super::normalise_name;
 use crate::data;
 use std::{collections::BTreeMap, sync::LazyLock};
 
-const OBJECT_LIST: &str = include_str!("../words/objects.txt");
+const OBJECT_LIST: &str = include_str!("../languages/en/objects.txt");
 
 /// The class of a thing by its use: a seat, a container, a light. The writer chooses tasks by it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -63,7 +63,7 @@ pub struct LexiconThing {
     parent: Option<&'static str>,
 }
 
-/// The things of `words/objects.txt`.
+/// The things of `languages/en/objects.txt`.
 struct ThingLexicon {
     things: Vec<LexiconThing>,
     /// Indices into `things`, by every name in normal spelling.
@@ -218,7 +218,7 @@ mod tests {
 
     #[test]
     fn the_files_that_the_list_names_are_there() {
-        let words = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/words");
+        let words = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/languages/en");
         let remarks = OBJECT_LIST.lines().filter(|line| line.starts_with('#')).flat_map(str::split_whitespace);
         let names = remarks.map(|word| word.trim_end_matches([')', '.', ',']));
         let files: Vec<&str> = names.filter(|name| name.ends_with(".rs")).collect();

@@ -3,7 +3,7 @@
 //!
 //! The reader does not depend on the author of a text: people's texts, models' texts and those of Wayword's own writer
 //! are read in the same way. Each file here reads one kind of statement by closed word lists; the lists are in
-//! `words/`.
+//! `languages/en/`.
 
 mod climbs;
 mod colours;

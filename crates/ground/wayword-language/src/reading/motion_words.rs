@@ -1,7 +1,7 @@
 //! Word lists by which the checks decide how a motion is meant.
 
 crate::data::lists! {
-    "words/motions.txt";
+    "languages/en/motions.txt";
     words: MOMENT, DESCRIBING, TAKING_UP, MOTION_VERBS;
     phrases:;
 }

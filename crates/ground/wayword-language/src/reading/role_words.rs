@@ -1,7 +1,7 @@
 //! Word lists by which each word gets its role.
 
 crate::data::lists! {
-    "words/roles.txt";
+    "languages/en/roles.txt";
     words: STOP_WORDS, MOTION, TASKS, RELATIONS, CONNECTIVES, MANNER, GENERAL;
     phrases:;
 }

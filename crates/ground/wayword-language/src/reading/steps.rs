@@ -9,7 +9,7 @@ use std::ops::Range;
 use wayword_core::{ClimbDirection, Side};
 
 crate::data::lists! {
-    "words/steps.txt";
+    "languages/en/steps.txt";
     words: MARKING, CONDITIONS, SLIGHT, STRAIGHT, DOOR_WORDS, STAIR_WORDS, OUTDOORS, TOPS, BOTTOMS, LEAVING_WORDS, TURN_VERBS;
     phrases: KEEPING_ON;
 }

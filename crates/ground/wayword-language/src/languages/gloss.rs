@@ -1,0 +1,172 @@
+//! A text of another language in English words, each with its place in the text.
+
+use super::{
+    chunks::Chunk,
+    pack_words::{PackToken, PackWords},
+    rules::{RuleStage, parse_stages},
+};
+use crate::reading::{ReadWord, WordRole, role_words::STOP_WORDS};
+use std::collections::BTreeMap;
+
+/// A language that is read through English words.
+#[derive(Debug)]
+pub(super) struct LanguagePack {
+    words: PackWords,
+    stages: Vec<RuleStage>,
+}
+
+/// A text in English words.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct GlossedText {
+    text: String,
+    /// The words of the gloss, in its order.
+    places: Vec<GlossPlace>,
+    /// The words of the text.
+    tokens: Vec<PackToken>,
+}
+
+/// A word of a gloss.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct GlossPlace {
+    /// Byte range in the gloss.
+    span: [usize; 2],
+    /// Byte range in the text; `None` for a word that English alone needs.
+    source: Option<[usize; 2]>,
+}
+
+/// Classes of chunks that join what is before them with what follows.
+const JOINING: [&str; 4] = ["mark", "then", "and", "joint"];
+/// The class of chunks that begin a clause.
+const CLAUSE: &str = "clause";
+
+/// A text as the reader of English gets it: an English text itself, or the gloss of another one.
+#[derive(Debug, Clone)]
+pub struct ReadableText<'a> {
+    text: &'a str,
+    gloss: Option<GlossedText>,
+    /// The language of the text, where it is glossed.
+    language: Option<&'static str>,
+}
+
+impl<'a> ReadableText<'a> {
+    /// Puts a text of another language into English words, where the program reads the language.
+    #[must_use]
+    pub fn new(text: &'a str) -> Self {
+        let (language, gloss) = super::gloss_text(text).unzip();
+        Self { text, gloss, language }
+    }
+
+    /// The English words.
+    #[must_use]
+    pub fn english(&self) -> &str {
+        self.gloss.as_ref().map_or(self.text, GlossedText::text)
+    }
+
+    /// Whether the English words are not the text itself.
+    #[must_use]
+    pub fn is_glossed(&self) -> bool {
+        self.gloss.is_some()
+    }
+
+    /// The name of its language, where that is read only in part, as an experiment.
+    #[must_use]
+    pub fn experimental_language(&self) -> Option<&'static str> {
+        self.language.filter(|language| super::reads_in_part(language) == Some(true))
+    }
+
+    /// The tag of the language of the English words, where `tag` is that of the text.
+    #[must_use]
+    pub fn english_tag<'t>(&self, tag: Option<&'t str>) -> Option<&'t str> {
+        tag.filter(|_| !self.is_glossed())
+    }
+
+    /// The words of the text, where `words` are those of its English words. A word is understood if the pack knows it, and the reader the
+    /// English word for it.
+    #[must_use]
+    pub fn source_words(&self, words: &[ReadWord]) -> Vec<ReadWord> {
+        let Some(gloss) = &self.gloss else { return words.to_vec() };
+        let mut roles: BTreeMap<[usize; 2], WordRole> = BTreeMap::new();
+        for word in words {
+            let Some(source) = gloss.source_of_word(word.span) else { continue };
+            let role = roles.entry(source).or_insert(word.role);
+            *role = if word.is_understood() { *role } else { WordRole::Unknown };
+        }
+        let read = |token: &PackToken| {
+            let silent = if token.english.is_some() { WordRole::Filler } else { WordRole::Unknown };
+            let role = roles.get(&token.span).copied().unwrap_or(silent);
+            let says = |english: &str| english.split_whitespace().any(|word| !STOP_WORDS.contains(&word));
+            ReadWord { span: token.span, role, is_counted: token.english.is_none_or(says) }
+        };
+        gloss.tokens.iter().map(read).collect()
+    }
+
+    /// The byte range of the text that a byte range of the English words means.
+    #[must_use]
+    pub fn source_span(&self, span: [usize; 2]) -> [usize; 2] {
+        self.gloss.as_ref().map_or(span, |gloss| gloss.source_span(span))
+    }
+}
+
+impl LanguagePack {
+    /// Reads the files of a pack. A line that is no rule ends the rules; a test reads every line of every pack.
+    pub(super) fn parse(words: &'static str, rules: &'static str, is_spaced: bool) -> Self {
+        Self { words: PackWords::parse(words, is_spaced), stages: parse_stages(rules).unwrap_or_default() }
+    }
+
+    pub(super) fn gloss(&self, text: &str) -> GlossedText {
+        let (chunks, tokens) = self.words.split_chunks(text);
+        GlossedText::from_chunks(&self.stages.iter().fold(chunks, |chunks, stage| stage.apply(&chunks)), tokens)
+    }
+}
+
+impl GlossedText {
+    /// The words of the chunks in one text.
+    fn from_chunks(chunks: &[Chunk], tokens: Vec<PackToken>) -> Self {
+        let mut gloss = Self { text: String::new(), places: Vec::new(), tokens };
+        let mut is_joined = true;
+        for sense in chunks.iter().filter_map(|chunk| chunk.senses.first()) {
+            if sense.class == CLAUSE && !is_joined {
+                gloss.add_word(",", None);
+            }
+            is_joined = JOINING.contains(&sense.class);
+            for word in &sense.words {
+                gloss.add_word(&word.word, word.source);
+            }
+        }
+        gloss
+    }
+
+    fn add_word(&mut self, word: &str, source: Option<[usize; 2]>) {
+        let is_word = word.starts_with(char::is_alphanumeric);
+        if !is_word && (self.text.is_empty() || self.text.ends_with(word)) {
+            return;
+        }
+        if is_word && !self.text.is_empty() {
+            self.text.push(' ');
+        }
+        let from = self.text.len();
+        self.text.push_str(word);
+        self.places.push(GlossPlace { span: [from, self.text.len()], source });
+    }
+
+    /// The English words.
+    pub(super) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The place in the text of the word at a byte range of the gloss; `None` for a word that English alone needs.
+    fn source_of_word(&self, [from, _]: [usize; 2]) -> Option<[usize; 2]> {
+        let at = self.places.partition_point(|place| place.span[1] <= from);
+        self.places.get(at)?.source
+    }
+
+    /// The bytes of the text that a byte range of the gloss means, from the first word of the text that has a part in it to the last. Of
+    /// words that English alone needs, the next word before them counts.
+    pub(super) fn source_span(&self, [from, to]: [usize; 2]) -> [usize; 2] {
+        let first = self.places.partition_point(|place| place.span[1] <= from);
+        let after = self.places.partition_point(|place| place.span[0] < to).max(first);
+        let sources = self.places[first..after].iter().filter_map(|place| place.source);
+        let all = sources.reduce(|all, one| [all[0].min(one[0]), all[1].max(one[1])]);
+        all.or_else(|| self.places[..first].iter().rev().find_map(|place| place.source)).unwrap_or([0, 0])
+    }
+}
