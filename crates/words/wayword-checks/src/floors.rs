@@ -6,7 +6,7 @@ use wayword_core::{CheckFinding, CheckKind, ClimbDirection, PathMotion, Verdict}
 use wayword_language::reading::{EventContent, StoreyMention, TextEvent, TextReading};
 
 /// The findings about the stairs and storeys of a text: a pass if all of them fit the path.
-pub(super) fn check_floors(reading: &TextReading, evidence: &Evidence) -> Vec<CheckFinding> {
+pub(super) fn check_floors(reading: &TextReading, evidence: &Evidence, tag: Option<&str>) -> Vec<CheckFinding> {
     let stairs = reading.events.iter().filter_map(|event| {
         let (verdict, wrong) = match event.what {
             EventContent::Climb(climb) => {
@@ -24,13 +24,71 @@ pub(super) fn check_floors(reading: &TextReading, evidence: &Evidence) -> Vec<Ch
         let reason = if verdict == Verdict::Fail { wrong } else { unknown() };
         (verdict != Verdict::Pass).then(|| new_finding(CheckKind::Floors, verdict, reason, Some(event.span)))
     });
-    findings_or_pass(CheckKind::Floors, stairs.chain(wrong_floors(reading, evidence)).collect())
+    findings_or_pass(CheckKind::Floors, stairs.chain(wrong_floors(reading, evidence, tag)).collect())
 }
 
-/// The first storey of a text that is wrong or cannot be checked.
-pub(super) fn wrong_floors(reading: &TextReading, evidence: &Evidence) -> Option<CheckFinding> {
+/// How a text counts storeys.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum StoreyCount {
+    /// The lowest storey is the first floor.
+    FromFirst,
+    /// The lowest storey is the ground floor, and the first floor lies above it.
+    FromGround,
+    /// One of both.
+    Either,
+}
+
+/// The regions where the first floor lies above the ground floor.
+const REGIONS_FROM_GROUND: [&str; 7] = ["in", "gb", "uk", "au", "nz", "ie", "za"];
+
+impl StoreyCount {
+    /// The count of a text by the tag of its language ("en-IN"). Without a region, a text that names both a ground floor and a numbered one may
+    /// count in either way; any other counts from the first, as R2R's writers do.
+    fn for_text(tag: Option<&str>, named: &[(&TextEvent, StoreyMention)], reading: &TextReading) -> Self {
+        let region = tag.and_then(|tag| tag.split(['-', '_']).nth(1)).map(str::to_lowercase);
+        match region {
+            Some(region) if REGIONS_FROM_GROUND.contains(&region.as_str()) => Self::FromGround,
+            Some(_) => Self::FromFirst,
+            None => {
+                let grounds = named.iter().filter(|(event, _)| is_ground(event, reading)).count();
+                if grounds > 0 && grounds < named.len() { Self::Either } else { Self::FromFirst }
+            }
+        }
+    }
+}
+
+/// Whether a storey is called the ground floor, or the bottom one.
+fn is_ground(event: &TextEvent, reading: &TextReading) -> bool {
+    let words =
+        reading.tokens().iter().filter(|token| token.span[0] >= event.span[0] && token.span[1] <= event.span[1]);
+    words.into_iter().any(|token| matches!(token.word.as_str(), "ground" | "bottom"))
+}
+
+/// The first storey of a text that is wrong or cannot be checked. `tag` is the tag of its language, where its file names one.
+pub(super) fn wrong_floors(reading: &TextReading, evidence: &Evidence, tag: Option<&str>) -> Option<CheckFinding> {
     let levels: Vec<Option<u32>> = evidence.frames.iter().map(|frame| frame.level).collect();
-    wrong_floor(&named_floors(reading), reading, &levels)
+    let named = named_floors(reading);
+    let from_first = || wrong_floor(&named, reading, &levels);
+    let from_ground = || {
+        let mut higher = named.clone();
+        for (event, floor) in &mut higher {
+            floor.number = floor.number.map(|number| number + u32::from(!is_ground(event, reading)));
+        }
+        wrong_floor(&higher, reading, &levels)
+    };
+    match StoreyCount::for_text(tag, &named, reading) {
+        StoreyCount::FromFirst => from_first(),
+        StoreyCount::FromGround => from_ground(),
+        StoreyCount::Either => match (from_first(), from_ground()) {
+            (None, None) => None,
+            (Some(wrong), Some(other)) if wrong.verdict == other.verdict => Some(wrong),
+            (one, other) => one.or(other).map(|finding| {
+                let reason =
+                    "the first floor is the lowest storey to some people, and the one above it to others".to_owned();
+                new_finding(CheckKind::Floors, Verdict::Unverified, reason, finding.span)
+            }),
+        },
+    }
 }
 
 fn way_word(climb: ClimbDirection) -> &'static str {

@@ -155,6 +155,17 @@ impl TextFindings {
     pub fn verdict(&self) -> Verdict {
         self.findings.iter().map(|finding| finding.verdict).max().unwrap_or(Verdict::Unverified)
     }
+
+    /// Lets no finding be sure, because the text is in a language that is read only in part.
+    pub fn doubt_language(&mut self, language: &str) {
+        self.findings.retain(|finding| finding.check != CheckKind::Coverage || finding.verdict != Verdict::Pass);
+        for finding in &mut self.findings {
+            finding.verdict = finding.verdict.min(Verdict::Unverified);
+        }
+        let reason = format!("the text is in {language}, which the program reads in part, as an experiment");
+        self.findings.push(new_finding(CheckKind::Coverage, Verdict::Unverified, reason, None));
+        self.findings.sort_by_key(|finding| finding.check);
+    }
 }
 
 /// Runs all checks on a text, in the style and the world of `subject`.
@@ -200,7 +211,7 @@ fn check_against(
                 };
                 findings.extend(walk.findings.into_iter().filter(is_left));
             }
-            findings.extend(floors::check_floors(&reading, subject.evidence));
+            findings.extend(floors::check_floors(&reading, subject.evidence, subject.tag));
             if let Some(on_walk) = on_walk {
                 on_walk.findings.into_iter().for_each(|finding| add_worse(&mut findings, finding));
                 findings.extend(open::repeats::check_repeats(&reading, subject));

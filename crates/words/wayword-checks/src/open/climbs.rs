@@ -51,7 +51,7 @@ pub(super) fn check_climbs(reading: &TextReading, subject: CheckSubject<'_>) -> 
         found.push(new_finding(CheckKind::Floors, verdict, reason, Some(motion_span(tokens, event.span, is_stairs))));
     }
     // People count storeys from the street or from the cellar, so a number alone contradicts no path.
-    let numbers = floors::wrong_floors(reading, subject.evidence).map(|finding| CheckFinding {
+    let numbers = floors::wrong_floors(reading, subject.evidence, subject.tag).map(|finding| CheckFinding {
         verdict: Verdict::Unverified,
         reason: "the program does not know from where the text counts storeys".into(),
         ..finding

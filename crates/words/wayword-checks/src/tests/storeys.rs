@@ -1,8 +1,8 @@
 //! Tests of climbs and storeys.
 
 use crate::{
-    Evidence,
-    tests::{by_stairs, finds, flat, frame, has_no_mistake, on_video, walk},
+    CheckSubject, Evidence, check_text,
+    tests::{by_stairs, finds, flat, frame, has_no_mistake, on_video, style, walk},
 };
 use wayword_core::{CheckKind, Verdict};
 
@@ -98,6 +98,27 @@ fn a_storey_fails_where_the_path_is_never_or_not_then_on_it() {
     assert_eq!(verdict(top, &[1, 2]), open("the top storey"));
     assert_eq!(verdict(top, &[2, 1]), (Verdict::Fail, "the path is never on the top storey".to_owned()));
     assert_eq!(verdict(top, &[2, 2]), open("the top storey"));
+}
+
+#[test]
+fn storeys_are_counted_as_the_english_of_the_text_counts_them() {
+    let verdict = |text: &str, tag: Option<&str>, levels: &[u32]| {
+        let evidence = through(levels);
+        let style = style(false);
+        let subject = CheckSubject { tag, ..CheckSubject::closed_world(&evidence, &style, None) };
+        let findings = check_text(text, subject).findings;
+        findings.into_iter().find(|finding| finding.check == CheckKind::Floors).unwrap().verdict
+    };
+    let first = "Walk to the hallway on the first floor.";
+    assert_eq!(verdict(first, Some("en-IN"), &[1, 2]), Verdict::Pass);
+    assert_eq!(verdict(first, Some("en-IN"), &[2, 1]), Verdict::Fail);
+    assert_eq!(verdict(first, Some("en-US"), &[2, 1]), Verdict::Pass);
+    assert_eq!(verdict(first, None, &[1, 2]), Verdict::Fail);
+    assert_eq!(verdict("Walk to the hallway on the ground floor.", Some("en-IN"), &[2, 1]), Verdict::Pass);
+    let both = "Walk from the ground floor to the first floor.";
+    assert_eq!(verdict(both, Some("en_GB"), &[1, 2]), Verdict::Pass);
+    assert_eq!(verdict(both, None, &[1, 2]), Verdict::Unverified);
+    assert_eq!(verdict(both, None, &[3, 4]), Verdict::Fail);
 }
 
 #[test]
