@@ -5,7 +5,10 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     path::PathBuf,
 };
-use wayword_language::reading::{TextReading, read_instruction};
+use wayword_language::{
+    languages::ReadableText,
+    reading::{TextReading, read_instruction},
+};
 use wayword_run::{error::CommandError, output::CommandOutput};
 
 /// The flags of `coverage`.
@@ -61,7 +64,9 @@ struct UnderstandingCounts {
 
 impl UnderstandingCounts {
     fn add_text(&mut self, text: &str) {
-        let TextReading { words, clauses, .. } = read_instruction(text, &BTreeSet::new());
+        let readable = ReadableText::new(text);
+        let TextReading { words, clauses, .. } = read_instruction(readable.english(), &BTreeSet::new());
+        let words = readable.source_words(&words);
         let counted = || words.iter().filter(|word| word.is_counted);
         let unknown = counted().filter(|word| !word.is_understood());
         let spelling = |span: [usize; 2]| text.get(span[0]..span[1]).unwrap_or_default().to_lowercase();

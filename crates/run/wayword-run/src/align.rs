@@ -4,6 +4,7 @@ use crate::{
     check::path_texts::{FileText, PathTexts, read_path_texts},
     error::{CommandError, Exit},
     follow::{FollowedPath, KnownScenes},
+    glossed_parts::put_parts_into_text,
     interrupt,
     output::CommandOutput,
     pipeline::path_panoramas,
@@ -17,6 +18,7 @@ use serde::Serialize;
 use std::{fmt, path::PathBuf};
 use wayword_checks::{Evidence, WalkMemory};
 use wayword_core::{InstructionPart, Platform};
+use wayword_language::languages::ReadableText;
 
 /// `wayword align`.
 #[derive(Debug, Args)]
@@ -110,7 +112,12 @@ fn align_walk(
     let memory = WalkMemory::from_path(&evidence, &walk.path);
     let align = |text: &FileText| {
         let known = (&evidence, &memory);
-        let align = |followed: &FollowedPath<'_>| followed.align_text(&text.words, text.tag.as_deref(), known);
+        let words = ReadableText::new(&text.words);
+        let align = |followed: &FollowedPath<'_>| {
+            let mut parts = followed.align_text(words.english(), words.english_tag(text.tag.as_deref()), known)?;
+            put_parts_into_text(&mut parts, &words);
+            Ok(parts)
+        };
         (text.at, AlignedText::new(text, followed.as_ref().map_err(|why| *why).and_then(align)))
     };
     Ok(walk.texts.iter().map(align).collect())

@@ -1,8 +1,8 @@
-//! Finds sets of texts in another language than English. The program reads English only, and writes it.
+//! Finds sets of texts in another language than English, and reports what the program reads of it.
 
 use crate::output::CommandOutput;
 use std::collections::BTreeSet;
-use wayword_language::{Language, reading::read_instruction};
+use wayword_language::{Language, languages::reads_in_part, reading::read_instruction};
 
 /// Number of texts by which the language of a set is judged.
 const JUDGED_TEXTS: usize = 20;
@@ -33,12 +33,17 @@ impl ForeignTexts {
     }
 }
 
-/// Warns of texts that the program cannot read, because most are in another language. `owner` names their set: " of set a".
+/// Warns of texts of which most are in another language, where the program reads it not at all or in part. `owner` names their set: " of set a".
 pub fn warn_of_foreign<'a>(owner: &str, texts: impl IntoIterator<Item = &'a str>, output: &CommandOutput) {
-    if let Some(ForeignTexts { language, .. }) = ForeignTexts::find(texts) {
-        output.say(format_args!(
-            "warning: most of the texts{owner} are in {language}; the program reads English only, and understands none of these"
-        ));
+    let Some(ForeignTexts { language, .. }) = ForeignTexts::find(texts) else { return };
+    match reads_in_part(language) {
+        Some(false) => output.say(format_args!("note: most of the texts{owner} are in {language}, which the program reads through English words")),
+        Some(true) => output.say(format_args!(
+            "warning: most of the texts{owner} are in {language}, of which the program reads turns, sides, climbs and numbers alone (experimental)"
+        )),
+        None => output.say(format_args!(
+            "warning: most of the texts{owner} are in {language}; the program does not read it, and understands none of these"
+        )),
     }
 }
 

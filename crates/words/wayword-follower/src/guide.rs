@@ -6,6 +6,7 @@ use crate::nearness::{PlaceNearness, PlaceQuery};
 use std::{collections::BTreeSet, sync::Arc};
 use wayword_core::Side;
 use wayword_language::{
+    languages::ReadableText,
     lexicon::same_room,
     reading::{
         EventContent, TextReading, read_instruction,
@@ -136,10 +137,10 @@ impl GuideStep {
 }
 
 impl Guide {
-    /// Reads an instruction.
+    /// Reads an instruction; one in another language through English words.
     #[must_use]
     pub fn read_text(text: &str) -> Self {
-        Self::from_reading(&read_instruction(text, &BTreeSet::new()))
+        Self::from_reading(&read_instruction(ReadableText::new(text).english(), &BTreeSet::new()))
     }
 
     /// The names of the places at which the text ends: those of its last step that stops, or else of its last step.

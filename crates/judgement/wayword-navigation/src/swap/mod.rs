@@ -9,6 +9,7 @@ mod sides;
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use wayword_language::languages::ReadableText;
 
 pub use other_path::{SwapCandidate, other_path};
 
@@ -52,7 +53,8 @@ impl fmt::Display for InstructionSwap {
 const MAX_SWAPPED_BYTES: usize = 8_000;
 
 /// Makes a text wrong in one way. `None` if the text would stay the same, or is too long to be an instruction. Also `None` for
-/// [`InstructionSwap::OtherPath`]: the caller takes that text from the item that [`other_path`] chooses.
+/// [`InstructionSwap::OtherPath`]: the caller takes that text from the item that [`other_path`] chooses. A text that is read through English
+/// words becomes those words, and they are changed.
 ///
 /// Random choices depend only on the seed and the item's id.
 #[must_use]
@@ -60,6 +62,8 @@ pub fn swap_text(swap: InstructionSwap, text: &str, seed: u64, item: &str) -> Op
     if text.len() > MAX_SWAPPED_BYTES {
         return None;
     }
+    let readable = ReadableText::new(text);
+    let text = readable.english();
     match swap {
         InstructionSwap::Directions => sides::swap_directions(text),
         InstructionSwap::Landmarks => landmarks::swap_landmarks(text, seed, item),
@@ -71,6 +75,12 @@ pub fn swap_text(swap: InstructionSwap, text: &str, seed: u64, item: &str) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_chinese_text_is_changed_in_english_words() {
+        let swapped = swap_text(InstructionSwap::Directions, "走到沙发旁边，左转上楼梯。", 0, "a").unwrap();
+        assert_eq!(swapped, "walk to the sofa, turn right, go down the stairs.");
+    }
 
     #[test]
     fn names_are_those_in_files() {

@@ -40,6 +40,7 @@ use wayword_checks::{
 use wayword_core::{CheckFinding, Platform};
 #[cfg(feature = "study")]
 use wayword_core::{Path, TextDoubt};
+use wayword_language::languages::ReadableText;
 use worlds::choose_world;
 
 pub use again::{CheckedAgain, SecondCheck, check_run_again, find_changed_texts};
@@ -260,14 +261,17 @@ impl<'a> TextChecker<'a> {
         // A text of a Wayword record is no witness: one writer wrote all texts of its run, with the same mistakes in
         // each.
         let testimony = |text: &FileText| {
-            (uses_witnesses && text.origin.is_none()).then(|| Testimony::from_text(&text.words, &evidence))
+            let words = || ReadableText::new(&text.words);
+            (uses_witnesses && text.origin.is_none()).then(|| Testimony::from_text(words().english(), &evidence))
         };
         let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
         let checked = walk.texts.iter().zip(&testimonies).map(|(text, own_testimony)| {
             let check_style = self.styles.style_or_any(text);
+            let readable = ReadableText::new(&text.words);
+            let (words, tag) = (readable.english(), readable.english_tag(text.tag.as_deref()));
             let read = followed.as_ref().map(|followed| {
                 let followed = followed.as_ref().map_err(|why| *why);
-                followed.and_then(|followed| Ok((followed, read_followable(&text.words, text.tag.as_deref())?)))
+                followed.and_then(|followed| Ok((followed, read_followable(words, tag)?)))
             });
             let follower = read.as_ref().map(|read| match read {
                 Ok((followed, (guide, _))) => followed.follow_guide(guide),
@@ -284,10 +288,9 @@ impl<'a> TextChecker<'a> {
             };
             let turns =
                 follower.as_ref().map_or(TurnJudge::NotJudged("the text is not followed"), |follower| follower.turns);
-            let subject = CheckSubject { tag: text.tag.as_deref(), turns, ..subject.with_copies(&check_style.copies) };
+            let subject = CheckSubject { tag, turns, ..subject.with_copies(&check_style.copies) };
             // The texts of a run are checked as they were when it wrote them.
-            let mut checked =
-                if self.is_own_run { check_own_text(&text.words, subject) } else { check_text(&text.words, subject) };
+            let mut checked = if self.is_own_run { check_own_text(words, subject) } else { check_text(words, subject) };
             self.styles.leave_out_unasked(text, &mut checked);
             if let Some(follower) = &follower {
                 follower.add_to(&mut checked);
@@ -296,25 +299,28 @@ impl<'a> TextChecker<'a> {
                 let others: Vec<&Testimony> = testimonies.iter().flatten().collect();
                 lift_confirmed(&mut checked, own, &others);
             }
-            let ambiguity = follower.as_ref().map(|follower| follower.text_ambiguity(&text.words, &evidence));
+            let ambiguity = follower.as_ref().map(|follower| follower.text_ambiguity(words, &evidence));
             checked.add_findings(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(ambiguity_rejection));
             checked.add_findings(text.missing_object_finding(&walk.path.scene));
+            if let Some(language) = readable.experimental_language() {
+                checked.doubt_language(language);
+            }
             let mut shown = CheckedText::from_text(text, &checked);
             // A text that is not understood leaves nothing out.
             if let Some(Ok((followed, (_, reading)))) = &read {
                 if shown.parts.is_empty() {
-                    shown.parts = followed.align_reading(&text.words, reading, (&evidence, &memory));
+                    shown.parts = followed.align_reading(words, reading, (&evidence, &memory));
                 }
                 let is_open = |bend: &WalkBend| (bend.first..=bend.last).any(|frame| followed.has_other_way(frame));
                 shown.coverage_of_walk = cover_walk(reading, &shown.parts, &memory, is_open);
             }
-            if how.doubts {
-                let words = (text.words.as_str(), text.tag.as_deref());
+            if how.doubts && !readable.is_glossed() {
                 let is_changed = how.maybe_changed.is_some_and(|changed| changed.contains(&text.at));
                 let tries_changes = is_changed || checked.world == CheckWorld::Open;
-                let found = find_doubts(followed.as_ref(), words, (&checked, tries_changes), ambiguity.as_ref());
+                let found = find_doubts(followed.as_ref(), (words, tag), (&checked, tries_changes), ambiguity.as_ref());
                 shown.doubted = Some(found);
             }
+            shown.put_into_text(&readable);
             shown.ambiguity = ambiguity;
             if let Some(follower) = follower {
                 (shown.route, shown.turn_gain) = (follower.route, follower.turn_gain);

@@ -1,11 +1,12 @@
 //! The report of `wayword check`: counts by verdict and check, and the texts that did not pass.
 
 use super::{CheckedWalk, args::ShownTexts, path_texts::FileText};
-use crate::{count::count_phrase, doubts::TextDoubts, follow::RouteShares};
+use crate::{count::count_phrase, doubts::TextDoubts, follow::RouteShares, glossed_parts::put_parts_into_text};
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt};
 use wayword_checks::{CoveredDecision, DecisionTold, TextFindings};
 use wayword_core::{CheckFinding, CheckKind, DoubtGrade, InstructionPart, TextAmbiguity, TextDoubt, Verdict};
+use wayword_language::languages::ReadableText;
 
 /// The result of checking a file.
 #[derive(Debug, Default, Serialize)]
@@ -167,6 +168,17 @@ impl CheckedText {
             doubted,
             style,
         }
+    }
+
+    /// Turns the byte ranges of its English words into those of its text.
+    pub(super) fn put_into_text(&mut self, words: &ReadableText<'_>) {
+        if !words.is_glossed() {
+            return;
+        }
+        let spans = self.findings.iter_mut().filter_map(|finding| finding.span.as_mut());
+        let spans = spans.chain(self.coverage_of_walk.iter_mut().filter_map(|decision| decision.span.as_mut()));
+        spans.for_each(|span| *span = words.source_span(*span));
+        put_parts_into_text(&mut self.parts, words);
     }
 }
 

@@ -30,6 +30,7 @@ mod habitat;
 mod house_episodes;
 mod invariants;
 mod known_paths;
+mod languages;
 mod local_models;
 mod lost_worlds;
 mod mistakes;

@@ -103,7 +103,9 @@ fn texts_in_another_language_are_no_zeros_in_a_table() {
     }
     for command in [&["align"][..], &["check"]] {
         let told = building.wayword(&[command, &[&chinese], &WORLD[..]].concat());
-        assert!(told.err.contains("warning: most of the texts are in Chinese"), "{told:?}");
+        assert!(told.err.contains("note: most of the texts are in Chinese"), "{told:?}");
+        let told = building.wayword(&[command, &[&german], &WORLD[..]].concat());
+        assert!(told.err.contains("warning: most of the texts are in German"), "{told:?}");
         let plain = building.wayword(&[command, &[english], &WORLD[..]].concat());
         assert!(!plain.err.contains("warning"), "{plain:?}");
     }
