@@ -6,6 +6,7 @@
 
 mod anchored;
 mod bleu;
+mod character_tokens;
 mod cider;
 mod diversity;
 mod numbered_text;
@@ -17,6 +18,7 @@ pub use anchored::{
     AnchoredCaptionFigures, CaptionFigures, CaptionItem, CaptionRowSets, anchored_caption_figures, draw_other_paths,
 };
 pub use bleu::BleuCounts;
+pub use character_tokens::character_tokens;
 pub use cider::cider_d;
 pub use diversity::{TextDiversity, measure_diversity};
 pub use numbered_text::{CaptionVocabulary, NumberedText};

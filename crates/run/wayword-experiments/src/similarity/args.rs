@@ -39,10 +39,10 @@ pub struct SimilarityArgs {
     /// texts of both are. Needs no model.
     #[arg(long)]
     pub metrics: bool,
-    /// Tokens of the metrics: `ptb` as pycocoevalcap makes them, or `split` as the speakers of R2R do: lower case, words and
-    /// marks apart.
-    #[arg(long, default_value = "ptb", requires = "metrics")]
-    pub tokens: MetricTokens,
+    /// Tokens of the metrics: `ptb` as pycocoevalcap makes them, `split` as the speakers of R2R do (lower case, words and
+    /// marks apart), or `characters`, the default for Chinese and Japanese.
+    #[arg(long, requires = "metrics")]
+    pub tokens: Option<MetricTokens>,
     /// Cut texts off after so many characters before the metrics, on both sides, as some papers do.
     #[arg(long, value_name = "N", requires = "metrics", value_parser = clap::value_parser!(u32).range(1..))]
     pub truncate_characters: Option<u32>,
@@ -82,4 +82,24 @@ pub enum MetricTokens {
     Ptb,
     /// As the speakers of R2R.
     Split,
+    /// Each Chinese or Japanese character by itself, and the rest as `split`.
+    Characters,
+}
+
+impl MetricTokens {
+    /// The tokens for texts of a language that are taken unless others are asked for.
+    #[must_use]
+    pub fn for_language(language: &str) -> Self {
+        if matches!(language, "Chinese" | "Japanese") { Self::Characters } else { Self::Ptb }
+    }
+
+    /// Its name in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ptb => "ptb",
+            Self::Split => "split",
+            Self::Characters => "characters",
+        }
+    }
 }

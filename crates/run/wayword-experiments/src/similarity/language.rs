@@ -1,10 +1,11 @@
 //! Refuses figures of texts in different languages: their words have nothing in common.
 
+use super::args::MetricTokens;
 use crate::text_sets::TextSet;
 use wayword_run::{error::CommandError, output::CommandOutput, text_language::ForeignTexts};
 
 /// Refuses two sets in different languages, where the figures count `words`; a model may know both languages. Warns
-/// where both are in one language that is not English, because words are split by the rules of English.
+/// where both are in one language that is not English, and words are split by the rules of English. Returns the language of A.
 ///
 /// # Errors
 /// When the languages differ, and words are counted.
@@ -12,7 +13,7 @@ pub(super) fn refuse_other_languages(
     sides: [(&str, &TextSet); 2],
     words: bool,
     output: &CommandOutput,
-) -> Result<(), CommandError> {
+) -> Result<&'static str, CommandError> {
     let language = |items: &TextSet| {
         let texts = items.values().flat_map(|item| item.texts.iter().map(String::as_str));
         ForeignTexts::find(texts).map_or("English", |foreign| foreign.language)
@@ -28,10 +29,10 @@ pub(super) fn refuse_other_languages(
         output.say(format_args!(
             "warning: the texts of {a} are in {of_a}, and those of {b} in {of_b}; few sentence encoders know both"
         ));
-    } else if of_a != "English" {
+    } else if of_a != "English" && words && MetricTokens::for_language(of_a) != MetricTokens::Characters {
         output.say(format_args!(
             "warning: the texts are in {of_a}, and are taken apart by the rules of English, so the figures mean little"
         ));
     }
-    Ok(())
+    Ok(of_a)
 }

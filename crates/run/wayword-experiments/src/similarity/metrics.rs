@@ -19,7 +19,8 @@ use wayword_metrics::{
     ResamplingOptions,
     captions::{
         AnchoredCaptionFigures, CaptionFigures, CaptionItem, CaptionRowSets, CaptionVocabulary, NumberedText,
-        TextDiversity, anchored_caption_figures, collapse_white_space, measure_diversity, ptb_tokens, split_tokens,
+        TextDiversity, anchored_caption_figures, character_tokens, collapse_white_space, measure_diversity, ptb_tokens,
+        split_tokens,
     },
 };
 use wayword_run::{count::count_phrase, error::CommandError, output::CommandOutput};
@@ -68,6 +69,7 @@ struct SideDiversity {
 /// Turns strings into tokenised texts with a common vocabulary.
 struct MetricTextReader<'a> {
     args: &'a Args,
+    tokens: MetricTokens,
     vocabulary: CaptionVocabulary,
 }
 
@@ -76,9 +78,10 @@ impl MetricTextReader<'_> {
         let text = collapse_white_space(text);
         let max_chars = self.args.truncate_characters.map_or(usize::MAX, |max_chars| max_chars as usize);
         let end = text.char_indices().nth(max_chars).map_or(text.len(), |(end, _)| end);
-        let tokens = match self.args.tokens {
+        let tokens = match self.tokens {
             MetricTokens::Ptb => ptb_tokens(&text[..end]),
             MetricTokens::Split => split_tokens(&text[..end]),
+            MetricTokens::Characters => character_tokens(&text[..end]),
         };
         self.vocabulary.number_text(&tokens)
     }
@@ -96,13 +99,14 @@ impl MetricTextReader<'_> {
 /// Computes the metrics of A's texts against B's.
 pub(super) fn measure_texts(
     args: &Args,
+    tokens: MetricTokens,
     (a, b): (&TextSet, &TextSet),
     output: &CommandOutput,
 ) -> Result<TextMetricsReport, CommandError> {
     // Pictures come first, so that a missing model or picture is reported before the metrics are computed.
     let drawing = ResamplingOptions { resamples: args.resamples as usize, level: CONFIDENCE_LEVEL, seed: args.seed };
     let pictures = pictures::measure_pictures(args, (a, b), &drawing, output)?;
-    let mut reader = MetricTextReader { args, vocabulary: CaptionVocabulary::default() };
+    let mut reader = MetricTextReader { args, tokens, vocabulary: CaptionVocabulary::default() };
     let (judged, references) = (reader.read_items(a), reader.read_items(b));
     let in_b = |id: &str| references.binary_search_by_key(&id, |(other, ..)| other).ok().map(|at| &references[at]);
     let mut items: Vec<CaptionItem<'_>> = Vec::new();
@@ -123,7 +127,7 @@ pub(super) fn measure_texts(
     let sets = CaptionRowSets::from_items(&items, args.seed);
     Ok(TextMetricsReport {
         protocol: MetricProtocol {
-            tokens: if args.tokens == MetricTokens::Ptb { "ptb" } else { "split" },
+            tokens: tokens.name(),
             references: if args.by == TextPairing::Path { "path" } else { "item" },
             truncate_characters: args.truncate_characters,
             judged: items.len(),

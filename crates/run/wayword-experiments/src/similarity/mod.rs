@@ -8,7 +8,7 @@ mod pictures;
 
 use crate::{
     encoder::{self, WORD_ENCODER},
-    similarity::args::{SimilarityArgs as Args, TextPairing},
+    similarity::args::{MetricTokens, SimilarityArgs as Args, TextPairing},
     text_sets::{self, TextSet},
 };
 use serde::Serialize;
@@ -44,8 +44,9 @@ pub fn run_similarity(args: &Args, output: &CommandOutput) -> Result<Exit, Comma
     }
     let sides = [(args.a.as_str(), &a), (args.b.as_str(), &b)];
     if args.metrics {
-        language::refuse_other_languages(sides, true, output)?;
-        let report = metrics::measure_texts(args, (&a, &b), output)?;
+        let language = language::refuse_other_languages(sides, true, output)?;
+        let tokens = args.tokens.unwrap_or_else(|| MetricTokens::for_language(language));
+        let report = metrics::measure_texts(args, tokens, (&a, &b), output)?;
         warn_of_same_texts(&a, &b, output);
         output.print_result(&report, &report);
         return Ok(Exit::Done);
