@@ -64,7 +64,7 @@ struct UnderstandingCounts {
 
 impl UnderstandingCounts {
     fn add_text(&mut self, text: &str) {
-        let readable = ReadableText::new(text);
+        let readable = ReadableText::new(text, None);
         let TextReading { words, clauses, .. } = read_instruction(readable.english(), &BTreeSet::new());
         let words = readable.source_words(&words);
         let counted = || words.iter().filter(|word| word.is_counted);

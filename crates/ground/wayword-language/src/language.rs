@@ -177,7 +177,7 @@ pub(crate) fn script_language(text: &str) -> Language {
     let most = if japanese { Some("Japanese") } else { most };
     match most {
         // A letter or two may be a name or a slip.
-        Some(name) if other > 2 && other >= latin => Language::Other(name),
+        Some(name) if (other > 2 && other >= latin) || latin == 0 => Language::Other(name),
         Some(name) if other > 2 => Language::Partly(name),
         _ => Language::English,
     }

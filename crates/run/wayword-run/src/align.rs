@@ -112,7 +112,7 @@ fn align_walk(
     let memory = WalkMemory::from_path(&evidence, &walk.path);
     let align = |text: &FileText| {
         let known = (&evidence, &memory);
-        let words = ReadableText::new(&text.words);
+        let words = ReadableText::new(&text.words, text.tag.as_deref());
         let align = |followed: &FollowedPath<'_>| {
             let mut parts = followed.align_text(words.english(), words.english_tag(text.tag.as_deref()), known)?;
             put_parts_into_text(&mut parts, &words);

@@ -24,7 +24,7 @@ mod tests {
     #[test]
     fn parts_of_a_gloss_become_parts_of_the_text() {
         let text = "走到沙发旁边，左转，上楼梯。";
-        let words = ReadableText::new(text);
+        let words = ReadableText::new(text, None);
         let part = |said: &str| {
             let from = words.english().find(said).unwrap();
             InstructionPart { span: [from, from + said.len()], frames: [0, 1], confidence: None }

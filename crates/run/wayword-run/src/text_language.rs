@@ -37,7 +37,7 @@ impl ForeignTexts {
 pub fn warn_of_foreign<'a>(owner: &str, texts: impl IntoIterator<Item = &'a str>, output: &CommandOutput) {
     let Some(ForeignTexts { language, .. }) = ForeignTexts::find(texts) else { return };
     match reads_in_part(language) {
-        Some(false) => output.say(format_args!("note: most of the texts{owner} are in {language}, which the program reads through English words")),
+        Some(false) => output.say(format_args!("note: most of the texts{owner} are in {language}, which checks and the agents reader and reader-map read through English words")),
         Some(true) => output.say(format_args!(
             "warning: most of the texts{owner} are in {language}, of which the program reads turns, sides, climbs and numbers alone (experimental)"
         )),

@@ -156,7 +156,7 @@ impl TextFindings {
         self.findings.iter().map(|finding| finding.verdict).max().unwrap_or(Verdict::Unverified)
     }
 
-    /// Lets no finding be sure, because the text is in a language that is read only in part.
+    /// Leaves undecided what failed, because the text is in a language that is read only in part.
     pub fn doubt_language(&mut self, language: &str) {
         self.findings.retain(|finding| finding.check != CheckKind::Coverage || finding.verdict != Verdict::Pass);
         for finding in &mut self.findings {

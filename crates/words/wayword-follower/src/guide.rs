@@ -140,7 +140,7 @@ impl Guide {
     /// Reads an instruction; one in another language through English words.
     #[must_use]
     pub fn read_text(text: &str) -> Self {
-        Self::from_reading(&read_instruction(ReadableText::new(text).english(), &BTreeSet::new()))
+        Self::from_reading(&read_instruction(ReadableText::new(text, None).english(), &BTreeSet::new()))
     }
 
     /// The names of the places at which the text ends: those of its last step that stops, or else of its last step.

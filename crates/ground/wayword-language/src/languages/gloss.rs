@@ -5,6 +5,7 @@ use super::{
     pack_words::{PackToken, PackWords},
     rules::{RuleStage, parse_stages},
 };
+use crate::Language;
 use crate::reading::{ReadWord, WordRole, role_words::STOP_WORDS};
 use std::collections::BTreeMap;
 
@@ -49,11 +50,21 @@ pub struct ReadableText<'a> {
 }
 
 impl<'a> ReadableText<'a> {
-    /// Puts a text of another language into English words, where the program reads the language.
+    /// Puts a text of another language into English words, where the program reads the language. A `tag` that names another one is believed.
     #[must_use]
-    pub fn new(text: &'a str) -> Self {
-        let (language, gloss) = super::gloss_text(text).unzip();
+    pub fn new(text: &'a str, tag: Option<&str>) -> Self {
+        let fits = |(language, _): &(&'static str, GlossedText)| match tag.map(Language::from_tag) {
+            Some(Language::Other(tagged)) => tagged == *language,
+            _ => true,
+        };
+        let (language, gloss) = super::gloss_text(text).filter(fits).unzip();
         Self { text, gloss, language }
+    }
+
+    /// A text that is read as it is, in whatever language.
+    #[must_use]
+    pub fn as_written(text: &'a str) -> Self {
+        Self { text, gloss: None, language: None }
     }
 
     /// The English words.
@@ -108,7 +119,7 @@ impl<'a> ReadableText<'a> {
 }
 
 impl LanguagePack {
-    /// Reads the files of a pack. A line that is no rule ends the rules; a test reads every line of every pack.
+    /// Reads the files of a pack. With a line that is no rule, it would have no rules; a test reads every line of every pack.
     pub(super) fn parse(words: &'static str, rules: &'static str, is_spaced: bool) -> Self {
         Self { words: PackWords::parse(words, is_spaced), stages: parse_stages(rules).unwrap_or_default() }
     }

@@ -31,6 +31,8 @@ pub(super) struct PackToken {
 
 /// The class of words without a meaning of their own.
 const FILLER: &str = "filler";
+/// The class of numbers.
+const NUMBER: &str = "number";
 /// The class of what no list has.
 const UNKNOWN: &str = "unknown";
 /// The English for an unknown word. The reader of English does not know it either.
@@ -72,14 +74,14 @@ impl PackWords {
     /// The words and marks of a text, each the longest that fits there, as chunks and as tokens. Words that say nothing are no chunks, and
     /// marks no tokens.
     pub(super) fn split_chunks(&self, text: &str) -> (Vec<Chunk>, Vec<PackToken>) {
-        let low = text.to_lowercase();
-        // Some letters have another length in lower case. Then the text is read as it is.
-        let low = if low.len() == text.len() { low.as_str() } else { text };
+        // Only ASCII, so that each byte keeps its place.
+        let low = &text.to_ascii_lowercase();
         let (mut chunks, mut tokens) = (Vec::new(), Vec::new());
         let mut at = 0;
         while let Some(letter) = low[at..].chars().next() {
-            let found = self.longest_word(low, at);
-            let end = found.map_or_else(|| self.unknown_end(low, at, letter), |(end, _)| end);
+            let number_end = number_end(low, at);
+            let found = self.longest_word(low, at).filter(|(end, _)| *end >= number_end);
+            let end = found.map_or_else(|| self.unknown_end(low, at, letter).max(number_end), |(end, _)| end);
             let gloss = |english: &str| {
                 let words = english.split_whitespace();
                 words.map(|word| GlossWord { word: word.to_owned(), source: Some([at, end]) }).collect()
@@ -89,6 +91,7 @@ impl PackWords {
                 Some((_, senses)) => {
                     senses.iter().map(|sense| ChunkSense { class: sense.class, words: gloss(sense.english) }).collect()
                 }
+                None if number_end > at => vec![ChunkSense { class: NUMBER, words: gloss(&low[at..end]) }],
                 None if is_letter(letter) => vec![ChunkSense { class: UNKNOWN, words: gloss(UNKNOWN_ENGLISH) }],
                 None => Vec::new(),
             };
@@ -96,7 +99,10 @@ impl PackWords {
                 chunks.push(Chunk { senses });
             }
             if is_letter(letter) {
-                let english = found.and_then(|(_, senses)| Some(senses.first()?.english));
+                let english = match found {
+                    Some((_, senses)) => senses.first().map(|sense| sense.english),
+                    None => (number_end > at).then_some(NUMBER),
+                };
                 tokens.push(PackToken { span: [at, end], english });
             }
             at = end;
@@ -121,6 +127,15 @@ impl PackWords {
         let more = if belongs(letter) { text[end..].find(|c| !belongs(c)).unwrap_or(text.len() - end) } else { 0 };
         end + more
     }
+}
+
+/// The end of the number in digits that begins at a byte; `at` where none does.
+fn number_end(text: &str, at: usize) -> usize {
+    let is_inner = |(index, c): &(usize, char)| {
+        let is_point = || *c == '.' && *index > 0 && text[at + index + 1..].starts_with(|c: char| c.is_ascii_digit());
+        c.is_ascii_digit() || is_point()
+    };
+    at + text[at..].char_indices().take_while(is_inner).count()
 }
 
 /// A word as people write it: with dots below as NFC has them, as single letters, and without them.

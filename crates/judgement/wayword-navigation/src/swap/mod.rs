@@ -59,11 +59,11 @@ const MAX_SWAPPED_BYTES: usize = 8_000;
 /// Random choices depend only on the seed and the item's id.
 #[must_use]
 pub fn swap_text(swap: InstructionSwap, text: &str, seed: u64, item: &str) -> Option<String> {
+    let readable = ReadableText::new(text, None);
+    let text = readable.english();
     if text.len() > MAX_SWAPPED_BYTES {
         return None;
     }
-    let readable = ReadableText::new(text);
-    let text = readable.english();
     match swap {
         InstructionSwap::Directions => sides::swap_directions(text),
         InstructionSwap::Landmarks => landmarks::swap_landmarks(text, seed, item),

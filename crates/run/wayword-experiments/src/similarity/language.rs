@@ -1,11 +1,10 @@
 //! Refuses figures of texts in different languages: their words have nothing in common.
 
-use super::args::MetricTokens;
 use crate::text_sets::TextSet;
 use wayword_run::{error::CommandError, output::CommandOutput, text_language::ForeignTexts};
 
 /// Refuses two sets in different languages, where the figures count `words`; a model may know both languages. Warns
-/// where both are in one language that is not English, and words are split by the rules of English. Returns the language of A.
+/// where the languages differ all the same. Returns the language of A.
 ///
 /// # Errors
 /// When the languages differ, and words are counted.
@@ -29,10 +28,15 @@ pub(super) fn refuse_other_languages(
         output.say(format_args!(
             "warning: the texts of {a} are in {of_a}, and those of {b} in {of_b}; few sentence encoders know both"
         ));
-    } else if of_a != "English" && words && MetricTokens::for_language(of_a) != MetricTokens::Characters {
-        output.say(format_args!(
-            "warning: the texts are in {of_a}, and are taken apart by the rules of English, so the figures mean little"
-        ));
     }
     Ok(of_a)
+}
+
+/// Warns where texts are not in English, and words are split by the rules of English.
+pub(super) fn warn_of_english_rules(language: &str, output: &CommandOutput) {
+    if language != "English" {
+        output.say(format_args!(
+            "warning: the texts are in {language}, and are taken apart by the rules of English, so the figures mean little"
+        ));
+    }
 }

@@ -46,13 +46,17 @@ pub fn run_similarity(args: &Args, output: &CommandOutput) -> Result<Exit, Comma
     if args.metrics {
         let language = language::refuse_other_languages(sides, true, output)?;
         let tokens = args.tokens.unwrap_or_else(|| MetricTokens::for_language(language));
+        if tokens != MetricTokens::Characters {
+            language::warn_of_english_rules(language, output);
+        }
         let report = metrics::measure_texts(args, tokens, (&a, &b), output)?;
         warn_of_same_texts(&a, &b, output);
         output.print_result(&report, &report);
         return Ok(Exit::Done);
     }
     let encoder = encoder::open_encoder(&args.encoder)?;
-    language::refuse_other_languages(sides, encoder.name() == WORD_ENCODER, output)?;
+    let language = language::refuse_other_languages(sides, encoder.name() == WORD_ENCODER, output)?;
+    language::warn_of_english_rules(language, output);
     let all = a.values().chain(b.values()).flat_map(|item| item.texts.iter().map(String::as_str));
     let vectors = encoder::encode_texts(encoder.as_ref(), all, output)?;
     let drawing = ResamplingOptions { resamples: args.resamples as usize, level: CONFIDENCE_LEVEL, seed: args.seed };

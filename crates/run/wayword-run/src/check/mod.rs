@@ -13,7 +13,7 @@ mod worlds;
 use crate::{
     calibration,
     check::args::{AskedWorld, CheckArgs as Args},
-    doubts::find_doubts,
+    doubts::{TextDoubts, find_doubts},
     error::{CommandError, Exit},
     follow::{FollowedPath, FollowerFindings, KnownScenes, ambiguity_rejection, read_followable},
     interrupt,
@@ -183,6 +183,9 @@ struct TextChecker<'a> {
     is_own_run: bool,
 }
 
+/// Why no words of a text are doubted that is read through English words: other words for them would be English ones.
+const DOUBTS_IN_ENGLISH: &str = "words to doubt are found in English texts alone";
+
 impl<'a> TextChecker<'a> {
     /// Checks texts against the labels of a platform.
     fn new(platform: &'a dyn Platform, styles: &'a CheckStyles, how: CheckOptions<'a>) -> Self {
@@ -227,6 +230,14 @@ impl<'a> TextChecker<'a> {
         checked
     }
 
+    /// A text as it is read. The texts of a run are read as they were when it wrote them.
+    fn readable_text<'t>(&self, text: &'t FileText) -> ReadableText<'t> {
+        match self.is_own_run {
+            true => ReadableText::as_written(&text.words),
+            false => ReadableText::new(&text.words, text.tag.as_deref()),
+        }
+    }
+
     /// Checks all texts of a path: collects the evidence once, follows each text, and checks it in its world.
     fn check_walk(&self, walk: &PathTexts) -> Result<CheckedWalk, CommandError> {
         let Self { platform, how, lookout, sources, .. } = *self;
@@ -261,13 +272,13 @@ impl<'a> TextChecker<'a> {
         // A text of a Wayword record is no witness: one writer wrote all texts of its run, with the same mistakes in
         // each.
         let testimony = |text: &FileText| {
-            let words = || ReadableText::new(&text.words);
+            let words = || self.readable_text(text);
             (uses_witnesses && text.origin.is_none()).then(|| Testimony::from_text(words().english(), &evidence))
         };
         let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
         let checked = walk.texts.iter().zip(&testimonies).map(|(text, own_testimony)| {
             let check_style = self.styles.style_or_any(text);
-            let readable = ReadableText::new(&text.words);
+            let readable = self.readable_text(text);
             let (words, tag) = (readable.english(), readable.english_tag(text.tag.as_deref()));
             let read = followed.as_ref().map(|followed| {
                 let followed = followed.as_ref().map_err(|why| *why);
@@ -300,11 +311,11 @@ impl<'a> TextChecker<'a> {
                 lift_confirmed(&mut checked, own, &others);
             }
             let ambiguity = follower.as_ref().map(|follower| follower.text_ambiguity(words, &evidence));
-            checked.add_findings(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(ambiguity_rejection));
-            checked.add_findings(text.missing_object_finding(&walk.path.scene));
             if let Some(language) = readable.experimental_language() {
                 checked.doubt_language(language);
             }
+            checked.add_findings(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(ambiguity_rejection));
+            checked.add_findings(text.missing_object_finding(&walk.path.scene));
             let mut shown = CheckedText::from_text(text, &checked);
             // A text that is not understood leaves nothing out.
             if let Some(Ok((followed, (_, reading)))) = &read {
@@ -314,7 +325,9 @@ impl<'a> TextChecker<'a> {
                 let is_open = |bend: &WalkBend| (bend.first..=bend.last).any(|frame| followed.has_other_way(frame));
                 shown.coverage_of_walk = cover_walk(reading, &shown.parts, &memory, is_open);
             }
-            if how.doubts && !readable.is_glossed() {
+            if how.doubts && readable.is_glossed() {
+                shown.doubted = Some(TextDoubts { doubts: Vec::new(), unfollowed: Some(DOUBTS_IN_ENGLISH) });
+            } else if how.doubts {
                 let is_changed = how.maybe_changed.is_some_and(|changed| changed.contains(&text.at));
                 let tries_changes = is_changed || checked.world == CheckWorld::Open;
                 let found = find_doubts(followed.as_ref(), (words, tag), (&checked, tries_changes), ambiguity.as_ref());
