@@ -17,6 +17,7 @@ from texts import Preparation
 DRAWS = 5000
 MEASURES = ("success", "spl", "ndtw")
 R2R_SETS = ("val_seen", "held_back", "untrained")
+PEOPLE_SETS = ("val_seen", "held_back")  # taken together
 GOAL_SETS = ("goals_val_seen", "goals_held_back")
 
 
@@ -76,13 +77,13 @@ def train_row(args, row: Row, number: int) -> Path:
     return out
 
 
-def read_figures(files: list[Path], name: str) -> dict[str, tuple[str, np.ndarray]]:
-    """For each item the building and the figures, as means over the seeds."""
-    runs = [{record["item"]: record for record in json.loads(file.read_text())[name]} for file in files]
+def read_figures(files: list[Path], sets: tuple[str, ...]) -> dict[tuple[str, str], tuple[str, np.ndarray]]:
+    """For each item of some sets the building and the figures, as means over the seeds."""
+    runs = [{(name, record["item"]): record for name in sets for record in json.loads(file.read_text())[name]} for file in files]
     return {item: (record["scan"], np.mean([[run[item][measure] for measure in MEASURES] for run in runs], axis=0)) for item, record in runs[0].items()}
 
 
-def by_building(figures: dict[str, tuple[str, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+def by_building(figures: dict[tuple[str, str], tuple[str, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
     """Sums and counts of each building, in the order of their names."""
     scans = sorted({scan for scan, _ in figures.values()})
     place = {scan: number for number, scan in enumerate(scans)}
@@ -114,21 +115,21 @@ def in_words(means: np.ndarray, scale: float = 100) -> str:
 def write_table(files: dict[str, list[Path]]) -> str:
     """The table in Markdown."""
     lines = []
-    for name in (*R2R_SETS, *GOAL_SETS):
-        rows = [row for row in ROWS if row.goals == (name in GOAL_SETS) and row.name in files]
+    for sets in (*((name,) for name in R2R_SETS), PEOPLE_SETS, *((name,) for name in GOAL_SETS)):
+        rows = [row for row in ROWS if row.goals == (sets[0] in GOAL_SETS) and row.name in files]
         if not rows:
             continue
-        figures = {row.name: read_figures(files[row.name], name) for row in rows}
+        figures = {row.name: read_figures(files[row.name], sets) for row in rows}
         first = next(iter(figures.values()))
         draws = building_draws(first)
         means = {row: draw_means(values, draws) for row, values in figures.items()}
-        lines += [f"### {name}: {len(first)} texts in {len(draws[0])} buildings", "", "| row | trained on | seeds | SR | SPL | nDTW | SR less than (a) |", "|---|---|---|---|---|---|---|"]
+        lines += [f"### {' and '.join(sets)}: {len(first)} texts in {len(draws[0])} buildings", "", "| row | trained on | seeds | SR | SPL | nDTW | SR minus that of (a) |", "|---|---|---|---|---|---|---|"]
         base = means.get("a", means.get("goals-a"))
         for row in rows:
             mean = means[row.name]
             less = in_words(mean[:, 0] - base[:, 0]) if base is not None else ""
             lines.append(f"| {row.name} | {row.what} | {len(files[row.name])} | " + " | ".join(in_words(mean[:, at]) for at in range(3)) + f" | {less} |")
-        prefix = "goals-" if name in GOAL_SETS else ""
+        prefix = "goals-" if sets[0] in GOAL_SETS else ""
         for bottom in ("d", "d-turns"):
             a, b, d = (means.get(prefix + row) for row in ("a", "b", bottom))
             if a is not None and b is not None and d is not None:
