@@ -1,6 +1,6 @@
 //! Recognises the language of a text.
 //!
-//! The reader knows English only, so a text in another language cannot be checked. A foreign script decides by itself.
+//! The reader knows English only, and other languages only through their packs (`languages/`). A foreign script decides by itself.
 //! In Latin letters, a sentence is foreign if the reader knows few of its words. The small words of a language ("der",
 //! "est") show which language it is.
 

@@ -33,11 +33,14 @@ impl ForeignTexts {
     }
 }
 
-/// Warns of texts of which most are in another language, where the program reads it not at all or in part. `owner` names their set: " of set a".
+/// Tells of texts of which most are in another language, and warns where the program reads that only in part or not at all. `owner` names
+/// their set: " of set a".
 pub fn warn_of_foreign<'a>(owner: &str, texts: impl IntoIterator<Item = &'a str>, output: &CommandOutput) {
     let Some(ForeignTexts { language, .. }) = ForeignTexts::find(texts) else { return };
     match reads_in_part(language) {
-        Some(false) => output.say(format_args!("note: most of the texts{owner} are in {language}, which checks and the agents reader and reader-map read through English words")),
+        Some(false) => output.say(format_args!(
+            "note: most of the texts{owner} are in {language}, which checks and the agents reader and reader-map read through English words"
+        )),
         Some(true) => output.say(format_args!(
             "warning: most of the texts{owner} are in {language}, of which the program reads turns, sides, climbs and numbers alone (experimental)"
         )),

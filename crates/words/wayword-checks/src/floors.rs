@@ -59,9 +59,9 @@ impl StoreyCount {
 
 /// Whether a storey is called the ground floor, or the bottom one.
 fn is_ground(event: &TextEvent, reading: &TextReading) -> bool {
-    let words =
+    let mut words =
         reading.tokens().iter().filter(|token| token.span[0] >= event.span[0] && token.span[1] <= event.span[1]);
-    words.into_iter().any(|token| matches!(token.word.as_str(), "ground" | "bottom"))
+    words.any(|token| matches!(token.word.as_str(), "ground" | "bottom"))
 }
 
 /// The first storey of a text that is wrong or cannot be checked. `tag` is the tag of its language, where its file names one.

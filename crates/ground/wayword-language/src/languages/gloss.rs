@@ -1,6 +1,7 @@
 //! A text of another language in English words, each with its place in the text.
 
 use super::{
+    PackFiles,
     chunks::Chunk,
     pack_words::{PackToken, PackWords},
     rules::{RuleStage, parse_stages},
@@ -12,6 +13,8 @@ use std::collections::BTreeMap;
 /// A language that is read through English words.
 #[derive(Debug)]
 pub(super) struct LanguagePack {
+    /// The name of the language, as [`Language`] has it.
+    pub(super) language: &'static str,
     words: PackWords,
     stages: Vec<RuleStage>,
 }
@@ -19,6 +22,9 @@ pub(super) struct LanguagePack {
 /// A text in English words.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct GlossedText {
+    /// The language of the text.
+    language: &'static str,
+    /// The English words.
     text: String,
     /// The words of the gloss, in its order.
     places: Vec<GlossPlace>,
@@ -45,26 +51,23 @@ const CLAUSE: &str = "clause";
 pub struct ReadableText<'a> {
     text: &'a str,
     gloss: Option<GlossedText>,
-    /// The language of the text, where it is glossed.
-    language: Option<&'static str>,
 }
 
 impl<'a> ReadableText<'a> {
     /// Puts a text of another language into English words, where the program reads the language. A `tag` that names another one is believed.
     #[must_use]
     pub fn new(text: &'a str, tag: Option<&str>) -> Self {
-        let fits = |(language, _): &(&'static str, GlossedText)| match tag.map(Language::from_tag) {
-            Some(Language::Other(tagged)) => tagged == *language,
+        let fits = |gloss: &GlossedText| match tag.map(Language::from_tag) {
+            Some(Language::Other(tagged)) => tagged == gloss.language,
             _ => true,
         };
-        let (language, gloss) = super::gloss_text(text).filter(fits).unzip();
-        Self { text, gloss, language }
+        Self { text, gloss: super::gloss_text(text).filter(fits) }
     }
 
     /// A text that is read as it is, in whatever language.
     #[must_use]
     pub fn as_written(text: &'a str) -> Self {
-        Self { text, gloss: None, language: None }
+        Self { text, gloss: None }
     }
 
     /// The English words.
@@ -82,7 +85,8 @@ impl<'a> ReadableText<'a> {
     /// The name of its language, where that is read only in part, as an experiment.
     #[must_use]
     pub fn experimental_language(&self) -> Option<&'static str> {
-        self.language.filter(|language| super::reads_in_part(language) == Some(true))
+        let language = self.gloss.as_ref().map(|gloss| gloss.language);
+        language.filter(|language| super::reads_in_part(language) == Some(true))
     }
 
     /// The tag of the language of the English words, where `tag` is that of the text.
@@ -120,31 +124,33 @@ impl<'a> ReadableText<'a> {
 
 impl LanguagePack {
     /// Reads the files of a pack. With a line that is no rule, it would have no rules; a test reads every line of every pack.
-    pub(super) fn parse(words: &'static str, rules: &'static str, is_spaced: bool) -> Self {
-        Self { words: PackWords::parse(words, is_spaced), stages: parse_stages(rules).unwrap_or_default() }
+    pub(super) fn parse(files: &PackFiles) -> Self {
+        let words = PackWords::parse(files.words, files.is_spaced);
+        Self { language: files.language, words, stages: parse_stages(files.rules).unwrap_or_default() }
     }
 
     pub(super) fn gloss(&self, text: &str) -> GlossedText {
         let (chunks, tokens) = self.words.split_chunks(text);
-        GlossedText::from_chunks(&self.stages.iter().fold(chunks, |chunks, stage| stage.apply(&chunks)), tokens)
+        let chunks = self.stages.iter().fold(chunks, |chunks, stage| stage.apply(&chunks));
+        let mut gloss = GlossedText { language: self.language, text: String::new(), places: Vec::new(), tokens };
+        gloss.add_chunks(&chunks);
+        gloss
     }
 }
 
 impl GlossedText {
-    /// The words of the chunks in one text.
-    fn from_chunks(chunks: &[Chunk], tokens: Vec<PackToken>) -> Self {
-        let mut gloss = Self { text: String::new(), places: Vec::new(), tokens };
+    /// Adds the words of chunks, with commas between clauses.
+    fn add_chunks(&mut self, chunks: &[Chunk]) {
         let mut is_joined = true;
         for sense in chunks.iter().filter_map(|chunk| chunk.senses.first()) {
             if sense.class == CLAUSE && !is_joined {
-                gloss.add_word(",", None);
+                self.add_word(",", None);
             }
             is_joined = JOINING.contains(&sense.class);
             for word in &sense.words {
-                gloss.add_word(&word.word, word.source);
+                self.add_word(&word.word, word.source);
             }
         }
-        gloss
     }
 
     fn add_word(&mut self, word: &str, source: Option<[usize; 2]>) {

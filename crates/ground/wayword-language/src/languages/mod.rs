@@ -47,16 +47,14 @@ const PACKS: [PackFiles; 2] = [
     },
 ];
 
-static READ_PACKS: LazyLock<Vec<LanguagePack>> = LazyLock::new(|| {
-    PACKS.iter().map(|files| LanguagePack::parse(files.words, files.rules, files.is_spaced)).collect()
-});
+static READ_PACKS: LazyLock<Vec<LanguagePack>> = LazyLock::new(|| PACKS.iter().map(LanguagePack::parse).collect());
 
-/// A text in English words with the name of its language, where most of it is in the script of a language that has a pack; `None` for
+/// A text in English words, where most of it is in the script of a language that has a pack; `None` for
 /// English, and for what is not read.
-fn gloss_text(text: &str) -> Option<(&'static str, GlossedText)> {
+fn gloss_text(text: &str) -> Option<GlossedText> {
     let Language::Other(language) = script_language(text) else { return None };
-    let at = PACKS.iter().position(|files| files.language == language)?;
-    Some((language, READ_PACKS.get(at)?.gloss(text)))
+    let pack = READ_PACKS.iter().find(|pack| pack.language == language)?;
+    Some(pack.gloss(text))
 }
 
 /// Whether the program reads a language: `Some(true)` only in part, as an experiment; `None` where it does not.

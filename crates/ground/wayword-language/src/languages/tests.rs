@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use wayword_core::{ClimbDirection, Side};
 
 fn gloss(text: &str) -> String {
-    gloss_text(text).unwrap().1.text().to_owned()
+    gloss_text(text).unwrap().text().to_owned()
 }
 
 fn read(text: &str) -> TextReading {
@@ -161,7 +161,7 @@ fn what_no_list_has_stays_unknown() {
 #[test]
 fn byte_ranges_of_the_gloss_lead_back_to_the_text() {
     let text = "走到沙发旁边，左转。";
-    let (_, glossed) = gloss_text(text).unwrap();
+    let glossed = gloss_text(text).unwrap();
     let source = |words: &str| {
         let from = glossed.text().find(words).unwrap();
         let [from, to] = glossed.source_span([from, from + words.len()]);
@@ -265,7 +265,7 @@ fn english_and_what_has_no_pack_is_not_glossed() {
 proptest! {
     #[test]
     fn any_text_is_glossed_with_places_in_it(text in "[走到的左右转沙发门口停下，。前旁第一个楼梯上下往方向x 1]{3,60}|[\\u{900}-\\u{97F} ]{3,40}") {
-        let Some((_, glossed)) = gloss_text(&text) else { return Ok(()) };
+        let Some(glossed) = gloss_text(&text) else { return Ok(()) };
         for token in crate::text::split_tokens(glossed.text()) {
             let [from, to] = glossed.source_span(token.span);
             prop_assert!(text.get(from..to).is_some());

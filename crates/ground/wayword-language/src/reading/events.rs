@@ -20,7 +20,7 @@ pub struct TextReading {
     pub words: Vec<ReadWord>,
     /// The clauses of the text, by the number that events have.
     pub clauses: Vec<TextClause>,
-    /// The language of the text. Parts in another language than English are not read.
+    /// The language of the words that were read. Parts in another language than English are not read.
     pub language: Language,
     /// Its tokens, so that the text need not be split again. A reading without its denied events still has all of them,
     /// and shares them with the reading that it was made from.

@@ -2,7 +2,7 @@
 //! texts is.
 //!
 //! All figures equal those of `pycocoevalcap` to the last digit that it prints. A figure can only be compared with others of
-//! the same protocol: the tokens ([`ptb_tokens`] or [`split_tokens`]), the references, and whether texts were cut off.
+//! the same protocol: the tokens ([`ptb_tokens`], [`split_tokens`] or [`character_tokens`]), the references, and whether texts were cut off.
 
 mod anchored;
 mod bleu;

@@ -271,14 +271,14 @@ impl<'a> TextChecker<'a> {
         let uses_witnesses = some_are_open && !how.without_witnesses && walk.texts.len() > 1;
         // A text of a Wayword record is no witness: one writer wrote all texts of its run, with the same mistakes in
         // each.
-        let testimony = |text: &FileText| {
-            let words = || self.readable_text(text);
-            (uses_witnesses && text.origin.is_none()).then(|| Testimony::from_text(words().english(), &evidence))
+        let texts: Vec<(&FileText, ReadableText<'_>)> =
+            walk.texts.iter().map(|text| (text, self.readable_text(text))).collect();
+        let testimony = |(text, readable): &(&FileText, ReadableText<'_>)| {
+            (uses_witnesses && text.origin.is_none()).then(|| Testimony::from_text(readable.english(), &evidence))
         };
-        let testimonies: Vec<Option<Testimony>> = walk.texts.iter().map(testimony).collect();
-        let checked = walk.texts.iter().zip(&testimonies).map(|(text, own_testimony)| {
+        let testimonies: Vec<Option<Testimony>> = texts.iter().map(testimony).collect();
+        let checked = texts.iter().zip(&testimonies).map(|((text, readable), own_testimony)| {
             let check_style = self.styles.style_or_any(text);
-            let readable = self.readable_text(text);
             let (words, tag) = (readable.english(), readable.english_tag(text.tag.as_deref()));
             let read = followed.as_ref().map(|followed| {
                 let followed = followed.as_ref().map_err(|why| *why);
@@ -333,7 +333,7 @@ impl<'a> TextChecker<'a> {
                 let found = find_doubts(followed.as_ref(), (words, tag), (&checked, tries_changes), ambiguity.as_ref());
                 shown.doubted = Some(found);
             }
-            shown.put_into_text(&readable);
+            shown.put_into_text(readable);
             shown.ambiguity = ambiguity;
             if let Some(follower) = follower {
                 (shown.route, shown.turn_gain) = (follower.route, follower.turn_gain);

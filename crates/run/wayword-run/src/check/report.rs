@@ -172,9 +172,6 @@ impl CheckedText {
 
     /// Turns the byte ranges of its English words into those of its text.
     pub(super) fn put_into_text(&mut self, words: &ReadableText<'_>) {
-        if !words.is_glossed() {
-            return;
-        }
         let spans = self.findings.iter_mut().filter_map(|finding| finding.span.as_mut());
         let spans = spans.chain(self.coverage_of_walk.iter_mut().filter_map(|decision| decision.span.as_mut()));
         spans.for_each(|span| *span = words.source_span(*span));

@@ -10,11 +10,10 @@ const WORLD: [&str; 4] = ["--platform", "matterport", "--data", "data"];
 const RIGHT: &str = "往前直走，在走廊尽头停下。";
 const UNREAD: &str = "往前直走，魑魅魍魉。";
 
-/// A file of R2R's form with these texts for each of its items.
+/// Writes these texts for each item of the building's R2R, and returns their number.
 fn write_texts(building: &Building, texts: &[&str]) -> usize {
-    let mut items: Vec<Value> = serde_json::from_slice(&fs::read(building.r2r()).unwrap()).unwrap();
-    items.iter_mut().for_each(|item| item["instructions"] = json!(texts));
-    building.write("zh.json", Value::from(items.clone()).to_string());
+    let file = building.change_items(&building.r2r(), |item| item["instructions"] = json!(texts), "zh.json");
+    let items: Vec<Value> = serde_json::from_slice(&fs::read(building.path(&file)).unwrap()).unwrap();
     items.len() * texts.len()
 }
 

@@ -5,18 +5,10 @@
 
 use crate::common::{Building, EPISODES};
 use serde_json::{Value, json};
-use std::fs;
 
 const WORLD: [&str; 4] = ["--platform", "matterport", "--data", "data"];
 const GERMAN: &str = "Gehe an der Lampe vorbei und warte am Schreibtisch in der Küche.";
 const CHINESE: &str = "走出卫生间沿着床左转走出卧室，绕过圆桌走到沙发旁。";
-
-fn items(building: &Building, dataset: &std::path::Path, change: impl Fn(&mut Value), name: &str) -> String {
-    let mut items: Vec<Value> = serde_json::from_slice(&fs::read(dataset).unwrap()).unwrap();
-    items.iter_mut().for_each(change);
-    building.write(name, Value::from(items).to_string());
-    name.to_owned()
-}
 
 #[test]
 fn texts_far_from_the_lengths_of_their_style_are_told() {
@@ -54,7 +46,7 @@ fn an_object_that_the_scene_lacks_is_named() {
         item["objId"] = json!(99999);
         item["id"] = json!(format!("{}_99999", item["path_id"]));
     };
-    let file = items(&building, &building.reverie(), change, "texts.json");
+    let file = building.change_items(&building.reverie(), change, "texts.json");
     let check = |file: &str| building.wayword(&[&["check", file, "--json"], &WORLD[..]].concat());
     let found = check(&file);
     assert_eq!(found.code, Some(3), "{found:?}");
@@ -79,7 +71,7 @@ fn an_object_that_the_scene_lacks_is_named() {
 fn texts_in_another_language_are_no_zeros_in_a_table() {
     let building = Building::new();
     let in_language = |text: &'static str, name: &str| {
-        items(&building, &building.r2r(), |item| item["instructions"] = json!([text, text]), name)
+        building.change_items(&building.r2r(), |item| item["instructions"] = json!([text, text]), name)
     };
     let (german, chinese) = (in_language(GERMAN, "de.json"), in_language(CHINESE, "zh.json"));
     let english = "data/r2r/R2R_val_seen.json";
@@ -115,7 +107,7 @@ fn texts_in_another_language_are_no_zeros_in_a_table() {
 fn a_style_in_another_language_is_refused_where_rules_write() {
     let building = Building::new();
     building.write("german.toml", format!("name = \"de\"\nreferences = [{GERMAN:?}]"));
-    items(&building, &building.r2r(), |item| item["instructions"] = json!([CHINESE]), "zh.json");
+    building.change_items(&building.r2r(), |item| item["instructions"] = json!([CHINESE]), "zh.json");
     for (style, told) in
         [("german.toml", "are in German, such as \"Gehe an der Lampe"), ("r2r=zh.json", "are in Chinese")]
     {

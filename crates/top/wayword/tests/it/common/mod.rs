@@ -62,6 +62,14 @@ impl Building {
         self.path("data/r2r/R2R_val_seen.json")
     }
 
+    /// Writes a file of this name with the items of a dataset, each of them changed. Returns the name.
+    pub(crate) fn change_items(&self, dataset: &Path, change: impl Fn(&mut Value), name: &str) -> String {
+        let mut items: Vec<Value> = serde_json::from_slice(&fs::read(dataset).unwrap()).unwrap();
+        items.iter_mut().for_each(change);
+        self.write(name, Value::from(items).to_string());
+        name.to_owned()
+    }
+
     /// `wayword ARGS` on the building, in its folder.
     pub(crate) fn command(&self, args: &[&str]) -> Command {
         let mut command = command(args);
