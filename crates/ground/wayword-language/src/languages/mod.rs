@@ -8,10 +8,12 @@
 
 mod chunks;
 mod gloss;
+mod naming;
 mod pack_words;
 mod rules;
 
 pub use gloss::ReadableText;
+pub use naming::{word_for_look, word_for_name};
 
 use crate::Language;
 use crate::language::script_language;
