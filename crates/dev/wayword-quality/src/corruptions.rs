@@ -97,7 +97,7 @@ fn catch_table(counts: &CatchCounts) -> String {
 fn open_run(folder: &Path, output: &CommandOutput) -> Result<LabelledRun, CommandError> {
     let settings = read_run_settings(folder)?;
     let platform = platforms::open_platform(&settings)?;
-    let styles = styles::find_styles(&settings.style)?.into_iter().map(|measured| measured.style).collect();
+    let styles = styles::find_run_styles(&settings)?.into_iter().map(|measured| measured.style).collect();
     let mut records = jsonl::read_records(&folder.join(file::INSTRUCTIONS))?;
     records.retain(|record| record.instruction.verdict == Verdict::Pass);
     let mut paths: Vec<_> = records.iter().map(|record| &record.path).collect();

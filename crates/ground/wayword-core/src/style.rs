@@ -8,6 +8,9 @@ use serde::{Deserialize, Serialize};
 pub struct InstructionStyle {
     /// Its name, as `--style` takes it.
     pub name: String,
+    /// The language of its texts, as a tag such as "zh"; empty for English.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub language: String,
     /// Texts in this style. The writer imitates their shape and may not copy them.
     #[serde(default)]
     pub references: Vec<String>,
@@ -20,6 +23,23 @@ pub struct InstructionStyle {
     /// The rules for a text of this style.
     #[serde(default)]
     pub constraints: StyleConstraints,
+}
+
+impl InstructionStyle {
+    /// The same style with texts in another language, of which its name gets the tag. How many sentences a text has at least is a rule for one
+    /// language: others join more clauses by commas.
+    #[must_use]
+    pub fn in_language(&self, tag: &str) -> Self {
+        let constraints = StyleConstraints { min_sentences: None, ..self.constraints.clone() };
+        Self { name: format!("{}-{tag}", self.name), language: tag.to_owned(), constraints, ..self.clone() }
+    }
+
+    /// The name by which random draws are made. It is the same in all languages, so that the texts for a path agree in what they name.
+    #[must_use]
+    pub fn draw_name(&self) -> &str {
+        let base = self.name.strip_suffix(self.language.as_str()).and_then(|base| base.strip_suffix('-'));
+        base.filter(|_| !self.language.is_empty()).unwrap_or(&self.name)
+    }
 }
 
 /// Choices that references cannot show. A field that is `None` is left to the program.
@@ -52,4 +72,18 @@ pub struct StyleConstraints {
     pub fewer_words_than: Option<usize>,
     /// The text ends in a task on an object of the final viewpoint.
     pub ends_in_task: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn draws_are_the_same_in_every_language() {
+        let style = InstructionStyle { name: "r2r".into(), ..InstructionStyle::default() };
+        let chinese = style.in_language("zh");
+        assert_eq!((chinese.name.as_str(), chinese.draw_name(), style.draw_name()), ("r2r-zh", "r2r", "r2r"));
+        let own = InstructionStyle { name: "mine-zh".into(), ..InstructionStyle::default() };
+        assert_eq!(own.draw_name(), "mine-zh");
+    }
 }

@@ -4,7 +4,6 @@ use crate::{
     check::path_texts::{FileText, PathTexts, read_path_texts},
     error::{CommandError, Exit},
     follow::{FollowedPath, KnownScenes},
-    glossed_parts::put_parts_into_text,
     interrupt,
     output::CommandOutput,
     pipeline::path_panoramas,
@@ -16,7 +15,7 @@ use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::{fmt, path::PathBuf};
-use wayword_checks::{Evidence, WalkMemory};
+use wayword_checks::{Evidence, WalkMemory, put_parts_into_text};
 use wayword_core::{InstructionPart, Platform};
 use wayword_language::languages::ReadableText;
 

@@ -41,7 +41,6 @@ pub mod error;
 pub mod error_parts;
 pub mod follow;
 pub mod generate;
-mod glossed_parts;
 pub mod in_order;
 pub mod interrupt;
 pub mod item;

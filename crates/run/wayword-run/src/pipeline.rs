@@ -15,11 +15,12 @@ use crate::{
     team::RoleTeam,
 };
 use std::collections::BTreeMap;
-use wayword_checks::{Evidence, EvidenceSource, TextFindings, WalkMemory, parts_from_mentions};
+use wayword_checks::{Evidence, EvidenceSource, TextFindings, WalkMemory, parts_from_mentions, put_parts_into_text};
 use wayword_core::{
     Caption, Frame, Instruction, InstructionPart, ModelError, Path, Platform, PlatformError, SceneId, TextAmbiguity,
     View, ViewGaze,
 };
+use wayword_language::languages::ReadableText;
 use wayword_ledger::{CallAccount, CallContext};
 use wayword_synthesis::{
     detection::{detector_evidence, seek_along_path},
@@ -307,7 +308,11 @@ impl PathFollower<'_> {
     fn parts(&self, instruction: &Instruction, frames: usize) -> Vec<InstructionPart> {
         match &self.followed {
             Ok(followed) => {
-                followed.align_text(&instruction.text, None, (self.evidence, self.memory)).unwrap_or_default()
+                let words = ReadableText::new(&instruction.text, None);
+                let aligned = followed.align_text(words.english(), None, (self.evidence, self.memory));
+                let mut parts = aligned.unwrap_or_default();
+                put_parts_into_text(&mut parts, &words);
+                parts
             }
             Err(_) => parts_from_mentions(&instruction.text, &instruction.mentions, frames),
         }

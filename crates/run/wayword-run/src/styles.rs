@@ -1,13 +1,13 @@
 //! Finds the styles that a run names: built-in ones, TOML files, and the texts of datasets.
 
 use crate::{
-    error::CommandError, similar::did_you_mean, text_file, text_language::ForeignTexts,
+    error::CommandError, settings::RunSettings, similar::did_you_mean, text_file, text_language::ForeignTexts,
     toml_message::plain_toml_message,
 };
 use std::path::Path;
 use wayword_core::{InstructionStyle, StyleConstraints};
 use wayword_synthesis::style::{
-    StyleError, StyleProfile, built_in, built_in_names, hash_style, parse_style_with, validate_style,
+    LanguageWording, StyleError, StyleProfile, built_in, built_in_names, hash_style, parse_style_with, validate_style,
 };
 
 /// A style with the measures of its reference texts.
@@ -29,23 +29,43 @@ impl MeasuredStyle {
     }
 }
 
-/// Refuses styles in another language where rules write: they put English into the shape of its texts. `names` are the styles as
-/// they were given.
+/// Refuses styles in a language that rules do not write. `names` are the styles as they were given, without the languages that each is
+/// written in.
 ///
 /// # Errors
 /// When most of the references of one are not English.
 pub(crate) fn refuse_foreign_styles(names: &[String], styles: &[MeasuredStyle]) -> Result<(), CommandError> {
-    for (name, style) in names.iter().zip(styles) {
+    let languages = (styles.len() / names.len().max(1)).max(1);
+    for (name, style) in names.iter().flat_map(|name| std::iter::repeat_n(name, languages)).zip(styles) {
+        if !style.style.language.is_empty() {
+            continue;
+        }
         if let Some(ForeignTexts { language, example }) = style.foreign_references() {
-            let problem =
-                format!("{name}: its reference texts are in {language}, such as {example:?}, and rules write English");
-            let hint =
-                "give a style with English texts, or a model that writes (--write); the checks read English only";
+            let problem = format!(
+                "{name}: its reference texts are in {language}, such as {example:?}, and rules do not write that"
+            );
+            let hint = "give a style with English or Chinese texts, or a model that writes (--write)";
             return Err(CommandError::usage(problem, hint));
         }
     }
     Ok(())
 }
+
+/// The tag of a language that texts are written in, as a flag takes it.
+///
+/// # Errors
+/// When the program does not write it.
+pub(crate) fn check_language(tag: &str) -> Result<String, String> {
+    let tag = tag.trim();
+    let known = [ENGLISH].into_iter().chain(LanguageWording::written_tags());
+    if known.clone().any(|known| known == tag) {
+        return Ok(tag.to_owned());
+    }
+    Err(format!("give {}", known.collect::<Vec<_>>().join(" or ")))
+}
+
+/// The tag of English.
+const ENGLISH: &str = "en";
 
 /// The name of a style as a flag takes it: a built-in style, a TOML file, or NAME=DATASET.
 ///
@@ -70,15 +90,48 @@ fn is_toml(name: &str) -> bool {
 /// # Errors
 /// When one cannot be found or read, or two have one name.
 pub fn find_styles(names: &[String]) -> Result<Vec<MeasuredStyle>, CommandError> {
-    let mut styles: Vec<MeasuredStyle> = Vec::new();
+    find_styles_in(names, &[])
+}
+
+/// The styles of a run, each in the languages that the run asks for.
+///
+/// # Errors
+/// As [`find_styles`].
+pub fn find_run_styles(settings: &RunSettings) -> Result<Vec<MeasuredStyle>, CommandError> {
+    find_styles_in(&settings.style, &settings.language)
+}
+
+fn find_styles_in(names: &[String], languages: &[String]) -> Result<Vec<MeasuredStyle>, CommandError> {
+    let mut styles: Vec<(InstructionStyle, &String)> = Vec::new();
     for name in names {
         let style = find_one(name)?;
-        if let Some((_, other)) = styles.iter().zip(names).find(|(other, _)| other.style.name == style.name) {
-            return Err(same_name_error(&style.name, other, name));
+        for style in in_languages(&style, languages) {
+            if let Some((_, other)) = styles.iter().find(|(other, _)| other.name == style.name) {
+                return Err(same_name_error(&style.name, other, name));
+            }
+            styles.push((style, name));
         }
-        styles.push(measure_style(style));
     }
-    Ok(styles)
+    Ok(styles.into_iter().map(|(style, _)| measure_style(style)).collect())
+}
+
+/// A style in these languages, each once; in its own if there are none. In its own language it keeps its name.
+fn in_languages(style: &InstructionStyle, languages: &[String]) -> Vec<InstructionStyle> {
+    let own = if style.language.is_empty() { ENGLISH } else { &style.language };
+    let mut all: Vec<InstructionStyle> = Vec::new();
+    for tag in languages {
+        let style = if tag == own { style.clone() } else { style.in_language(tag) };
+        if !all.contains(&style) {
+            all.push(style);
+        }
+    }
+    if languages.is_empty() { vec![style.clone()] } else { all }
+}
+
+/// The language of a style's texts, where the program writes it.
+fn written_language(references: &[String]) -> Option<&'static str> {
+    let foreign = ForeignTexts::find(references.iter().map(String::as_str))?;
+    LanguageWording::of_language(foreign.language).map(LanguageWording::tag)
 }
 
 /// A style with its measures.
@@ -117,6 +170,18 @@ fn find_one(name: &str) -> Result<InstructionStyle, CommandError> {
         return Err(CommandError::usage(problem, format!("give the style alone, as in --style {file}")));
     }
     let more = dataset.map(dataset_texts).transpose()?;
+    let mut style = find_named(name, more)?;
+    if style.language.is_empty()
+        && let Some(tag) = written_language(&style.references)
+    {
+        // A style keeps its name in its own language.
+        style = InstructionStyle { name: style.name.clone(), ..style.in_language(tag) };
+    }
+    Ok(style)
+}
+
+/// A built-in style, or that of a file, with the texts of a dataset in addition.
+fn find_named(name: &str, more: Option<Vec<String>>) -> Result<InstructionStyle, CommandError> {
     if is_toml(name) {
         let text = text_file::read_text_file(Path::new(name), "read the style")?;
         let style = parse_style_with(name, &text, more.unwrap_or_default()).map_err(suggest_field)?;

@@ -3,7 +3,7 @@
 use super::{findings_or_pass, new_finding};
 use std::collections::BTreeSet;
 use wayword_core::{CheckFinding, CheckKind, InstructionStyle, Verdict};
-use wayword_language::{reading::TextReading, text::word_count};
+use wayword_language::reading::TextReading;
 
 /// A text is far from a wanted number of words where it differs by more than this share of the number, and by more than
 /// [`FAR_WORDS`].
@@ -12,10 +12,10 @@ const FAR_SHARE: f64 = 0.5;
 const FAR_WORDS: usize = 5;
 
 /// The findings about the length of a text: a pass if it keeps all limits of its style, and is not far from the lengths that
-/// the style gives.
-pub(super) fn check_form(text: &str, reading: &TextReading, style: &InstructionStyle) -> Vec<CheckFinding> {
+/// the style gives. `words` is its number of words.
+pub(super) fn check_form(words: usize, reading: &TextReading, style: &InstructionStyle) -> Vec<CheckFinding> {
     let constraints = &style.constraints;
-    let (sentences, words) = (reading.count_sentences(), word_count(text));
+    let sentences = reading.count_sentences();
     let counted = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
     let mut wrong = Vec::new();
     let mut fail = |reason: String| wrong.push(new_finding(CheckKind::Form, Verdict::Fail, reason, None));
@@ -65,11 +65,11 @@ fn list_numbers(numbers: &[usize]) -> String {
 mod tests {
     use super::*;
     use wayword_core::StyleConstraints;
-    use wayword_language::reading::read_instruction;
+    use wayword_language::{reading::read_instruction, text::word_count};
 
     fn findings(text: &str, constraints: &StyleConstraints) -> Vec<CheckFinding> {
         let style = InstructionStyle { constraints: constraints.clone(), ..InstructionStyle::default() };
-        check_form(text, &read_instruction(text, &BTreeSet::new()), &style)
+        check_form(word_count(text), &read_instruction(text, &BTreeSet::new()), &style)
     }
 
     fn reasons(text: &str, constraints: &StyleConstraints) -> Vec<String> {
@@ -107,7 +107,7 @@ mod tests {
         let reason = |count: usize, wanted: &[usize], constraints: StyleConstraints| {
             let style = InstructionStyle { words: wanted.to_vec(), constraints, ..InstructionStyle::default() };
             let text = format!("{}stop.", "walk ".repeat(count - 1));
-            let mut found = check_form(&text, &read_instruction(&text, &BTreeSet::new()), &style);
+            let mut found = check_form(word_count(&text), &read_instruction(&text, &BTreeSet::new()), &style);
             assert_eq!(found.len(), 1, "{found:?}");
             let CheckFinding { verdict, reason, .. } = found.remove(0);
             (verdict, reason)

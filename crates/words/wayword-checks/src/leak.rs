@@ -8,6 +8,7 @@ use std::{
 };
 use wayword_core::{CheckFinding, CheckKind, Verdict};
 use wayword_language::{
+    languages::ReadableText,
     lexicon::{names_agree, normalise_name, room_name, same_room},
     reading::{
         TextReading,
@@ -55,12 +56,24 @@ impl ReferenceRuns {
         copies
     }
 
-    /// Indexes reference texts that were read before.
+    /// Indexes reference texts with their readings. Of a text that was read through English words, its own words are indexed, and long runs
+    /// alone: it has fewer small words than English, so that a short run is a formula more often.
     #[must_use]
-    pub fn from_readings<'a>(readings: impl IntoIterator<Item = &'a TextReading>) -> Self {
+    pub fn from_readings<'a>(texts: impl IntoIterator<Item = (&'a ReadableText<'a>, &'a TextReading)>) -> Self {
         let mut copies = Self::default();
-        readings.into_iter().for_each(|reading| copies.add_reference(reading.tokens()));
+        for (text, reading) in texts {
+            match text.own_tokens() {
+                Some(tokens) => copies.add_long_runs(&word_tokens(&tokens)),
+                None => copies.add_reference(reading.tokens()),
+            }
+        }
         copies
+    }
+
+    /// Adds the long runs of these words.
+    fn add_long_runs(&mut self, words: &[&TextToken]) {
+        self.avoided.extend(words.windows(AVOIDED_RUN).map(run_hash));
+        self.long.extend(words.windows(LONG_RUN).map(run_hash));
     }
 
     /// Adds the runs of a reference text, of which these are the tokens.
@@ -71,8 +84,7 @@ impl ReferenceRuns {
             let count = self.shared.entry(run).or_default();
             *count = (*count + 1).min(FORMULA_REFERENCES);
         }
-        self.avoided.extend(runs(AVOIDED_RUN));
-        self.long.extend(runs(LONG_RUN));
+        self.add_long_runs(&words);
     }
 
     /// The byte range of the first run of a text that is copied. `tokens` are those of the text.
@@ -122,16 +134,23 @@ fn is_content(word: &str, topic: TextTopic<'_>) -> bool {
     !(is_of_way || is_of_storey || ordinal_or_number(word) || is_target() || is_room())
 }
 
-/// The finding about copied words: a failure at the first copy. `tokens` are those of the text.
+/// The finding about copied words: a failure at the first copy. `tokens` are those of the text, or of the English words that are read in its
+/// place.
 pub(super) fn check_leak(text: &str, tokens: &[TextToken], subject: CheckSubject<'_>) -> CheckFinding {
     let rooms = subject.evidence.frames.last().map_or(&[][..], |frame| &frame.rooms);
     let topic = TextTopic { target: subject.target.map(|target| target.name.as_str()), rooms };
+    let words = subject.own_tokens.unwrap_or(tokens);
     let copied = match subject.copies {
-        Some(copies) => copies.find_copy(tokens, topic),
-        None => ReferenceRuns::from_references(&subject.style.references).find_copy(tokens, topic),
+        Some(copies) => copies.find_copy(words, topic),
+        None => ReferenceRuns::from_references(&subject.style.references).find_copy(words, topic),
     };
     match copied {
         None => pass_finding(CheckKind::Leak),
+        // The place of a word of the text among its English words is not known here.
+        Some(_) if subject.own_tokens.is_some() => {
+            let reason = "a reference text has the same words for a long stretch".to_owned();
+            new_finding(CheckKind::Leak, Verdict::Fail, reason, None)
+        }
         Some(span) => {
             let reason = format!("{:?} is in a reference text too", &text[span[0]..span[1]]);
             new_finding(CheckKind::Leak, Verdict::Fail, reason, Some(span))

@@ -17,6 +17,7 @@
 //! - `walk_coverage`: which decisions of a walk a text tells.
 //! - `align`, `order`, `goal`: the order and the end of a text where `walk_claims` does not judge them.
 //! - `mentioned_parts`: the parts of a text by its mentions alone, where the motion along its path is unknown.
+//! - `glossed_spans`: byte ranges of texts that were read through English words.
 //! - `straights`: claims to go straight on over sharp turns, where frames lie far apart.
 //! - `one_place`: a path that goes nowhere, as in a test split, decides nothing.
 //! - `coverage`: what was not understood. `leak`: what was copied from a style's references.
@@ -31,6 +32,7 @@ pub mod detection;
 mod evidence;
 mod floors;
 mod form;
+mod glossed_spans;
 mod goal;
 mod landmarks;
 mod leak;
@@ -58,12 +60,14 @@ use wayword_core::{
 use wayword_language::{
     lexicon::{names_agree, normalise_name, same_colour},
     reading::{EventContent, TextEvent, TextReading, read_instruction, steps::read_steps},
+    text::{TextToken, word_count},
 };
 
 pub use evidence::{
     BuildingInventory, EndSurroundings, Evidence, EvidenceSource, FrameEvidence, ListedDistance, NEAR_M,
     PathSurroundings, SeenThing, UnsureSightings,
 };
+pub use glossed_spans::put_parts_into_text;
 pub use goal::{UNDECIDED_AT_END, UNDECIDED_END_ROOM};
 pub use landmarks::UNDECIDED_PRESENCE;
 pub use leak::{FORMULA_REFERENCES, LONG_RUN, ReferenceRuns, SHARED_RUN, TextTopic};
@@ -94,6 +98,8 @@ pub struct CheckSubject<'a> {
     pub writer_sees: bool,
     /// The index of the style's reference texts; where there is none, it is made for each text.
     pub copies: Option<&'a ReferenceRuns>,
+    /// The words of the text itself, where English words are read in its place.
+    pub own_tokens: Option<&'a [TextToken]>,
     /// The memory of the walk, with its poses. In a closed world, each claim is held against its own stretch of it.
     pub memory: Option<&'a WalkMemory>,
 }
@@ -113,6 +119,7 @@ impl<'a> CheckSubject<'a> {
             tag: None,
             writer_sees: false,
             copies: None,
+            own_tokens: None,
             memory: None,
         }
     }
@@ -183,7 +190,8 @@ fn check_against(
     from_captions_alone: bool,
 ) -> TextFindings {
     let reading = whole.clone().into_claims();
-    let mut findings = form::check_form(text, whole, subject.style);
+    let words = subject.own_tokens.map_or_else(|| word_count(text), <[TextToken]>::len);
+    let mut findings = form::check_form(words, whole, subject.style);
     let ends_in_task = subject.style.constraints.ends_in_task;
     if ends_in_task {
         findings.push(task::check_task(&reading, subject));

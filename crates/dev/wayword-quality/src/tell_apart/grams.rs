@@ -2,6 +2,7 @@
 
 use super::logistic::SparseRow;
 use std::collections::{BTreeMap, BTreeSet};
+use wayword_metrics::captions::{character_tokens, stands_alone};
 
 /// The longest run of words that is a feature.
 const MAX_GRAM_WORDS: usize = 3;
@@ -10,12 +11,17 @@ const MIN_GRAM_TEXTS: usize = 2;
 /// The unit of the length feature, words.
 const LENGTH_UNIT_WORDS: f64 = 20.0;
 
-/// A text in lower case, with letters and digits of ASCII alone, and one space between words.
+/// A text in lower case, with letters and digits of ASCII alone, and one space between words. Each Chinese or Japanese character is a word.
 pub(super) fn to_plain(text: &str) -> String {
-    let kept = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { ' ' };
-    let lower = text.to_lowercase();
-    let kept: String = lower.chars().map(kept).collect();
-    kept.split_whitespace().collect::<Vec<_>>().join(" ")
+    let tokens = character_tokens(&text.to_lowercase());
+    let is_character = |token: &str| token.chars().all(|c| c.is_alphanumeric() && stands_alone(c));
+    let kept = |c: char| if c.is_ascii_alphanumeric() { c } else { ' ' };
+    let plain = |token: &String| match is_character(token) {
+        true => token.clone(),
+        false => token.chars().map(kept).collect(),
+    };
+    let words = tokens.iter().map(plain).collect::<Vec<String>>().join(" ");
+    words.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// The runs of words of a plain text.
@@ -64,6 +70,7 @@ mod tests {
     #[test]
     fn case_marks_and_white_space_are_no_features() {
         assert_eq!(to_plain(" Walk\tto the\nTV-stand,  it's lit. "), "walk to the tv stand it s lit");
+        assert_eq!(to_plain("走出TV房，左转。 È caffè 2"), "走 出 tv 房 左 转 caff 2");
     }
 
     #[test]

@@ -8,6 +8,7 @@ use super::{
 };
 use crate::Language;
 use crate::reading::{ReadWord, WordRole, role_words::STOP_WORDS};
+use crate::text::TextToken;
 use std::collections::BTreeMap;
 
 /// A language that is read through English words.
@@ -82,17 +83,38 @@ impl<'a> ReadableText<'a> {
         self.gloss.is_some()
     }
 
+    /// The name of its language, where it was put into English words.
+    #[must_use]
+    pub fn glossed_language(&self) -> Option<&'static str> {
+        self.gloss.as_ref().map(|gloss| gloss.language)
+    }
+
+    /// The text itself.
+    #[must_use]
+    pub fn text(&self) -> &'a str {
+        self.text
+    }
+
     /// The name of its language, where that is read only in part, as an experiment.
     #[must_use]
     pub fn experimental_language(&self) -> Option<&'static str> {
-        let language = self.gloss.as_ref().map(|gloss| gloss.language);
-        language.filter(|language| super::reads_in_part(language) == Some(true))
+        self.glossed_language().filter(|language| super::reads_in_part(language) == Some(true))
     }
 
     /// The tag of the language of the English words, where `tag` is that of the text.
     #[must_use]
     pub fn english_tag<'t>(&self, tag: Option<&'t str>) -> Option<&'t str> {
         tag.filter(|_| !self.is_glossed())
+    }
+
+    /// The words of the text itself, where English words are read in its place.
+    #[must_use]
+    pub fn own_tokens(&self) -> Option<Vec<TextToken>> {
+        let token = |token: &PackToken| {
+            let [from, to] = token.span;
+            TextToken { word: self.text[from..to].to_lowercase(), span: token.span }
+        };
+        self.gloss.as_ref().map(|gloss| gloss.tokens.iter().map(token).collect())
     }
 
     /// The words of the text, where `words` are those of its English words. A word is understood if the pack knows it, and the reader the
@@ -115,6 +137,15 @@ impl<'a> ReadableText<'a> {
         gloss.tokens.iter().map(read).collect()
     }
 
+    /// The byte range of the text that the English word at a byte range stands for; `None` for a word that English alone needs.
+    #[must_use]
+    pub fn source_of_word(&self, span: [usize; 2]) -> Option<[usize; 2]> {
+        match &self.gloss {
+            Some(gloss) => gloss.source_of_word(span),
+            None => Some(span),
+        }
+    }
+
     /// The byte range of the text that a byte range of the English words means.
     #[must_use]
     pub fn source_span(&self, span: [usize; 2]) -> [usize; 2] {
@@ -127,6 +158,17 @@ impl LanguagePack {
     pub(super) fn parse(files: &PackFiles) -> Self {
         let words = PackWords::parse(files.words, files.is_spaced);
         Self { language: files.language, words, stages: parse_stages(files.rules).unwrap_or_default() }
+    }
+
+    /// The English words of the things and rooms that a text in the language names.
+    pub(super) fn named_in(&self, text: &str) -> Vec<String> {
+        let (chunks, _) = self.words.split_chunks(text);
+        let senses = chunks.iter().filter_map(|chunk| chunk.senses.first());
+        let names = senses.filter(|sense| matches!(sense.class, "thing" | "room"));
+        let english = |sense: &super::chunks::ChunkSense| {
+            sense.words.iter().map(|word| word.word.as_str()).collect::<Vec<_>>().join(" ")
+        };
+        names.map(english).collect()
     }
 
     pub(super) fn gloss(&self, text: &str) -> GlossedText {

@@ -1,6 +1,6 @@
 //! The words of a language for what has a name in English.
 
-use super::{PACKS, PackFiles};
+use super::{PACKS, PackFiles, READ_PACKS};
 use crate::Language;
 use crate::data;
 use crate::lexicon::{kinds_of, normalise_name, room_name};
@@ -66,6 +66,14 @@ pub fn word_for_look(tag: &str, english: &str) -> Option<&'static str> {
     NamingWords::of_language(tag)?.looks.get(english).copied()
 }
 
+/// The English words of the things and rooms that words of a language, by its tag, name.
+#[must_use]
+pub fn names_within(tag: &str, words: &str) -> Vec<String> {
+    let Language::Other(language) = Language::from_tag(tag) else { return Vec::new() };
+    let pack = READ_PACKS.iter().find(|pack| pack.language == language);
+    pack.map(|pack| pack.named_in(words)).unwrap_or_default()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -88,6 +96,7 @@ mod tests {
         }
         assert_eq!(word_for_name("zh", "zorble"), None);
         assert_eq!(word_for_name("en", "sofa"), None);
+        assert_eq!(names_within("zh", "走到{l}旁边的卧室"), ["bedroom"]);
         assert_eq!((word_for_look("zh", "red"), word_for_look("zh", "plaid")), (Some("红色"), None));
     }
 

@@ -17,7 +17,8 @@ pub fn character_tokens(text: &str) -> Vec<String> {
 }
 
 /// Whether a character is a word or a mark of Chinese or Japanese.
-fn stands_alone(c: char) -> bool {
+#[must_use]
+pub fn stands_alone(c: char) -> bool {
     matches!(c, '\u{3000}'..='\u{30FF}' | '\u{3400}'..='\u{4DBF}' | '\u{4E00}'..='\u{9FFF}' | '\u{FF00}'..='\u{FF65}')
 }
 

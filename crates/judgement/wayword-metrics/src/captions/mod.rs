@@ -18,7 +18,7 @@ pub use anchored::{
     AnchoredCaptionFigures, CaptionFigures, CaptionItem, CaptionRowSets, anchored_caption_figures, draw_other_paths,
 };
 pub use bleu::BleuCounts;
-pub use character_tokens::character_tokens;
+pub use character_tokens::{character_tokens, stands_alone};
 pub use cider::cider_d;
 pub use diversity::{TextDiversity, measure_diversity};
 pub use numbered_text::{CaptionVocabulary, NumberedText};

@@ -33,7 +33,7 @@ impl BaseRun {
     pub(super) fn read_run(folder: &FilePath, limit: Option<u32>) -> Result<Self, CommandError> {
         expect_run(folder)?;
         let settings = RunSettings { per_path: 1, ..read_run_settings(folder)? };
-        let styles = styles::find_styles(&settings.style)?;
+        let styles = styles::find_run_styles(&settings)?;
         let max_paths = limit.map_or(usize::MAX, |limit| limit as usize);
         let mut paths: Vec<Path> = Vec::new();
         lines::each_line(&folder.join(file::WALKS), |line| {

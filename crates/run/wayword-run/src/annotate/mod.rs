@@ -27,7 +27,7 @@ use crate::{
     plan::JobModels,
     run_folder::{FolderLock, Journal, fresh_id, lines::each_line, lock_folder},
     settings::RunJob,
-    styles::{find_styles, measure_style},
+    styles::{find_run_styles, measure_style},
     team::RoleTeam,
     written_files::{expect_own_folder, write_file},
 };
@@ -94,7 +94,7 @@ pub fn annotate_dataset(args: &AnnotateArgs, output: &CommandOutput) -> Result<A
     expect_no_language(&args.dataset)?;
     let camera = chosen_camera(args)?;
     let job = args.asked_settings().into_job()?;
-    let styles = find_styles(&job.settings.style)?;
+    let styles = find_run_styles(&job.settings)?;
     let subtask = measure_style(parse_style("subtask", SUBTASK_STYLE)?);
     let mut episodes = dataset_episodes(&args.dataset)?;
     episodes.truncate(args.limit.unwrap_or(usize::MAX));

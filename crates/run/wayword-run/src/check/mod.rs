@@ -299,7 +299,9 @@ impl<'a> TextChecker<'a> {
             };
             let turns =
                 follower.as_ref().map_or(TurnJudge::NotJudged("the text is not followed"), |follower| follower.turns);
-            let subject = CheckSubject { tag, turns, ..subject.with_copies(&check_style.copies) };
+            let own_tokens = readable.own_tokens();
+            let own_tokens = own_tokens.as_deref();
+            let subject = CheckSubject { tag, turns, own_tokens, ..subject.with_copies(&check_style.copies) };
             // The texts of a run are checked as they were when it wrote them.
             let mut checked = if self.is_own_run { check_own_text(words, subject) } else { check_text(words, subject) };
             self.styles.leave_out_unasked(text, &mut checked);

@@ -1,10 +1,10 @@
 //! The report of `wayword check`: counts by verdict and check, and the texts that did not pass.
 
 use super::{CheckedWalk, args::ShownTexts, path_texts::FileText};
-use crate::{count::count_phrase, doubts::TextDoubts, follow::RouteShares, glossed_parts::put_parts_into_text};
+use crate::{count::count_phrase, doubts::TextDoubts, follow::RouteShares};
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt};
-use wayword_checks::{CoveredDecision, DecisionTold, TextFindings};
+use wayword_checks::{CoveredDecision, DecisionTold, TextFindings, put_parts_into_text};
 use wayword_core::{CheckFinding, CheckKind, DoubtGrade, InstructionPart, TextAmbiguity, TextDoubt, Verdict};
 use wayword_language::languages::ReadableText;
 

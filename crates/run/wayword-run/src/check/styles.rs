@@ -61,7 +61,7 @@ impl CheckStyles {
     /// As [`Self::for_style`], with the styles of a run in addition, as far as their files are still there.
     pub(super) fn for_run(style: Option<&str>, run: &RunSettings) -> Result<Self, CommandError> {
         let mut check_styles = Self::for_style(style)?;
-        let run_styles = styles::find_styles(&run.style).unwrap_or_default();
+        let run_styles = styles::find_run_styles(run).unwrap_or_default();
         check_styles.sole = (run_styles.len() == 1).then_some(check_styles.known.len());
         check_styles.known.extend(run_styles.into_iter().map(CheckStyle::from));
         Ok(check_styles)

@@ -127,9 +127,9 @@ fn say_house_spread(plan: &RunPlan<'_>, output: &CommandOutput) {
 /// could be free.
 fn warn_of_styles(settings: &RunSettings, styles: &[MeasuredStyle], output: &CommandOutput) {
     for style in styles {
-        if let Some(foreign) = style.foreign_references() {
+        if let Some(foreign) = style.foreign_references().filter(|_| style.style.language.is_empty()) {
             output.say(format_args!(
-                "warning: the reference texts of style {} are in {}; the checks read English only, so texts in it stay unverified",
+                "warning: the reference texts of style {} are in {}, which the checks do not read, so texts in it stay unverified",
                 style.style.name, foreign.language
             ));
         }

@@ -56,7 +56,7 @@ impl<'a> RunPlan<'a> {
     /// When a style or a detector's file cannot be read, the platform has no paths of this kind, two items share a name, or a
     /// model is not known.
     pub fn for_writing(job: &'a RunJob, platform: &'a dyn Platform) -> Result<Self, CommandError> {
-        let styles = styles::find_styles(&job.settings.style)?;
+        let styles = styles::find_run_styles(&job.settings)?;
         if job.settings.roles.write.model_name().is_none() {
             styles::refuse_foreign_styles(&job.settings.style, &styles)?;
         }

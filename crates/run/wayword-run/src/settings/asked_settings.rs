@@ -120,6 +120,10 @@ writing:
         /// given several times. [default: r2r and reverie]
         #[arg(long, value_name = "STYLE", value_parser = styles::check_style_name)]
         pub style: Option<Vec<String>>,
+        /// Write each style in these languages, separated by commas: en, zh (Chinese). In a language beside its own, the name of a style
+        /// gets the tag, as in r2r-zh. [default: the language of the style's texts]
+        #[arg(long, value_name = "TAGS", value_delimiter = ',', value_parser = styles::check_language)]
+        pub language: Option<Vec<String>>,
         /// At each frame, describe the view along the heading, or all four views. [default: central]
         #[arg(long)]
         pub frames: Option<AskedFrames>,

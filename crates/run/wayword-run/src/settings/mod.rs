@@ -65,6 +65,9 @@ pub struct RunSettings {
     pub request: PathRequest,
     /// Style names, files, or NAME=DATASET.
     pub style: Vec<String>,
+    /// Tags of the languages that each style is written in; empty for the style's own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub language: Vec<String>,
     /// Which views are captioned.
     pub frames: FrameSelection,
     /// Dialogue or fixed queries.
@@ -349,6 +352,7 @@ impl AskedSettings {
             scan: walks.scan.unwrap_or_default(),
             request,
             style: styles.unwrap_or_else(|| vec!["r2r".into(), "reverie".into()]),
+            language: writing.language.unwrap_or_default(),
             frames: writing.frames.map(FrameSelection::from).unwrap_or_default(),
             perception,
             questions: writing.questions.unwrap_or(DEFAULT_MAX_QUESTIONS),

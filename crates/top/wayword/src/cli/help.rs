@@ -16,7 +16,7 @@ struct HelpHeading {
 const HEADINGS: [HelpHeading; 11] = [
     heading("Where", true, &["platform", "data", "scan", "connectivity", "at", "island"]),
     heading("Paths", true, &["episodes", "item", "paths", "hops", "metres", "limit"]),
-    heading("Texts", true, &["instructions", "texts", "style", "per-path", "target"]),
+    heading("Texts", true, &["instructions", "texts", "style", "language", "per-path", "target"]),
     heading(
         "Views",
         true,

@@ -16,14 +16,14 @@ use crate::{
     observe::ObservationRoles,
     style::StyleProfile,
     walk::ObservedWalk,
-    writer::{FramePicture, InstructionWriter, TextComplaint, WritingBrief},
+    writer::{FramePicture, InstructionWriter, RulesInLanguage, RulesWriter, TextComplaint, WritingBrief},
 };
 use wayword_checks::{CheckSubject, Evidence, TextFindings, WalkMemory, check_own_text};
 use wayword_core::{
     CheckFinding, CheckKind, Instruction, InstructionStyle, ModelError, TextAmbiguity, TextProvenance, Verdict, View,
     WrittenDraft, seed,
 };
-use wayword_language::text::split_words;
+use wayword_language::{languages::ReadableText, text::split_words};
 
 /// Everything that an instruction is made from.
 #[derive(Clone, Copy)]
@@ -146,10 +146,10 @@ pub fn write_and_repair(
     observers: ObservationRoles<'_>,
     order: InstructionOrder<'_>,
 ) -> Result<WritingOutcome, ModelError> {
-    let first = choose::write_best(writers.writer, observers, order)?;
+    let first = write_in_language(writers.writer, observers, order)?;
     let (WritingOutcome::Rejected { .. }, Some(finisher)) = (&first, writers.finisher) else { return Ok(first) };
     let more_repairs = InstructionOrder { repairs: order.repairs.max(MIN_FINISHER_REPAIRS), ..order };
-    let finished = choose::write_best(finisher, observers, more_repairs)?;
+    let finished = write_in_language(finisher, observers, more_repairs)?;
     let WritingOutcome::Rejected { drafts, .. } = &first else { return Ok(first) };
     Ok(match finished {
         WritingOutcome::Accepted(mut instruction) => {
@@ -158,6 +158,50 @@ pub fn write_and_repair(
             WritingOutcome::Accepted(instruction)
         }
         WritingOutcome::Rejected { .. } => first,
+    })
+}
+
+/// The best text of a writer in the language of the style. Rules write, check and choose in English, so that the texts for a path say the
+/// same in every language; the text that is kept is then put into the language and checked once more.
+fn write_in_language(
+    writer: &dyn InstructionWriter,
+    observers: ObservationRoles<'_>,
+    order: InstructionOrder<'_>,
+) -> Result<WritingOutcome, ModelError> {
+    let Some(language) = order.profile.language.as_ref().filter(|_| writer.name() == RulesWriter.name()) else {
+        return choose::write_best(writer, observers, order);
+    };
+    let rules = RulesInLanguage::new(language);
+    let english = choose::write_best(&rules, observers, order)?;
+    let (WritingOutcome::Accepted(instruction) | WritingOutcome::Rejected { last: Some(instruction), .. }) = &english
+    else {
+        return Ok(english);
+    };
+    let mut best: Option<Instruction> = None;
+    for version in rules.versions_of(&instruction.text).into_iter().filter(|text| !has_same_words(text, order.earlier))
+    {
+        let checked = check_text(version, instruction.provenance.clone(), order);
+        let is_good = checked.verdict <= instruction.verdict;
+        if best.as_ref().is_none_or(|best| checked.verdict < best.verdict) {
+            best = Some(checked);
+        }
+        if is_good {
+            break;
+        }
+    }
+    let Some(instruction) = best else {
+        let reason = format!("{} has no words for this text: {:?}", language.tag(), instruction.text);
+        return Ok(WritingOutcome::Rejected { last: None, reason, drafts: Vec::new() });
+    };
+    Ok(match (instruction.verdict, english) {
+        (Verdict::Fail, _) => {
+            let reason = attempts::failed_reasons(&instruction.findings).join("; ");
+            WritingOutcome::Rejected { last: Some(instruction), reason, drafts: Vec::new() }
+        }
+        (_, WritingOutcome::Accepted(_)) => WritingOutcome::Accepted(instruction),
+        (_, WritingOutcome::Rejected { reason, drafts, .. }) => {
+            WritingOutcome::Rejected { last: Some(instruction), reason, drafts }
+        }
     })
 }
 
@@ -208,10 +252,14 @@ fn check_text(text: String, provenance: TextProvenance, order: InstructionOrder<
     let subject = CheckSubject::closed_world(order.evidence, order.style, target)
         .with_copies(&order.profile.copies)
         .with_memory(order.evidence_memory);
-    let mut checked = check_own_text(&text, CheckSubject { writer_sees: !order.pictures.is_empty(), ..subject });
+    let readable = ReadableText::new(&text, Some(order.style.language.as_str()).filter(|tag| !tag.is_empty()));
+    let (writer_sees, own_tokens) = (!order.pictures.is_empty(), readable.own_tokens());
+    let subject = CheckSubject { writer_sees, own_tokens: own_tokens.as_deref(), ..subject };
+    let mut checked = check_own_text(readable.english(), subject);
     // A failed text is written again anyway, so it is not followed.
     let follower = order.follower.filter(|_| checked.verdict() != Verdict::Fail);
-    let ambiguity = follower.map(|follower| follower.follow(&text, &mut checked));
+    let ambiguity = follower.map(|follower| follower.follow(readable.english(), &mut checked));
+    checked.put_into_text(&readable);
     Instruction {
         style: order.style.name.clone(),
         verdict: checked.verdict(),

@@ -1,6 +1,7 @@
 //! Styles of instructions: the built-in ones, those in a user's file, and the measured properties of their reference
 //! texts.
 
+mod language;
 mod measure;
 mod names;
 mod profile;
@@ -11,6 +12,8 @@ mod wording;
 use sha2::{Digest, Sha256};
 use wayword_core::{InstructionStyle, StyleConstraints, WordingPolicy, hex_text};
 
+pub use language::LanguageWording;
+pub(crate) use language::TextContent;
 pub use profile::StyleProfile;
 use wording::MAX_SHARP_POWER;
 pub use wording::{PlaceWording, WordingShares};
@@ -44,6 +47,14 @@ pub enum StyleError {
     /// The style has no name.
     #[error("a style has no name: give it one")]
     Unnamed,
+    /// Its `language` is none that the program writes.
+    #[error("style {name}: `language` is {found:?}: write {}", written_languages())]
+    UnknownLanguage {
+        /// The style.
+        name: String,
+        /// What it says.
+        found: String,
+    },
     /// The style has no reference texts.
     #[error("style {0} has no reference texts: give at least one in `references`")]
     NoReferences(String),
@@ -74,6 +85,11 @@ pub enum StyleError {
         /// The rules, and what to do.
         reason: String,
     },
+}
+
+/// The tags of the languages that texts are written in, for a message.
+fn written_languages() -> String {
+    std::iter::once("en").chain(LanguageWording::written_tags()).collect::<Vec<_>>().join(" or ")
 }
 
 /// The names of the built-in styles.
@@ -118,6 +134,7 @@ pub fn parse_style_with(name: &str, text: &str, more: Vec<String>) -> Result<Ins
         StyleError::Unnamed => unreadable("its `name` is empty: give it one".into()),
         StyleError::NoReferences(_) => StyleError::NoReferences(name.to_owned()),
         StyleError::TooLarge(_) => StyleError::TooLarge(name.to_owned()),
+        StyleError::UnknownLanguage { found, .. } => StyleError::UnknownLanguage { name: name.to_owned(), found },
         StyleError::ChoiceOutOfRange { field, found, most, .. } => {
             StyleError::ChoiceOutOfRange { name: name.to_owned(), field, found, most }
         }
@@ -139,6 +156,9 @@ pub fn parse_style_with(name: &str, text: &str, more: Vec<String>) -> Result<Ins
 pub fn validate_style(style: InstructionStyle) -> Result<InstructionStyle, StyleError> {
     if style.name.trim().is_empty() {
         return Err(StyleError::Unnamed);
+    }
+    if !matches!(style.language.as_str(), "" | "en") && LanguageWording::built_in(&style.language).is_none() {
+        return Err(StyleError::UnknownLanguage { name: style.name, found: style.language });
     }
     if style.references.iter().all(|text| text.trim().is_empty()) {
         return Err(StyleError::NoReferences(style.name));

@@ -1,11 +1,18 @@
-//! Measures the reference texts of a style: lengths, turns, wording. The rules writer takes its parameters from here.
+//! Measures the reference texts of a style: lengths, turns, wording. The rules writer takes its parameters from here. Texts of another
+//! language are measured through their English words.
 
-use super::{measure::measure_wording, way::WayWording, wording::PlaceWording};
+use super::{
+    language::{LanguageWording, learn_wording},
+    measure::measure_wording,
+    way::WayWording,
+    wording::PlaceWording,
+};
 use serde::Serialize;
 use std::{collections::BTreeSet, sync::Arc};
 use wayword_checks::ReferenceRuns;
 use wayword_core::InstructionStyle;
 use wayword_language::{
+    languages::ReadableText,
     reading::{EventContent, TextReading, read_instruction},
     text::word_count,
 };
@@ -13,7 +20,8 @@ use wayword_language::{
 /// Properties that were measured on the reference texts of a style; shares are of texts, from 0 to 1.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StyleProfile {
-    /// Words of the texts, sorted: the writer draws its length from these.
+    /// Words of the texts, sorted: the writer draws its length from these. For a text in another language, as many English words as say the
+    /// same.
     pub words: Vec<usize>,
     /// Sentences of the texts, sorted.
     pub sentences: Vec<usize>,
@@ -30,6 +38,9 @@ pub struct StyleProfile {
     /// How they describe a way.
     #[serde(skip)]
     pub way: WayWording,
+    /// How texts in the language of the style say it; `None` for English.
+    #[serde(skip)]
+    pub language: Option<LanguageWording>,
     /// How they word a place and a task.
     pub wording: PlaceWording,
     /// The runs of words that no text may copy.
@@ -41,7 +52,7 @@ impl StyleProfile {
     /// Measures the references of a style. Numbers that the style gives itself take precedence.
     #[must_use]
     pub fn for_style(style: &InstructionStyle) -> Self {
-        let mut profile = Self::from_references(&style.references);
+        let mut profile = Self::in_language(&style.references, &style.language);
         if !style.words.is_empty() {
             profile.words.clone_from(&style.words);
         }
@@ -49,11 +60,26 @@ impl StyleProfile {
         profile
     }
 
-    /// Measures texts; texts without words are ignored.
+    /// Measures English texts; texts without words are ignored.
     #[must_use]
     pub fn from_references(references: &[String]) -> Self {
-        let texts: Vec<&String> = references.iter().filter(|text| word_count(text) > 0).collect();
+        Self::in_language(references, "")
+    }
+
+    /// Measures texts for a style that is written in the language with this tag. The texts may be in English or in that language.
+    fn in_language(references: &[String], tag: &str) -> Self {
+        let built_in = LanguageWording::built_in(tag);
+        let worded = references.iter().filter(|text| word_count(text) > 0);
+        let all: Vec<ReadableText<'_>> = worded.map(|text| ReadableText::new(text, None)).collect();
+        let texts: Vec<&str> = all.iter().map(ReadableText::english).collect();
         let readings: Vec<TextReading> = texts.iter().map(|text| read_instruction(text, &BTreeSet::new())).collect();
+        let way = WayWording::from_texts(texts.iter().copied().zip(&readings));
+        let language = built_in
+            .map(|built_in| learn_wording(built_in, all.iter().zip(&readings).filter(|(text, _)| text.is_glossed())));
+        let length = |at: usize| match &language {
+            Some(language) if all[at].is_glossed() => language.words_for(all[at].text(), &way),
+            _ => word_count(texts[at]),
+        };
         let count = texts.len().max(1) as f64;
         let share = |holds: &dyn Fn(usize) -> bool| (0..texts.len()).filter(|at| holds(*at)).count() as f64 / count;
         let events = |is: &dyn Fn(&EventContent) -> bool| {
@@ -65,16 +91,17 @@ impl StyleProfile {
             values
         };
         Self {
-            words: sorted(&|at| word_count(texts[at])),
+            words: sorted(&length),
             sentences: sorted(&|at| readings[at].count_sentences()),
             turns: events(&|what| matches!(what, EventContent::Turn(_))),
             places: events(&|what| matches!(what, EventContent::Place(_))),
             tasks: share(&|at| readings[at].task.is_some()),
             floors: share(&|at| readings[at].events.iter().any(|event| matches!(event.what, EventContent::Floor(_)))),
             full_stops: share(&|at| texts[at].trim_end().ends_with(['.', '!'])),
-            way: WayWording::from_texts(texts.iter().map(|text| text.as_str()).zip(&readings)),
+            way,
+            language,
             wording: measure_wording(&readings),
-            copies: Arc::new(ReferenceRuns::from_readings(&readings)),
+            copies: Arc::new(ReferenceRuns::from_readings(all.iter().zip(&readings))),
         }
     }
 

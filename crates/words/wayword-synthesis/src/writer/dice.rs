@@ -17,7 +17,7 @@ impl TextDice {
     /// values and avoids these landmarks.
     pub(super) fn for_brief(brief: &WritingBrief<'_>) -> Self {
         let (attempt, candidate) = (drawn_before(brief.complaints).to_string(), brief.candidate.to_string());
-        let names = ["rules", &brief.style.name, &brief.walk.path.id, &attempt, &candidate];
+        let names = ["rules", brief.style.draw_name(), &brief.walk.path.id, &attempt, &candidate];
         Self { seed: seed::derive_seed(brief.seed, &names) }
     }
 

@@ -4,16 +4,18 @@
 use super::{
     WritingBrief,
     dice::TextDice,
-    naming::{ChosenNames, ClausePhrase},
+    naming::{ChosenNames, ClausePhrase, PhraseContent},
     phrases::draw_option,
     route::WayClause,
+    task::TaskPhrase,
 };
-use crate::style::way::{ClauseJoint, ClauseKind, is_until};
+use crate::style::way::{ClauseJoint, ClauseKind, WayWording};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_language::text::capitalise_first;
 
 /// A text in the making. Clauses, phrases and joints belong together one by one; a joint comes before its phrase.
+#[derive(Clone)]
 pub(super) struct TextDraft<'a> {
     /// The clauses of the plan, with their things.
     clauses: Vec<WayClause>,
@@ -32,7 +34,7 @@ impl<'a> TextDraft<'a> {
     /// Puts the clauses into words and draws the joints. A task replaces the words of the last clause.
     pub(super) fn from_clauses(
         mut told: Vec<WayClause>,
-        task: Option<&str>,
+        task: Option<&TaskPhrase>,
         full_stop: bool,
         brief: &'a WritingBrief<'_>,
         dice: TextDice,
@@ -47,11 +49,27 @@ impl<'a> TextDraft<'a> {
             (0..told.len()).map(|at| names.clause_phrase(&told, at, brief, dice)).collect();
         if let Some(task) = task {
             phrases.pop();
-            phrases.push(ClausePhrase { text: task.to_owned(), is_clause: true });
+            let (text, content) = (task.text.clone(), PhraseContent::Task(task.content.clone()));
+            phrases.push(ClausePhrase { text, is_clause: true, runs_on: false, content });
         }
-        let joints = choose_joints(&told, &phrases, brief, dice);
+        let joints = choose_joints(&told, &phrases, &brief.profile.way, brief, dice);
         let times = vec![0; told.len()];
         Self { clauses: told, phrases, joints, reword_counts: times, names, has_task: task.is_some(), full_stop }
+    }
+
+    /// The clauses of the plan, one for each phrase.
+    pub(super) fn clauses(&self) -> &[WayClause] {
+        &self.clauses
+    }
+
+    /// The phrases of the text.
+    pub(super) fn phrases(&self) -> &[ClausePhrase] {
+        &self.phrases
+    }
+
+    /// Whether a text of one sentence ends in a full stop.
+    pub(super) fn ends_in_full_stop(&self) -> bool {
+        self.full_stop
     }
 
     /// The text, and where each of its phrases begins, in bytes.
@@ -89,7 +107,7 @@ impl<'a> TextDraft<'a> {
             self.joints[at] = self.other_joint(at, brief, rng);
         } else if !is_task {
             let phrase = self.names.clause_phrase(&self.clauses, at, brief, dice);
-            self.joints[at] = match (is_until(&phrase.text), self.joints[at]) {
+            self.joints[at] = match (phrase.runs_on, self.joints[at]) {
                 (true, _) => ClauseJoint::Run,
                 (false, ClauseJoint::Run) => ClauseJoint::And,
                 (false, joint) => joint,
@@ -138,19 +156,19 @@ fn leaves_out_stop(told: &[WayClause], brief: &WritingBrief<'_>, dice: TextDice)
 }
 
 /// Draws the joints between the phrases with the style's shares, and keeps to its number of sentences.
-fn choose_joints(
+pub(super) fn choose_joints(
     clauses: &[WayClause],
     phrases: &[ClausePhrase],
+    way: &WayWording,
     brief: &WritingBrief<'_>,
     dice: TextDice,
 ) -> Vec<ClauseJoint> {
     let constraints = &brief.style.constraints;
     let least = constraints.min_sentences.unwrap_or(1);
     let most = constraints.max_sentences.unwrap_or(usize::MAX).max(least);
-    let way = &brief.profile.way;
     let mut joints: Vec<ClauseJoint> = vec![ClauseJoint::Start];
     for (at, phrase) in phrases.iter().enumerate().skip(1) {
-        if is_until(&phrase.text) {
+        if phrase.runs_on {
             joints.push(ClauseJoint::Run);
             continue;
         }

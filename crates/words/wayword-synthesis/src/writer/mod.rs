@@ -10,10 +10,12 @@ mod draft;
 mod landmarks;
 mod naming;
 mod object;
+mod other_language;
 mod phrases;
 mod place;
 mod route;
 mod rules;
+mod shape_needs;
 mod task;
 mod way;
 
@@ -22,6 +24,7 @@ use std::sync::Arc;
 use wayword_checks::WalkMemory;
 use wayword_core::{CheckFinding, Image, InstructionStyle, ModelError, seeded_rng};
 
+pub use other_language::RulesInLanguage;
 pub use rules::RulesWriter;
 
 /// Texts that name a place draw their length from this share of a style's lengths, the shorter ones. People mention
@@ -113,7 +116,10 @@ impl<'a> WritingBrief<'a> {
     }
 
     fn length_among(&self, words: &[usize]) -> usize {
-        phrases::draw_measure(words, &mut seeded_rng(self.seed, &["length", &self.style.name, &self.walk.path.id]))
+        phrases::draw_measure(
+            words,
+            &mut seeded_rng(self.seed, &["length", self.style.draw_name(), &self.walk.path.id]),
+        )
     }
 }
 

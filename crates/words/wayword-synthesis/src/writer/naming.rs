@@ -5,76 +5,97 @@ use super::{
     dice::TextDice,
     landmarks::lies_on_floor,
     phrases::{draw_option, fill_gaps, ordinal_of, stay_phrase},
-    route::{OfferRole, WayClause, side_word, stands_still, suits_motion, told_until},
+    route::{OfferRole, WayClause, side_word, stands_still, told_until},
+    shape_needs::ShapeNeeds,
+    task::TaskContent,
 };
-use crate::style::way::{ClauseKind, WayWording, is_door_word, is_until};
+use crate::style::way::{ClauseKind, ShapeTraits, WayWording, is_door_word, is_until};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::{PathMotion, Side};
-use wayword_language::lexicon::{ThingClass, counted_name, find_thing, names_agree, room_name, to_plural};
+use wayword_core::Side;
+use wayword_language::lexicon::{ThingClass, counted_name, find_thing, room_name, to_plural};
 
 /// A clause in words.
+#[derive(Clone)]
 pub(super) struct ClausePhrase {
     pub(super) text: String,
     /// Whether it begins with a verb, so that it can follow "and".
     pub(super) is_clause: bool,
+    /// Whether it limits the clause before it, as in "until you reach the sofa".
+    pub(super) runs_on: bool,
+    /// What it says.
+    pub(super) content: PhraseContent,
+}
+
+/// What a phrase says, apart from its words.
+#[derive(Clone)]
+pub(super) enum PhraseContent {
+    /// To stay, on a path that goes nowhere.
+    Stay,
+    /// A clause of a way.
+    Clause(ClauseContent),
+    /// A task.
+    Task(TaskContent),
+}
+
+/// What a clause of a way names, in English. What its words leave out is `None`.
+#[derive(Clone)]
+pub(super) struct ClauseContent {
+    pub(super) kind: ClauseKind,
+    pub(super) side: Option<Side>,
+    pub(super) thing: Option<NamedThing>,
+    /// The name of its room; empty where the words have "the room" or none.
+    pub(super) room: String,
+    /// The name of the room that it leaves.
+    pub(super) from: String,
+    /// Which of the doors on its side it means, where that is not the first.
+    pub(super) door_number: Option<usize>,
+    pub(super) needs: ShapeNeeds,
+}
+
+/// A thing as a text names it, in English.
+#[derive(Clone)]
+pub(super) struct NamedThing {
+    pub(super) name: String,
+    pub(super) colour: Option<String>,
+    /// How many it speaks of: one, two, or several without a number.
+    pub(super) count: ThingCount,
+    /// Another thing that is named with it.
+    pub(super) with: Option<String>,
+}
+
+/// How many things a name is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ThingCount {
+    One,
+    Two,
+    Several,
+}
+
+impl NamedThing {
+    /// Its words: "the two gold lamps and table", without the article.
+    fn english(&self) -> String {
+        let name = self.colour.as_ref().map_or(self.name.clone(), |colour| format!("{colour} {}", self.name));
+        let name = match self.count {
+            ThingCount::One => name,
+            ThingCount::Two => counted_name(2, &name),
+            ThingCount::Several => to_plural(&name),
+        };
+        self.with.as_ref().map_or(name.clone(), |other| format!("{name} and {other}"))
+    }
 }
 
 /// Share of things that get a colour although they do not need one.
 const COLOUR_SHARE: f64 = 0.25;
-
-/// Whether a shape with "exit" or "out" fits a clause: it names the room that it leaves, or its door leads out of the
-/// first room and not into the last.
-fn goes_out(clause: &WayClause, brief: &WritingBrief<'_>) -> bool {
-    let openings = &brief.memory.openings;
-    let is_first = openings.len() > 1 && openings[0].before == clause.at;
-    clause.from.is_some()
-        || is_first
-        || !matches!(clause.kind, ClauseKind::ThroughDoor | ClauseKind::DoorOnSide | ClauseKind::ToDoor)
-}
 
 /// Whether people see a thing in the one colour that its material has: a picture has a subject and a frame, and a mirror shows the room.
 fn shows_one_colour(name: &str) -> bool {
     !find_thing(name).is_some_and(|thing| matches!(thing.class, ThingClass::WallArt | ThingClass::Glass))
 }
 
-/// Distance into a room up to which the walker is "just inside", metres.
-const JUST_INSIDE_M: f64 = 1.5;
-
-/// Whether a thing is so long that one may still be beside it when its middle is passed.
-fn is_long(name: &str) -> bool {
-    find_thing(name)
-        .is_some_and(|thing| matches!(thing.class, ThingClass::Bed | ThingClass::Seat | ThingClass::Surface))
-}
-
-/// How far the walker has gone in the room of a frame when arriving there, metres.
-fn walked_in_m(at: usize, brief: &WritingBrief<'_>) -> f64 {
-    let before = brief.memory.stay_at(at).map_or(0, |stay| stay.entered.saturating_sub(1));
-    brief.walk.walked_m(before, at)
-}
-
-/// The demands of a clause's context on its shape.
-#[derive(Clone, Copy)]
-struct ShapeNeeds<'n> {
-    motion: PathMotion,
-    /// Whether the walk goes from viewpoint to viewpoint, which lie far apart.
-    is_on_graph: bool,
-    /// Whether it has to name its room.
-    names_room: bool,
-    /// Whether it leaves the room of the start, or names the room that it leaves.
-    leaves: bool,
-    /// How far the walker has gone in its room, metres.
-    walked_in_m: f64,
-    /// Whether it may limit the clause before it ("until you reach ...").
-    may_run: bool,
-    /// The names of the doors at its change of rooms; `None` where they are not known.
-    doors: Option<&'n [&'n str]>,
-    /// Which of the doors on its side it means, where that is not the first.
-    door_number: Option<usize>,
-}
-
 /// The names that a text gives to rooms and things: one for each.
+#[derive(Clone)]
 pub(super) struct ChosenNames<'a> {
     way: &'a WayWording,
     /// The chosen name of each room and thing, by the name in the evidence.
@@ -105,92 +126,45 @@ impl<'a> ChosenNames<'a> {
         let clause = &clauses[at];
         let rng = &mut clause.clause_rng("words", dice);
         if clause.kind == ClauseKind::Straight && stands_still(brief.walk) {
-            return ClausePhrase { text: stay_phrase(None, rng), is_clause: true };
+            let text = stay_phrase(None, rng);
+            return ClausePhrase { text, is_clause: true, runs_on: false, content: PhraseContent::Stay };
         }
-        let motion = brief.walk.path.motion;
-        let before = at.checked_sub(1).map(|before| clauses[before].kind).filter(|_| !clause.follows_offer);
-        // A thing may limit a plain "go straight", so that the text stays complete without the thing.
-        let follows = match clause.thing {
-            Some(_) => before == Some(ClauseKind::Straight),
-            None => before.is_some_and(ClauseKind::goes_on),
-        };
-        let doors = door_names(clause, brief);
-        let number = door_number(clauses, at, brief);
-        let needs = ShapeNeeds {
-            motion,
-            is_on_graph: brief.memory.is_on_graph(),
-            doors: doors.as_deref(),
-            door_number: number,
-            names_room: has_to_name(clauses, at, brief),
-            walked_in_m: walked_in_m(clause.at, brief),
-            leaves: goes_out(clause, brief),
-            may_run: follows,
-        };
-        let shape = self.draw_shape(clause, needs, rng);
-        let side = clause.side.map_or("", side_word);
+        let door_number = door_number(clauses, at, brief);
+        let needs = ShapeNeeds::of_clause(clauses, at, door_number, brief);
+        let shape = self.draw_shape(clause, &needs, rng);
         let thing = clause.thing.as_ref().map(|thing| {
             let name = self.name_thing(&thing.name);
             let says_colour = thing.needs_colour || rng.random_bool(COLOUR_SHARE);
-            let colour = thing.colour.as_ref().filter(|_| says_colour && shows_one_colour(&thing.name));
-            let name = colour.map_or(name.clone(), |colour| format!("{colour} {name}"));
+            let colour = thing.colour.clone().filter(|_| says_colour && shows_one_colour(&thing.name));
             // Several alike are mostly, but not always, named in the plural.
-            let name = match thing.alike {
-                // "The two gold lamps".
-                2 if rng.random_bool(0.3) => counted_name(2, &name),
-                2.. if rng.random_bool(0.6) => to_plural(&name),
-                _ => name,
+            let count = match thing.alike {
+                2 if rng.random_bool(0.3) => ThingCount::Two,
+                2.. if rng.random_bool(0.6) => ThingCount::Several,
+                _ => ThingCount::One,
             };
-            thing.with.as_ref().map_or(name.clone(), |other| format!("{name} and {other}"))
+            NamedThing { name, colour, count, with: thing.with.clone() }
         });
         let mut room = |room: Option<&String>| room.map(|room| self.name_room(room)).unwrap_or_default();
         let (room, from) = (room(clause.room.as_ref()), room(clause.from.as_ref()));
-        let gaps = [
-            ("{s}", side),
-            ("{p}", side),
-            ("{l}", thing.as_deref().unwrap_or_default()),
-            ("{r}", room.as_str()),
-            ("{a}", from.as_str()),
-        ];
+        let side = clause.side.map_or("", side_word);
+        let phrase = thing.as_ref().map(NamedThing::english).unwrap_or_default();
+        let gaps =
+            [("{s}", side), ("{p}", side), ("{l}", phrase.as_str()), ("{r}", room.as_str()), ("{a}", from.as_str())];
         let is_clause = !["in", "at", "with"].contains(&shape.split(' ').next().unwrap_or_default());
-        let shape = number.and_then(|number| number_door(&shape, number)).unwrap_or(shape);
-        ClausePhrase { text: fill_gaps(&shape, &gaps), is_clause }
+        let numbered = door_number.and_then(|number| number_door(&shape, number)).unwrap_or(shape);
+        let text = fill_gaps(&numbered, &gaps);
+        let room = if numbered.contains("{r}") { room } else { String::new() };
+        let content = ClauseContent { kind: clause.kind, side: clause.side, thing, room, from, door_number, needs };
+        ClausePhrase { runs_on: is_until(&text), text, is_clause, content: PhraseContent::Clause(content) }
     }
 
     /// A shape of the clause's kind, by its share.
-    fn draw_shape(&self, clause: &WayClause, needs: ShapeNeeds<'_>, rng: &mut ChaCha8Rng) -> String {
+    fn draw_shape(&self, clause: &WayClause, needs: &ShapeNeeds, rng: &mut ChaCha8Rng) -> String {
         let own = WayWording::built_in().shapes.get(&clause.kind);
         let shapes = self.way.shapes.get(&clause.kind).or(own);
-        let ahead = clause.thing.as_ref().is_none_or(|thing| thing.in_front);
-        let is_near_door = clause.kind != ClauseKind::StopIn || needs.walked_in_m <= JUST_INSIDE_M;
-        let is_passed = |passed: (usize, Side)| passed.0 < clause.at || needs.is_on_graph && passed.0 == clause.at;
-        let is_passed_before = clause.kind != ClauseKind::TurnAt
-            || clause.thing.as_ref().is_none_or(|thing| {
-                thing.side.is_none() || !is_long(&thing.name) && thing.passed.is_some_and(is_passed)
-            });
-        // One is in the room already.
-        let is_inside = clause.kind == ClauseKind::TurnIn && needs.walked_in_m > JUST_INSIDE_M;
-        let usual = clause.room.as_deref().and_then(room_name);
-        let is_open_air = matches!(usual, Some("porch" | "balcony" | "outdoor area"));
-        // A hallway is not called "the room", and a porch has no walls to leave it by.
-        let has_walls = !is_open_air && !matches!(usual, Some("hallway" | "entryway"));
-        let is_room = |shape: &str| {
-            let names_none = shape.split(' ').any(|word| word == "room");
-            (clause.room.is_some() || !shape.contains("{r}")) && ((has_walls && !needs.names_room) || !names_none)
-        };
         let fits = |shape: &&String| {
-            suits_motion(shape, needs.motion)
-                && (ahead || !shape.contains("front"))
-                && is_room(shape)
-                && (is_open_air || !shape.contains("onto the {r}") && !shape.contains("out into the {r}"))
-                && (is_near_door
-                    || !["just inside", "once you", "doorway", "at the {r}"].iter().any(|near| shape.contains(near)))
-                && (needs.leaves || !["exit", "leave", "out "].iter().any(|out| shape.contains(out)))
-                && (needs.may_run || !is_until(shape))
-                && (is_passed_before || !["past", "after"].iter().any(|past| shape.contains(past)))
-                && needs.doors.is_none_or(|doors| fits_doors(shape, doors))
+            needs.admit(&ShapeTraits::of_english(shape))
                 && needs.door_number.is_none_or(|number| number_door(shape, number).is_some())
-                && !(is_inside && shape.contains("at the {r}"))
-                && (needs.is_on_graph || !shape.contains("all the way"))
         };
         let all: Vec<(f64, &String)> = shapes
             .into_iter()
@@ -242,21 +216,6 @@ impl<'a> ChosenNames<'a> {
     }
 }
 
-/// The names of the doors and doorways at the change of rooms of a clause; `None` where it has no such change, or the positions of doors
-/// are not known.
-fn door_names<'n>(clause: &WayClause, brief: &'n WritingBrief<'_>) -> Option<Vec<&'n str>> {
-    let memory = brief.memory;
-    let opening = memory.openings.iter().find(|opening| opening.before == clause.at)?;
-    memory.knows_doors().then(|| memory.doors_at(opening).map(|door| door.name.as_str()).collect())
-}
-
-/// Whether the words for doors in a shape name one of these doors.
-fn fits_doors(shape: &str, doors: &[&str]) -> bool {
-    // The first word is the verb: "exit".
-    let mut words = shape.split(' ').skip(1).filter(|word| is_door_word(word));
-    words.all(|word| doors.iter().any(|door| names_agree(word, door)))
-}
-
 /// Which of the doors on its side a clause means, counted from the last place that the text names before; `None` for the first, and
 /// where doors are not known.
 fn door_number(clauses: &[WayClause], at: usize, brief: &WritingBrief<'_>) -> Option<usize> {
@@ -276,28 +235,6 @@ fn number_door(shape: &str, number: usize) -> Option<String> {
     let at = (1..words.len()).find(|at| is_door_word(words[*at]) && words[at - 1] == "the")?;
     words.insert(at, number);
     Some(words.join(" "))
-}
-
-/// Whether a clause has to name its room, because "the room" would be unclear: it is the room of the end, a later
-/// clause mentions it, or no earlier clause named it.
-fn has_to_name(clauses: &[WayClause], at: usize, brief: &WritingBrief<'_>) -> bool {
-    let Some(room) = &clauses[at].room else { return false };
-    let on_graph = brief.memory.is_on_graph();
-    let speaks_of_it = |clause: &WayClause| {
-        let names_it = clause.room.as_ref() == Some(room) && (!on_graph || clause.kind.names_room());
-        names_it || clause.from.as_ref() == Some(room)
-    };
-    let (before, after) = (clauses[..at].iter().any(speaks_of_it), clauses[at + 1..].iter().any(speaks_of_it));
-    // On a graph, a thing or a doorway to stop at fixes the end as well.
-    let fixes_end = |stop: &WayClause| on_graph && (stop.thing.is_some() || stop.kind == ClauseKind::StopInDoorway);
-    let end = brief.memory.room_at(brief.memory.frame_count().saturating_sub(1));
-    match clauses[at].kind {
-        ClauseKind::Leave | ClauseKind::LeaveByDoor => at > 0 && !before,
-        ClauseKind::StopIn => !before,
-        // The thing in the room identifies it.
-        ClauseKind::EnterWith => after,
-        _ => after || end == Some(room) && !clauses.last().is_some_and(fixes_end),
-    }
 }
 
 /// The words of a kind where no shape fits.
@@ -386,7 +323,7 @@ mod tests {
     use super::*;
     use crate::{style::built_in, walk::ObservedWalk};
     use wayword_checks::{Evidence, WalkMemory};
-    use wayword_core::{Path, SceneId};
+    use wayword_core::{Path, PathMotion, SceneId};
 
     /// The names that texts with these draws give to two rooms of a walk.
     fn names_of(rooms: [&'static str; 2], draws: usize) -> BTreeSet<[String; 2]> {

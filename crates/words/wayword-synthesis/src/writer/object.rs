@@ -12,6 +12,17 @@ use std::collections::BTreeMap;
 use wayword_core::{ObjectDescription, ObjectDistinction, ObjectRelation, Side, Verdict};
 use wayword_language::lexicon::{ThingClass, find_thing, is_plural, names_agree, normalise_name};
 
+/// What a text says of the object of its task, in English names.
+#[derive(Clone)]
+pub(super) struct ObjectContent {
+    /// Its name in this text.
+    pub(super) called: String,
+    /// The properties of the object that the text names.
+    pub(super) by: Vec<ObjectDistinction>,
+    /// Whether it says "on the wall".
+    pub(super) on_wall: bool,
+}
+
 /// The object of the task with its possible descriptions.
 pub(super) struct TaskObject<'a> {
     pub(super) name: String,
@@ -108,13 +119,13 @@ impl<'a> TaskObject<'a> {
         draw_distinctions(if mentions_one { &told } else { &[] }, wording, rng).iter().collect()
     }
 
-    /// The object with its article and those of the properties in `by` that are about the object.
+    /// The object with its article and those of the properties in `by` that are about the object; in words, and what they say.
     pub(super) fn object_phrase(
         &self,
         by: &[&ObjectDistinction],
         wording: &PlaceWording,
         rng: &mut ChaCha8Rng,
-    ) -> String {
+    ) -> (String, ObjectContent) {
         let of_object = by.iter().filter(|by| !by.is_about_room());
         let (mut phrase, mut behind) = (format!("the {}", self.called), Vec::new());
         for by in of_object {
@@ -129,7 +140,9 @@ impl<'a> TaskObject<'a> {
             }
         }
         let is_on = by.iter().any(|by| matches!(by, ObjectDistinction::Related { relation: ObjectRelation::On, .. }));
-        if self.hangs && !is_on && rng.random_bool((wording.share_of_texts("wall") * HANGING_WALL_FACTOR).min(0.6)) {
+        let wall_share = (wording.share_of_texts("wall") * HANGING_WALL_FACTOR).min(0.6);
+        let on_wall = self.hangs && !is_on && rng.random_bool(wall_share);
+        if on_wall {
             behind.insert(0, wording.draw("wall", rng, |_| true).unwrap_or("on the wall").to_owned());
         }
         let link = wording.draw("link", rng, |link| link != "located" && link != "that's" || behind.len() == 1);
@@ -140,7 +153,9 @@ impl<'a> TaskObject<'a> {
             };
             *first = format!("{link} {first}");
         }
-        std::iter::once(phrase).chain(behind).collect::<Vec<_>>().join(" ")
+        let by = by.iter().filter(|by| !by.is_about_room()).map(|by| (*by).clone()).collect();
+        let content = ObjectContent { called: self.called.clone(), by, on_wall };
+        (std::iter::once(phrase).chain(behind).collect::<Vec<_>>().join(" "), content)
     }
 }
 

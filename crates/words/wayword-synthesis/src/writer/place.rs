@@ -5,6 +5,8 @@
 
 mod room;
 
+pub(super) use room::RoomContent;
+
 use super::{
     WriteError, WritingBrief,
     dice::TextDice,
@@ -12,7 +14,7 @@ use super::{
     object::TaskObject,
     phrases::{self, draw_measure, fill_gaps, phrases_for_motion, pick_any, with_the},
     route::{last_climb, stands_still, usable_room},
-    task,
+    task::{TaskContent, draw_task, task_words},
 };
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -30,8 +32,31 @@ const NEVER_FAULT_WORDS: f64 = 1000.0;
 /// Cost of a run of words that a draft shares with a reference, in words of length difference.
 const AVOIDED_FAULT_WORDS: f64 = 100.0;
 
-/// A text that names the place at the end, and what to do there.
-pub(super) fn write_place_text(brief: &WritingBrief<'_>, dice: TextDice) -> Result<String, WriteError> {
+/// What a text says that names the place at the end.
+#[derive(Clone)]
+pub(super) struct PlaceContent {
+    pub(super) goal: GoalContent,
+    /// What to do there.
+    pub(super) task: Option<TaskContent>,
+    /// Whether it begins with "please".
+    pub(super) please: bool,
+}
+
+/// Where a text sends the walker, in English names.
+#[derive(Clone)]
+pub(super) enum GoalContent {
+    Room(RoomContent),
+    /// It has to stay, in this room where it is known.
+    Stay(Option<String>),
+    Climb(ClimbDirection),
+    Thing(String),
+    /// Through a room, without a goal.
+    Through(String),
+    Onward,
+}
+
+/// A text that names the place at the end, and what to do there; in words, and what they say.
+pub(super) fn write_place_text(brief: &WritingBrief<'_>, dice: TextDice) -> Result<(String, PlaceContent), WriteError> {
     let rng = &mut dice.named_rng(&["place"]);
     let walk = brief.walk;
     let last = walk.path.frames.len() - 1;
@@ -50,27 +75,27 @@ pub(super) fn write_place_text(brief: &WritingBrief<'_>, dice: TextDice) -> Resu
     let full_stop = rng.random_bool(brief.profile.full_stops.clamp(0.0, 1.0));
     let topic = TextTopic { target: Some(&object.name), rooms: &rooms };
     let copies = &brief.profile.copies;
-    let mut best: Option<(f64, String)> = None;
+    let mut best: Option<(f64, (String, PlaceContent))> = None;
     // If every draft shares a run of words with a reference, a new plan is drawn.
     for _ in 0..MAX_PLANS {
         let plan = PlaceTextPlan::draw_plan(brief, &goal, words, rng);
         for _ in 0..DRAFTS_PER_PLAN {
-            let text = draft_text(brief, &goal, &object, plan, rng);
+            let (text, content) = draft_text(brief, &goal, &object, plan, rng);
             let (count, tokens) = (word_count(&text), split_tokens(&text));
             let copied_cost = if copies.find_copy(&tokens, topic).is_some() { NEVER_FAULT_WORDS } else { 0.0 };
             let shared_cost = if copies.find_avoidable_copy(&tokens).is_some() { AVOIDED_FAULT_WORDS } else { 0.0 };
             let over_limit_cost = if count < limit { 0.0 } else { NEVER_FAULT_WORDS };
             let fault = count.abs_diff(words) as f64 + copied_cost + shared_cost + over_limit_cost;
             if best.as_ref().is_none_or(|(least, _)| fault < *least) {
-                best = Some((fault, text));
+                best = Some((fault, (text, content)));
             }
         }
         if best.as_ref().is_some_and(|(fault, _)| *fault < AVOIDED_FAULT_WORDS) {
             break;
         }
     }
-    let text = best.map(|(_, text)| text).unwrap_or_default();
-    Ok(format!("{}{}", capitalise_first(&text), if full_stop { "." } else { "" }))
+    let Some((_, (text, content))) = best else { return bare_text(brief, asks, dice) };
+    Ok((format!("{}{}", capitalise_first(&text), if full_stop { "." } else { "" }), content))
 }
 
 /// Decisions that are drawn before the drafts, so that the choice among drafts does not change the style's shares.
@@ -117,78 +142,86 @@ fn draft_text(
     object: &TaskObject<'_>,
     plan: PlaceTextPlan<'_>,
     rng: &mut ChaCha8Rng,
-) -> String {
+) -> (String, PlaceContent) {
     let wording = &brief.profile.wording;
     let by = object.draw_description(wording, plan.is_sure, plan.more, rng);
-    let place = goal.room_phrase(&by, plan.names_level, rng);
+    let (place, room) = goal.room_phrase(&by, plan.names_level, rng);
     let verb = wording.draw_verb(&object.name, wording.sharp_power(), rng);
-    let task = task::task_phrase(verb, &object.object_phrase(&by, wording, rng));
+    let (phrase, object) = object.object_phrase(&by, wording, rng);
+    let task = task_words(verb, &phrase);
     let text = match plan.order {
         "task" => format!("{task} {} {place}", goal.draw_preposition(verb, rng)),
         "in" => format!("{} {place} {task}", goal.draw_preposition("", rng)),
         _ => format!("{} {place} and {task}", plan.opener),
     };
-    if plan.please { format!("please {text}") } else { text }
+    let task = TaskContent { verb: verb.to_owned(), object };
+    let content = PlaceContent { goal: GoalContent::Room(room), task: Some(task), please: plan.please };
+    (if plan.please { format!("please {text}") } else { text }, content)
 }
 
 /// A text without a task, or for an end without a known room.
-fn bare_text(brief: &WritingBrief<'_>, asks: bool, dice: TextDice) -> Result<String, WriteError> {
+fn bare_text(brief: &WritingBrief<'_>, asks: bool, dice: TextDice) -> Result<(String, PlaceContent), WriteError> {
     let rng = &mut dice.named_rng(&["place"]);
     let mut landmarks = LandmarkChooser::new(brief, dice);
-    let task = if asks { Some(task::draw_task(brief, rng)?) } else { None };
-    if let Some((_, name)) = &task {
-        landmarks.reserve_name(name);
+    let task = if asks { Some(draw_task(brief, rng)?) } else { None };
+    if let Some(task) = &task {
+        landmarks.reserve_name(&task.name);
     }
     let full_stop = rng.random_bool(brief.profile.full_stops.clamp(0.0, 1.0));
     let walk = brief.walk;
     let room = walk.room_at(walk.path.frames.len() - 1).and_then(usable_room);
-    let goal = match &room {
-        _ if stands_still(walk) => phrases::stay_phrase(room.as_deref(), rng),
+    let (words, goal) = match &room {
+        _ if stands_still(walk) => (phrases::stay_phrase(room.as_deref(), rng), GoalContent::Stay(room)),
         Some(room) => {
             let goal = GoalRoom::new(brief, room);
             let names_level = goal.names_level(rng);
-            format!("{} {}", goal.draw_opener(rng), goal.room_phrase(&[], names_level, rng))
+            let opener = goal.draw_opener(rng);
+            let (place, content) = goal.room_phrase(&[], names_level, rng);
+            (format!("{opener} {place}"), GoalContent::Room(content))
         }
         None => without_room(brief, &landmarks, rng),
     };
-    let phrases: Vec<String> = [goal].into_iter().chain(task.map(|(task, _)| task)).collect();
+    let (task, task_content) = task.map(|task| (task.text, task.content)).unzip();
+    let content = PlaceContent { goal, task: task_content, please: false };
+    let phrases: Vec<String> = [words].into_iter().chain(task).collect();
     let count = sentence_target(brief, rng);
     if count > 1 {
-        return Ok(join_sentences(&phrases, count, full_stop, rng));
+        return Ok((join_sentences(&phrases, count, full_stop, rng), content));
     }
     let text = if phrases.len() > 1 { phrases.join(" and ") } else { join_phrases(&phrases, rng) };
-    Ok(format!("{}{}", capitalise_first(&text), if full_stop { "." } else { "" }))
+    Ok((format!("{}{}", capitalise_first(&text), if full_stop { "." } else { "" }), content))
 }
 
-/// The words for the way to an end without a known room.
-fn without_room(brief: &WritingBrief<'_>, landmarks: &LandmarkChooser<'_>, rng: &mut ChaCha8Rng) -> String {
+/// The way to an end without a known room; in words, and what they say.
+fn without_room(
+    brief: &WritingBrief<'_>,
+    landmarks: &LandmarkChooser<'_>,
+    rng: &mut ChaCha8Rng,
+) -> (String, GoalContent) {
     let walk = brief.walk;
     let last = walk.path.frames.len() - 1;
-    match last_climb(walk) {
-        Some(ClimbDirection::Up) => {
-            return pick_any(rng, &["go upstairs", "head up the stairs", "walk up the stairs", "climb the stairs"])
-                .to_owned();
-        }
-        Some(ClimbDirection::Down) => {
-            return pick_any(rng, &["go downstairs", "head down the stairs", "walk down the stairs"]).to_owned();
-        }
-        Some(ClimbDirection::Level) | None => {}
+    if let Some(climb @ (ClimbDirection::Up | ClimbDirection::Down)) = last_climb(walk) {
+        let ways: &[&str] = match climb {
+            ClimbDirection::Up => &["go upstairs", "head up the stairs", "walk up the stairs", "climb the stairs"],
+            _ => &["go downstairs", "head down the stairs", "walk down the stairs"],
+        };
+        return (pick_any(rng, ways).to_owned(), GoalContent::Climb(climb));
     }
     let by = (0..=last).rev().find_map(|frame| landmarks.choose_for_frame(frame, 2));
     let through = (0..last).rev().find_map(|at| walk.room_at(at).and_then(usable_room));
     match (by, through) {
-        (Some(landmark), _) => fill_gaps(
-            pick_any(rng, &["go to {l}", "walk up to {l}", "head over to {l}", "go past {l}"]),
-            &[("{l}", &landmark.phrase)],
-        ),
-        (None, Some(room)) => {
-            fill_gaps(pick_any(rng, &["go through {r}", "walk through {r}", "leave {r}"]), &[("{r}", &with_the(&room))])
+        (Some(landmark), _) => {
+            let way = pick_any(rng, &["go to {l}", "walk up to {l}", "head over to {l}", "go past {l}"]);
+            (fill_gaps(way, &[("{l}", &landmark.phrase)]), GoalContent::Thing(landmark.name))
         }
-        (None, None) => pick_any(
-            rng,
-            &phrases_for_motion(&["go straight ahead", "walk on to the end", "keep going"], walk.path.motion),
-        )
-        .to_owned(),
+        (None, Some(room)) => {
+            let way = pick_any(rng, &["go through {r}", "walk through {r}", "leave {r}"]);
+            (fill_gaps(way, &[("{r}", &with_the(&room))]), GoalContent::Through(room))
+        }
+        (None, None) => {
+            let ways = phrases_for_motion(&["go straight ahead", "walk on to the end", "keep going"], walk.path.motion);
+            (pick_any(rng, &ways).to_owned(), GoalContent::Onward)
+        }
     }
 }
 

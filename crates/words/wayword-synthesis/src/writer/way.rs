@@ -13,7 +13,7 @@ use super::{
         self, KEPT_WEIGHT, LONG_HOP_M, WayClause, carry_out, fill, number_clauses, stands_still, usable_room,
         with_stand_ins,
     },
-    task,
+    task::{TaskPhrase, draw_task},
 };
 use crate::style::way::ClauseKind;
 use rand::Rng;
@@ -47,15 +47,19 @@ const MAX_AT_ONCE_M: f64 = 1.0;
 /// A door or room "on the right" so near to the start is the first one there, metres.
 const MAX_FIRST_DOOR_M: f64 = 2.0;
 
-/// A text that describes the way step by step. `task` is what to do at the end, in words, with the name of its object.
-pub(super) fn write_way_text(brief: &WritingBrief<'_>, task: Option<&(String, String)>, dice: TextDice) -> String {
+/// A text that describes the way step by step, and its draft; `None` only where no plan is tried. `task` is what to do at the end.
+pub(super) fn write_way_text<'a>(
+    brief: &'a WritingBrief<'_>,
+    task: Option<&TaskPhrase>,
+    dice: TextDice,
+) -> Option<(String, TextDraft<'a>)> {
     let words = brief.target_words().max(MIN_PLANNED_WORDS);
     let end = brief.memory.frame_count().saturating_sub(1);
     let rooms: Vec<String> = brief.memory.room_at(end).map(str::to_owned).into_iter().collect();
-    let topic = TextTopic { target: task.map(|(_, name)| name.as_str()), rooms: &rooms };
+    let topic = TextTopic { target: task.map(|task| task.name.as_str()), rooms: &rooms };
     let copies = &brief.profile.copies;
     let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
-    let mut best: Option<(usize, String)> = None;
+    let mut best: Option<(usize, (String, TextDraft<'_>))> = None;
     for (plan, dice) in ranked_plans(brief, words as f64, dice) {
         let mut draft = plan.draft_for_plan(brief, task, dice);
         for _ in 0..MAX_REWORDINGS {
@@ -66,7 +70,7 @@ pub(super) fn write_way_text(brief: &WritingBrief<'_>, task: Option<&(String, St
             let cost = [(copied.is_some(), COPIED_COST), (shared.is_some(), SHARED_COST), (is_over, OVER_LIMIT_COST)];
             let cost = cost.iter().filter(|(is_so, _)| *is_so).map(|(_, cost)| cost).sum();
             if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-                best = Some((cost, text));
+                best = Some((cost, (text, draft.clone())));
             }
             let Some(span) = copied.or(shared) else { break };
             draft.reword_span(span, &starts, brief, dice);
@@ -75,7 +79,7 @@ pub(super) fn write_way_text(brief: &WritingBrief<'_>, task: Option<&(String, St
             break;
         }
     }
-    best.map(|(_, text)| text).unwrap_or_default()
+    best.map(|(_, best)| best)
 }
 
 /// Several plans of a text with their sources of random draws, those nearest to its length first.
@@ -134,16 +138,15 @@ impl WayTextPlan {
     fn draft_for_plan<'a>(
         &self,
         brief: &'a WritingBrief<'_>,
-        task: Option<&(String, String)>,
+        task: Option<&TaskPhrase>,
         dice: TextDice,
     ) -> TextDraft<'a> {
         let mut landmarks = LandmarkChooser::new(brief, dice);
-        if let Some((_, name)) = task {
-            landmarks.reserve_name(name);
+        if let Some(task) = task {
+            landmarks.reserve_name(&task.name);
         }
         let mut clauses = self.clauses.clone();
         let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
-        let task = task.map(|(task, _)| task.as_str());
         loop {
             let mut plan = clauses.clone();
             mend_clauses(&mut plan, brief);
@@ -243,7 +246,7 @@ fn give_place(clause: &mut WayClause, brief: &WritingBrief<'_>) {
 pub(super) fn draw_ending(
     brief: &WritingBrief<'_>,
     rng: &mut ChaCha8Rng,
-) -> Result<Option<(String, String)>, super::WriteError> {
+) -> Result<Option<TaskPhrase>, super::WriteError> {
     let ends = brief.style.constraints.ends_in_task || rng.random_bool(brief.profile.tasks.clamp(0.0, 1.0));
-    if ends { task::draw_task(brief, rng).map(Some) } else { Ok(None) }
+    if ends { draw_task(brief, rng).map(Some) } else { Ok(None) }
 }

@@ -67,6 +67,25 @@ impl ClauseKind {
         matches!(self, Self::Turn | Self::TurnSlightly | Self::TurnAround)
     }
 
+    /// Whether it is a turn, which has a side.
+    #[must_use]
+    pub fn turns(self) -> bool {
+        matches!(
+            self,
+            Self::Turn
+                | Self::TurnSlightly
+                | Self::TurnAt
+                | Self::TurnIn
+                | Self::TurnInto
+                | Self::TurnOut
+                | Self::TurnThroughDoor
+                | Self::TurnAtDoor
+                | Self::TurnAtEnd
+                | Self::TurnAtTop
+                | Self::TurnAtBottom
+        )
+    }
+
     /// Whether its words name the room that it leads to or takes place in.
     #[must_use]
     pub fn names_room(self) -> bool {
@@ -109,8 +128,8 @@ pub(super) struct ClauseParts<'a> {
     /// Whether it sends the walker straight on.
     onward: bool,
     /// Rooms and things that fill a slot, with the spans of their names in bytes.
-    pub(super) rooms: Vec<(&'a PlaceMention, [usize; 2])>,
-    pub(super) things: Vec<(&'a PlaceMention, [usize; 2])>,
+    rooms: Vec<(&'a PlaceMention, [usize; 2])>,
+    things: Vec<(&'a PlaceMention, [usize; 2])>,
     doors: Vec<&'a PlaceMention>,
     /// Whether it names stairs.
     stairs: bool,
@@ -160,6 +179,15 @@ impl<'a> ClauseParts<'a> {
             None => return None,
         }
         Some(())
+    }
+
+    /// The byte ranges of its names, with their slots in a shape of this kind.
+    pub(super) fn named_slots(&self, kind: ClauseKind) -> Vec<([usize; 2], &'static str)> {
+        let things = self.things.iter().map(|(_, span)| (*span, "{l}"));
+        let rooms = self.rooms.iter().enumerate().map(|(number, (_, span))| {
+            (*span, if kind == ClauseKind::LeaveEnter && number == 0 { "{a}" } else { "{r}" })
+        });
+        things.chain(rooms).collect()
     }
 
     /// The span of the words of its first turn, bytes.

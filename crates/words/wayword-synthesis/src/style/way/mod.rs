@@ -4,12 +4,12 @@
 //! A shape is a clause with slots for its names: "turn {s} at the {l}".
 
 mod kind;
-mod shapes;
+pub(super) mod shapes;
 #[cfg(test)]
 mod tests;
 
 pub use kind::{ClauseKind, is_door_word};
-pub use shapes::{ClauseJoint, is_until};
+pub use shapes::{ClauseJoint, ShapeTraits, is_until};
 
 use serde::{Deserialize, Serialize};
 use std::{
@@ -59,16 +59,16 @@ static BUILT_IN: LazyLock<BuiltIn> =
     LazyLock::new(|| toml::from_str(include_str!("../builtin/way.toml")).unwrap_or_default());
 
 /// The words of which shapes may consist.
-static ALLOWED_SHAPE_WORDS: LazyLock<BTreeSet<&'static str>> =
+pub(super) static ALLOWED_SHAPE_WORDS: LazyLock<BTreeSet<&'static str>> =
     LazyLock::new(|| BUILT_IN.words.split_whitespace().collect());
 
 /// A shape is used if at least this many texts have it.
-const MIN_SHAPE_TEXTS: f64 = 3.0;
+pub(super) const MIN_SHAPE_TEXTS: f64 = 3.0;
 /// With this many clauses of one kind, or the square of this number of all kinds, the measured counts are preferred to
 /// the built-in ones.
-const ENOUGH_CLAUSES: f64 = 40.0;
+pub(super) const ENOUGH_CLAUSES: f64 = 40.0;
 /// A name belongs to a room or thing if at least this share of the mentions of the room or thing use it.
-const MIN_NAME_SHARE: f64 = 0.04;
+pub(super) const MIN_NAME_SHARE: f64 = 0.04;
 
 impl WayWording {
     /// Measures texts with their readings. Where their clauses show too little, the built-in constructions fill in.

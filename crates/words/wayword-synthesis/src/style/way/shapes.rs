@@ -1,6 +1,6 @@
 //! Turns the clauses of reference texts into shapes with slots, so that the writer can fill them with other names.
 
-use super::kind::{ClauseKind, ClauseParts};
+use super::kind::{ClauseKind, ClauseParts, is_door_word};
 use std::collections::BTreeSet;
 use wayword_core::Side;
 use wayword_language::{
@@ -13,14 +13,18 @@ const MAX_SHAPE_WORDS: usize = 13;
 
 /// A clause of a text, with its joint to the clause before and, if it has one, its shape.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct ShapedClause {
-    pub(super) joint: ClauseJoint,
+pub(in crate::style) struct ShapedClause {
+    pub(in crate::style) joint: ClauseJoint,
     /// Its kind, if it has one.
-    pub(super) kind: Option<ClauseKind>,
+    pub(in crate::style) kind: Option<ClauseKind>,
     /// Its kind and its words with slots, if they make a shape that the writer can use.
-    pub(super) shape: Option<(ClauseKind, String)>,
+    pub(in crate::style) shape: Option<(ClauseKind, String)>,
+    /// The byte ranges of its words, without those that join it to the clause before.
+    pub(in crate::style) words: Vec<[usize; 2]>,
+    /// The byte ranges of its names, with their slots; empty for a clause without a kind.
+    pub(in crate::style) names: Vec<([usize; 2], &'static str)>,
     /// Whether it is an order to stop.
-    pub(super) stops: bool,
+    pub(in crate::style) stops: bool,
 }
 
 /// The words and marks between two clauses. `Start` is before the first clause of a text; `Stop` is a full stop.
@@ -70,7 +74,11 @@ impl ClauseJoint {
 const JOINING_WORDS: &[&str] = &["and", "then", "next", "now"];
 
 /// The clauses of a text. A shape may consist only of `allowed` words.
-pub(super) fn shape_clauses(text: &str, reading: &TextReading, allowed: &BTreeSet<&str>) -> Vec<ShapedClause> {
+pub(in crate::style) fn shape_clauses(
+    text: &str,
+    reading: &TextReading,
+    allowed: &BTreeSet<&str>,
+) -> Vec<ShapedClause> {
     let (mut clauses, mut end, mut pending) = (Vec::new(), 0, Vec::<&str>::new());
     let mut is_first = true;
     for (number, clause) in reading.clauses.iter().enumerate() {
@@ -94,11 +102,19 @@ pub(super) fn shape_clauses(text: &str, reading: &TextReading, allowed: &BTreeSe
         (is_first, pending) = (false, Vec::new());
         let events: Vec<&TextEvent> = reading.events.iter().filter(|event| event.clause == number).collect();
         let stops = events.iter().any(|event| event.what == EventContent::Stop);
-        let (kind, shape) = match clause.understood {
-            true => clause_shape(&words[links..], &events, allowed),
-            false => (None, None),
+        let words = &words[links..];
+        let mut shaped = ShapedClause {
+            joint,
+            kind: None,
+            shape: None,
+            words: words.iter().map(|token| token.span).collect(),
+            names: Vec::new(),
+            stops,
         };
-        clauses.push(ShapedClause { joint, kind, shape, stops });
+        if clause.understood {
+            shaped.add_shape(words, &events, allowed);
+        }
+        clauses.push(shaped);
     }
     clauses
 }
@@ -120,24 +136,24 @@ fn joint_between(between: &[&str]) -> ClauseJoint {
     }
 }
 
-/// The kind of a clause, and its shape if it consists of allowed words.
-fn clause_shape(
-    words: &[&TextToken],
-    events: &[&TextEvent],
-    allowed: &BTreeSet<&str>,
-) -> (Option<ClauseKind>, Option<(ClauseKind, String)>) {
-    let all: BTreeSet<&str> = words.iter().map(|token| token.word.as_str()).collect();
-    let Some(parts) = ClauseParts::from_events(events) else { return (None, None) };
-    let Some(kind) = parts.clause_kind(&all) else { return (None, None) };
-    let shape = words_with_slots(words, &parts, kind, allowed).filter(|shape| is_whole(kind, shape));
-    (Some(kind), shape.map(|shape| (kind, shape)))
+impl ShapedClause {
+    /// Finds its kind with its names, and its shape if it consists of allowed words.
+    fn add_shape(&mut self, words: &[&TextToken], events: &[&TextEvent], allowed: &BTreeSet<&str>) {
+        let all: BTreeSet<&str> = words.iter().map(|token| token.word.as_str()).collect();
+        let Some(parts) = ClauseParts::from_events(events) else { return };
+        let Some(kind) = parts.clause_kind(&all) else { return };
+        self.kind = Some(kind);
+        self.names = parts.named_slots(kind);
+        let shape = words_with_slots(words, &self.names, &parts, allowed).filter(|shape| is_whole(kind, shape));
+        self.shape = shape.map(|shape| (kind, shape));
+    }
 }
 
 /// The words of a clause with slots for its names and sides.
 fn words_with_slots(
     words: &[&TextToken],
+    names: &[([usize; 2], &'static str)],
     parts: &ClauseParts<'_>,
-    kind: ClauseKind,
     allowed: &BTreeSet<&str>,
 ) -> Option<String> {
     if words.len() > MAX_SHAPE_WORDS {
@@ -146,15 +162,13 @@ fn words_with_slots(
     let mut shaped: Vec<&str> = Vec::new();
     for token in words {
         let within = |span: [usize; 2]| token.span[0] >= span[0] && token.span[1] <= span[1];
-        let slot = match () {
-            () if parts.things.iter().any(|(_, span)| within(*span)) => Some("{l}"),
-            () if kind == ClauseKind::LeaveEnter && within(parts.rooms[0].1) => Some("{a}"),
-            () if parts.rooms.iter().any(|(_, span)| within(*span)) => Some("{r}"),
-            () if matches!(token.word.as_str(), "left" | "right") => {
+        let slot = match names.iter().find(|(span, _)| within(*span)) {
+            Some((_, slot)) => Some(*slot),
+            None if matches!(token.word.as_str(), "left" | "right") => {
                 let of_turn = parts.turn_span().is_some_and(within);
                 Some(if of_turn { "{s}" } else { "{p}" })
             }
-            () => None,
+            None => None,
         };
         let word = match slot {
             Some(slot) => slot,
@@ -167,11 +181,17 @@ fn words_with_slots(
     Some(shaped.join(" "))
 }
 
-/// Whether a shape has the slots that its kind needs, each once, and no other ([`ClauseKind`] explains the slots).
+/// Whether a shape of English words has the slots of its kind and is a clause of its own ([`ClauseKind`] explains the slots).
 fn is_whole(kind: ClauseKind, shape: &str) -> bool {
+    let may_run = !is_until(shape) || matches!(kind, ClauseKind::To | ClauseKind::ToDoor);
+    has_its_slots(kind, shape) && may_run && is_english(shape)
+}
+
+/// Whether a shape has the slots that its kind needs, each once, and no other.
+pub(in crate::style) fn has_its_slots(kind: ClauseKind, shape: &str) -> bool {
     let count = |slot: &str| shape.matches(slot).count();
     let (s, l, r, a, p) = (count("{s}"), count("{l}"), count("{r}"), count("{a}"), count("{p}"));
-    let fits = match kind {
+    match kind {
         ClauseKind::Turn
         | ClauseKind::TurnSlightly
         | ClauseKind::TurnThroughDoor
@@ -199,9 +219,7 @@ fn is_whole(kind: ClauseKind, shape: &str) -> bool {
         ClauseKind::PassEnter | ClauseKind::StopAtIn => (s, l, r, a, p) == (0, 1, 1, 0, 0),
         ClauseKind::PassOnSide => (s, l, r, a, p) == (0, 1, 0, 0, 1),
         _ => (s, l, r, a, p) == (0, 0, 0, 0, 0),
-    };
-    let may_run = !is_until(shape) || matches!(kind, ClauseKind::To | ClauseKind::ToDoor);
-    fits && may_run && is_english(shape)
+    }
 }
 
 /// Words that cannot end a clause.
@@ -214,6 +232,58 @@ const FRAGMENT_OPENERS: &[&str] =
 #[must_use]
 pub fn is_until(shape: &str) -> bool {
     shape.starts_with("until ")
+}
+
+/// What a shape says beside its kind, on which it depends where the shape fits.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ShapeTraits {
+    /// It says "straight" or the like.
+    pub goes_straight: bool,
+    /// It says that its thing is in front of the walker.
+    pub says_front: bool,
+    /// It names a room.
+    pub names_room: bool,
+    /// It says "the room" without a name.
+    pub says_room: bool,
+    /// It leads into the open air.
+    pub goes_outside: bool,
+    /// It means the part of the room by its door.
+    pub is_at_door: bool,
+    /// It says "at the kitchen".
+    pub is_at_room: bool,
+    /// It leads out of a room.
+    pub leaves: bool,
+    /// It limits the clause before it, as in "until you reach the sofa".
+    pub is_until: bool,
+    /// It says "past" or "after".
+    pub says_past: bool,
+    /// It says "all the way".
+    pub goes_all_the_way: bool,
+    /// Its words for doors, in English.
+    pub doors: Vec<String>,
+}
+
+impl ShapeTraits {
+    /// The traits of an English shape.
+    #[must_use]
+    pub fn of_english(shape: &str) -> Self {
+        let has = |any: &[&str]| any.iter().any(|part| shape.contains(part));
+        Self {
+            goes_straight: has(&["straight", "forward", "ahead"]),
+            says_front: has(&["front"]),
+            names_room: has(&["{r}"]),
+            says_room: shape.split(' ').any(|word| word == "room"),
+            goes_outside: has(&["onto the {r}", "out into the {r}"]),
+            is_at_door: has(&["just inside", "once you", "doorway", "at the {r}"]),
+            is_at_room: has(&["at the {r}"]),
+            leaves: has(&["exit", "leave", "out "]),
+            is_until: is_until(shape),
+            says_past: has(&["past", "after"]),
+            goes_all_the_way: has(&["all the way"]),
+            // The first word is the verb: "exit".
+            doors: shape.split(' ').skip(1).filter(|word| is_door_word(word)).map(str::to_owned).collect(),
+        }
+    }
 }
 
 /// Whether a shape is a correct clause of its own: it has an article before each name and adds no detail to its kind.

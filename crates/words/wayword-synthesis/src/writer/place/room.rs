@@ -10,6 +10,16 @@ use std::collections::BTreeSet;
 use wayword_core::{ClimbDirection, ObjectDescription, ObjectDistinction};
 use wayword_language::lexicon::{room_name, with_article};
 
+/// What a text says of the room where a path ends, in English names.
+#[derive(Clone)]
+pub(in crate::writer) struct RoomContent {
+    pub(in crate::writer) name: String,
+    /// The number of its storey, from 1, where the text names it.
+    pub(in crate::writer) level: Option<u32>,
+    /// The properties of the room that the text names.
+    pub(in crate::writer) by: Vec<ObjectDistinction>,
+}
+
 /// The room where a path ends.
 pub(super) struct GoalRoom<'a> {
     wording: &'a PlaceWording,
@@ -96,7 +106,7 @@ impl<'a> GoalRoom<'a> {
         distinctions: &[&ObjectDistinction],
         names_level: bool,
         rng: &mut ChaCha8Rng,
-    ) -> String {
+    ) -> (String, RoomContent) {
         let must = distinctions.iter().any(|by| matches!(by, ObjectDistinction::Level { .. }));
         let level = self.level.filter(|_| must || names_level);
         let room = self.wording.draw_name(self.room, rng);
@@ -106,7 +116,9 @@ impl<'a> GoalRoom<'a> {
             distinctions.iter().partition(|by| has_with(by));
         let qualifiers: Vec<String> =
             with.into_iter().chain(beside).filter_map(|by| self.room_qualifier(by, rng)).collect();
-        let Some(level) = level else { return join_words(&[format!("the {room}")], &qualifiers) };
+        let by = distinctions.iter().filter(|by| by.is_about_room()).map(|by| (*by).clone()).collect();
+        let content = RoomContent { name: room.to_owned(), level, by };
+        let Some(level) = level else { return (join_words(&[format!("the {room}")], &qualifiers), content) };
         let has_ordinal = |way: &str| ordinal_of(level).is_some() || !way.contains("{th}");
         let way = self.wording.draw("level", rng, has_ordinal).unwrap_or("the {r} on level {n}");
         let filled = way.replace("{n}", &level.to_string()).replace("{th}", ordinal_of(level).unwrap_or_default());
@@ -114,9 +126,9 @@ impl<'a> GoalRoom<'a> {
         let is_last = filled.starts_with("the {r} ") && rng.random_bool(LEVEL_LAST_SHARE);
         if is_last && !qualifiers.is_empty() {
             let level = filled.trim_start_matches("the {r} ").to_owned();
-            return join_words(&[format!("the {room}")], &[qualifiers, vec![level]].concat());
+            return (join_words(&[format!("the {room}")], &[qualifiers, vec![level]].concat()), content);
         }
-        join_words(&[filled.replace("{r}", room)], &qualifiers)
+        (join_words(&[filled.replace("{r}", room)], &qualifiers), content)
     }
 
     /// "Next to the hallway", "with the stove"; `None` for a property that is not about rooms.

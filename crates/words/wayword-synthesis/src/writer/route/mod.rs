@@ -19,7 +19,7 @@ use crate::{style::way::ClauseKind, walk::ObservedWalk};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
 use wayword_checks::memory::{StairFlight, WalkBend, WalkMemory};
-use wayword_core::{ClimbDirection, PathMotion, Side, motion};
+use wayword_core::{ClimbDirection, Side, motion};
 use wayword_language::lexicon::room_name;
 
 /// A planned clause.
@@ -281,11 +281,6 @@ pub(super) fn last_climb(walk: &ObservedWalk) -> Option<ClimbDirection> {
 /// The name of a room, if a walker can walk into it; stairs are climbed instead.
 pub(super) fn usable_room(name: &str) -> Option<String> {
     (room_name(name) != Some("stairs")).then(|| name.to_owned())
-}
-
-/// Whether a shape fits a motion: if the motion is unknown, it must not contain "straight" or the like.
-pub(super) fn suits_motion(shape: &str, motion: PathMotion) -> bool {
-    motion.is_known() || !["straight", "forward", "ahead"].iter().any(|word| shape.contains(word))
 }
 
 /// The word for a side.

@@ -136,7 +136,7 @@ impl WayPlanner<'_> {
             self.memory.bends.iter().filter(|bend| bend.first > 0).map(|bend| bend.last).collect();
         let place = on_the_way.iter().position(|last| *last == bend.last);
         let from_an_end = place.map_or(0, |place| 1 + place.min(on_the_way.len() - 1 - place));
-        let names = ["left out", &brief.style.name, &brief.walk.path.id, &from_an_end.to_string()];
+        let names = ["left out", brief.style.draw_name(), &brief.walk.path.id, &from_an_end.to_string()];
         seeded_rng(brief.seed, &names).random_bool(LEFT_OUT_SHARE)
     }
 }

@@ -1,11 +1,12 @@
-//! The parts of a text that was read through English words.
+//! Byte ranges of a text that was read through English words.
 
+use crate::TextFindings;
 use wayword_core::InstructionPart;
 use wayword_language::languages::ReadableText;
 
 /// Turns the byte ranges of parts of the English words into those of the text. Where words change places between two parts, the second
 /// begins where the first ends.
-pub(crate) fn put_parts_into_text(parts: &mut [InstructionPart], words: &ReadableText<'_>) {
+pub fn put_parts_into_text(parts: &mut [InstructionPart], words: &ReadableText<'_>) {
     if !words.is_glossed() {
         return;
     }
@@ -14,6 +15,19 @@ pub(crate) fn put_parts_into_text(parts: &mut [InstructionPart], words: &Readabl
         let [from, to] = words.source_span(part.span);
         part.span = [from.max(end), to.max(end)];
         end = part.span[1];
+    }
+}
+
+impl TextFindings {
+    /// Turns the byte ranges of the English words of a text into those of the text itself.
+    pub fn put_into_text(&mut self, words: &ReadableText<'_>) {
+        if !words.is_glossed() {
+            return;
+        }
+        let spans = self.findings.iter_mut().filter_map(|finding| finding.span.as_mut());
+        let spans = spans.chain(self.mentions.iter_mut().map(|mention| &mut mention.span));
+        spans.for_each(|span| *span = words.source_span(*span));
+        put_parts_into_text(&mut self.parts, words);
     }
 }
 

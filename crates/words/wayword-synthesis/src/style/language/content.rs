@@ -1,0 +1,55 @@
+//! What a text says, read back from its words, to compare the texts of a walk in several languages.
+
+use std::collections::BTreeSet;
+use wayword_core::{ClimbDirection, Side};
+use wayword_language::{
+    lexicon::{ThingClass, find_thing, names_agree, room_name, same_room},
+    reading::{EventContent, TextReading, read_instruction},
+};
+
+/// The sides, climbs and names of a text, each in order.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct TextContent {
+    sides: Vec<Side>,
+    climbs: Vec<ClimbDirection>,
+    names: Vec<String>,
+}
+
+impl TextContent {
+    /// What is read in English words. Doors, parts of the building and "the room" are left out: they have several words everywhere.
+    pub(crate) fn read(english: &str) -> Self {
+        let reading: TextReading = read_instruction(english, &BTreeSet::new()).into_claims();
+        let mut content = Self { sides: Vec::new(), climbs: Vec::new(), names: Vec::new() };
+        for event in &reading.events {
+            match &event.what {
+                EventContent::Turn(side) => content.sides.push(*side),
+                EventContent::Climb(climb) => content.climbs.push(*climb),
+                EventContent::Place(place) => {
+                    let class = find_thing(&place.name).map(|thing| thing.class);
+                    let is_room = room_name(&place.name).is_some_and(|room| room != "stairs");
+                    let is_thing = class.is_some_and(|class| {
+                        !matches!(class, ThingClass::Fabric | ThingClass::Door | ThingClass::Stairs)
+                    });
+                    if is_room || is_thing {
+                        content.names.push(place.name.clone());
+                    }
+                }
+                _ => {}
+            }
+        }
+        content
+    }
+
+    /// How much another text differs: in how many places its lists have another entry.
+    pub(crate) fn difference(&self, other: &Self) -> usize {
+        let agree = |a: &String, b: &String| names_agree(a, b) || same_room(a, b);
+        differing(&self.sides, &other.sides, |a, b| a == b)
+            + differing(&self.climbs, &other.climbs, |a, b| a == b)
+            + differing(&self.names, &other.names, agree)
+    }
+}
+
+/// In how many places two lists differ.
+fn differing<T>(a: &[T], b: &[T], agree: impl Fn(&T, &T) -> bool) -> usize {
+    a.len().abs_diff(b.len()) + a.iter().zip(b).filter(|(a, b)| !agree(a, b)).count()
+}

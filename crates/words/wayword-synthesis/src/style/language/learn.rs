@@ -1,0 +1,222 @@
+//! Learns from texts of a language how they say what clauses say.
+//!
+//! A text is read through its English words, which show the kind of each clause. The clause's own words, with slots for its names, are the
+//! shape that texts of the language have for this kind.
+
+use super::super::way::{
+    ALLOWED_SHAPE_WORDS, ClauseJoint, ClauseKind, ENOUGH_CLAUSES, MIN_NAME_SHARE, MIN_SHAPE_TEXTS, WayWording,
+    shapes::{ShapedClause, has_its_slots, shape_clauses},
+};
+use super::LanguageWording;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
+use wayword_language::{
+    languages::{ReadableText, names_within},
+    lexicon::{find_thing, room_name},
+    reading::{EventContent, TextReading, read_instruction},
+};
+
+/// Most characters of a shape, slots counted as one.
+const MAX_SHAPE_CHARACTERS: usize = 14;
+/// A shape is used if at least this share of the clauses of its kind have it.
+const MIN_SHAPE_SHARE: f64 = 0.005;
+
+/// The wording of texts in a language; what they show too little of is that of the built-in wording.
+#[must_use]
+pub(in crate::style) fn learn_wording<'a>(
+    built_in: &LanguageWording,
+    texts: impl IntoIterator<Item = (&'a ReadableText<'a>, &'a TextReading)>,
+) -> LanguageWording {
+    let mut way = WayWording::default();
+    for (text, reading) in texts {
+        add_text(built_in, &mut way, text, reading);
+    }
+    keep_common(built_in, &mut way);
+    fill_from(built_in, &mut way);
+    LanguageWording { way: Arc::new(way), ..built_in.clone() }
+}
+
+/// Counts the shapes, joints and names of one text.
+fn add_text(language: &LanguageWording, way: &mut WayWording, text: &ReadableText<'_>, reading: &TextReading) {
+    let clauses = shape_clauses(text.english(), reading, &ALLOWED_SHAPE_WORDS);
+    let regions: Vec<Option<[usize; 2]>> = clauses.iter().map(|clause| clause_region(text, clause)).collect();
+    let mut before: Option<[usize; 2]> = None;
+    let mut after_turn = false;
+    for (at, (clause, region)) in clauses.iter().zip(&regions).enumerate() {
+        let apart = |other: &Option<[usize; 2]>| {
+            let (Some(own), Some(other)) = (region, other) else { return true };
+            own[1] <= other[0] || other[1] <= own[0]
+        };
+        let stands_alone = regions.iter().enumerate().all(|(other, region)| other == at || apart(region));
+        if let (Some(before), Some(region)) = (before, region)
+            && before[1] <= region[0]
+        {
+            let joint = joint_of(language, &text.text()[before[1]..region[0]]);
+            let joints = match () {
+                () if clause.stops => &mut way.stop_joints,
+                () if after_turn => &mut way.turn_joints,
+                () => &mut way.joints,
+            };
+            *joints.entry(joint).or_default() += 1.0;
+        }
+        before = region.or(before);
+        after_turn = clause.kind.is_some_and(ClauseKind::is_bare_turn);
+        let Some(kind) = clause.kind else { continue };
+        *way.kinds.entry(kind).or_default() += 1.0;
+        if let Some(shape) =
+            region.filter(|_| stands_alone).and_then(|region| own_shape(language, text, clause, region))
+        {
+            *way.shapes.entry(kind).or_default().entry(shape).or_default() += 1.0;
+        }
+    }
+    for event in &reading.events {
+        let EventContent::Place(place) = &event.what else { continue };
+        if place.several {
+            continue;
+        }
+        let [from, to] = text.source_span(event.span);
+        let Some(said) = text.text().get(from..to) else { continue };
+        if let Some(room) = room_name(&place.name).filter(|_| place.is_room) {
+            *way.rooms.entry(room.to_owned()).or_default().entry(said.to_owned()).or_default() += 1.0;
+        } else if let Some(thing) = find_thing(&place.name) {
+            *way.things.entry(thing.name.to_owned()).or_default().entry(said.to_owned()).or_default() += 1.0;
+        }
+    }
+}
+
+/// The bytes of a text that the words of a clause stand for.
+fn clause_region(text: &ReadableText<'_>, clause: &ShapedClause) -> Option<[usize; 2]> {
+    let sources = clause.words.iter().filter_map(|span| text.source_of_word(*span));
+    sources.reduce(|all, one| [all[0].min(one[0]), all[1].max(one[1])])
+}
+
+/// The shape of a clause in the words of its text; `None` where a name is no run of words there.
+fn own_shape(
+    language: &LanguageWording,
+    text: &ReadableText<'_>,
+    clause: &ShapedClause,
+    [from, to]: [usize; 2],
+) -> Option<String> {
+    let kind = clause.kind?;
+    let mut names: Vec<([usize; 2], &str)> =
+        clause.names.iter().map(|(span, slot)| (text.source_span(*span), *slot)).collect();
+    names.sort_unstable();
+    let (mut shape, mut at) = (String::new(), from);
+    for (span, slot) in names {
+        shape += &with_side_slots(language, kind, text.text().get(at..span[0])?);
+        shape += slot;
+        at = span[1];
+    }
+    shape += &with_side_slots(language, kind, text.text().get(at..to)?);
+    let slots = shape.matches('{').count();
+    let names_more = || names_within(language.tag, &shape).iter().any(|name| name != "room");
+    if language.has_trait(&shape, "broken") || names_more() {
+        return None;
+    }
+    let is_plain = |c: char| c.is_alphabetic() && !c.is_ascii() || "{}slrap".contains(c);
+    let is_short = shape.chars().count() - 2 * slots <= MAX_SHAPE_CHARACTERS;
+    (is_short && shape.chars().all(is_plain) && has_its_slots(kind, &shape)).then_some(shape)
+}
+
+/// Words with a slot for each side. A turn's side is `{s}`, that of a place `{p}`.
+fn with_side_slots(language: &LanguageWording, kind: ClauseKind, words: &str) -> String {
+    let slot = if kind.turns() { "{s}" } else { "{p}" };
+    language.words.sides.iter().fold(words.to_owned(), |words, side| words.replace(side.as_str(), slot))
+}
+
+/// The joint that the words between two clauses make.
+fn joint_of(language: &LanguageWording, between: &str) -> ClauseJoint {
+    let has = |name: &str| language.has_trait(between, name);
+    match (has("joint_stop"), has("joint_comma"), has("joint_then")) {
+        (true, _, true) => ClauseJoint::StopThen,
+        (true, _, false) => ClauseJoint::Stop,
+        (false, true, true) => ClauseJoint::CommaThen,
+        (false, true, false) => ClauseJoint::Comma,
+        (false, false, true) => ClauseJoint::Then,
+        (false, false, false) => ClauseJoint::And,
+    }
+}
+
+/// Keeps the shapes that several texts have and that are read as the same kind; likewise the names.
+fn keep_common(language: &LanguageWording, way: &mut WayWording) {
+    for (kind, shapes) in &mut way.shapes {
+        let all: f64 = shapes.values().sum();
+        shapes.retain(|shape, texts| {
+            *texts >= (all * MIN_SHAPE_SHARE).max(MIN_SHAPE_TEXTS) && is_read_as(language, *kind, shape)
+        });
+    }
+    way.shapes.retain(|_, shapes| !shapes.is_empty());
+    for (usual, names) in way.rooms.iter_mut().chain(way.things.iter_mut()) {
+        let total: f64 = names.values().sum();
+        names.retain(|name, texts| {
+            *texts >= MIN_SHAPE_TEXTS && *texts >= total * MIN_NAME_SHARE && is_name_of(name, usual)
+        });
+    }
+    way.rooms.retain(|_, names| !names.is_empty());
+    way.things.retain(|_, names| !names.is_empty());
+}
+
+/// Takes from the built-in wording what the texts show too few of.
+fn fill_from(built_in: &LanguageWording, way: &mut WayWording) {
+    let own = &built_in.way;
+    for (kind, shapes) in &own.shapes {
+        let measured = way.shapes.entry(*kind).or_default();
+        if measured.values().sum::<f64>() < ENOUGH_CLAUSES {
+            *measured = shapes.clone();
+        }
+    }
+    for (measured, own) in [
+        (&mut way.joints, &own.joints),
+        (&mut way.turn_joints, &own.turn_joints),
+        (&mut way.stop_joints, &own.stop_joints),
+    ] {
+        if measured.values().sum::<f64>() < ENOUGH_CLAUSES {
+            *measured = own.clone();
+        }
+    }
+    for (measured, own) in [(&mut way.rooms, &own.rooms), (&mut way.things, &own.things)] {
+        for (usual, names) in own {
+            let seen = measured.entry(usual.clone()).or_default();
+            if seen.values().sum::<f64>() < ENOUGH_CLAUSES {
+                *seen = names.clone();
+            }
+        }
+    }
+}
+
+/// Whether a name alone is read as the name of this thing or room.
+fn is_name_of(name: &str, usual: &str) -> bool {
+    let readable = ReadableText::new(name, None);
+    let reading = read_instruction(readable.english(), &BTreeSet::new());
+    let places: Vec<&str> = reading
+        .events
+        .iter()
+        .filter_map(|event| if let EventContent::Place(place) = &event.what { Some(place.name.as_str()) } else { None })
+        .collect();
+    let is_it =
+        |place: &str| room_name(place) == Some(usual) || find_thing(place).is_some_and(|thing| thing.name == usual);
+    matches!(places.as_slice(), [place] if is_it(place))
+}
+
+/// Whether a shape, filled with names, is read as one clause of its kind, whole and with the same side.
+pub(super) fn is_read_as(language: &LanguageWording, kind: ClauseKind, shape: &str) -> bool {
+    let room = if matches!(kind, ClauseKind::Along | ClauseKind::AlongToEnd | ClauseKind::TurnAtEnd) {
+        "hallway"
+    } else {
+        "bedroom"
+    };
+    let name = |english: &str| language.usual_name(english).unwrap_or_default();
+    let fills: BTreeMap<&str, &str> =
+        BTreeMap::from([("{l}", name("sofa")), ("{r}", name(room)), ("{a}", name("kitchen"))]);
+    language.words.sides.iter().all(|side| {
+        let filled = fills.iter().fold(shape.to_owned(), |text, (slot, name)| text.replace(slot, name));
+        let filled = filled.replace("{s}", side).replace("{p}", side);
+        let readable = ReadableText::new(&filled, Some(language.tag));
+        let reading = read_instruction(readable.english(), &BTreeSet::new());
+        let clauses = shape_clauses(readable.english(), &reading, &ALLOWED_SHAPE_WORDS);
+        let is_whole = reading.clauses.iter().all(|clause| clause.understood);
+        is_whole && matches!(clauses.as_slice(), [one] if one.kind == Some(kind))
+    })
+}
