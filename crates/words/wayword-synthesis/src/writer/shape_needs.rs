@@ -13,7 +13,9 @@ const JUST_INSIDE_M: f64 = 1.5;
 pub(super) struct ShapeNeeds {
     knows_motion: bool,
     /// Whether the walk goes from viewpoint to viewpoint, which lie far apart.
-    is_on_graph: bool,
+    pub(super) is_on_graph: bool,
+    /// Whether its change of rooms has a door or a doorway.
+    pub(super) has_door: bool,
     /// Whether the clause has a room that its words can name.
     has_room: bool,
     /// Whether it may say "the room" without a name.
@@ -67,6 +69,7 @@ impl ShapeNeeds {
         Self {
             knows_motion: brief.walk.path.motion.is_known(),
             is_on_graph,
+            has_door: brief.memory.openings.iter().any(|opening| opening.before == clause.at && opening.has_door),
             has_room: clause.room.is_some(),
             may_say_room: has_walls && !has_to_name(clauses, at, brief),
             is_open_air,

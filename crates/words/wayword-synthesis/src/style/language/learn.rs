@@ -30,9 +30,13 @@ pub(in crate::style) fn learn_wording<'a>(
     texts: impl IntoIterator<Item = (&'a ReadableText<'a>, &'a TextReading)>,
 ) -> LanguageWording {
     let mut way = WayWording::default();
+    let (mut count, mut stops) = (0.0, 0.0);
     for (text, reading) in texts {
         add_text(built_in, &mut way, text, reading);
+        count += 1.0;
+        stops += f64::from(u8::from(reading.events.iter().any(|event| event.what == EventContent::Stop)));
     }
+    way.stop_share = if count < ENOUGH_CLAUSES { built_in.way.stop_share } else { stops / count };
     keep_common(built_in, &mut way);
     fill_from(built_in, &mut way);
     LanguageWording { way: Arc::new(way), ..built_in.clone() }
@@ -161,6 +165,9 @@ fn keep_common(language: &LanguageWording, way: &mut WayWording) {
 /// Takes from the built-in wording what the texts show too few of.
 fn fill_from(built_in: &LanguageWording, way: &mut WayWording) {
     let own = &built_in.way;
+    if way.kinds.values().sum::<f64>() < ENOUGH_CLAUSES * ENOUGH_CLAUSES {
+        way.kinds = own.kinds.clone();
+    }
     for (kind, shapes) in &own.shapes {
         let measured = way.shapes.entry(*kind).or_default();
         if measured.values().sum::<f64>() < ENOUGH_CLAUSES {
@@ -176,6 +183,7 @@ fn fill_from(built_in: &LanguageWording, way: &mut WayWording) {
             *measured = own.clone();
         }
     }
+    way.rooms_by_label = own.rooms_by_label.clone();
     for (measured, own) in [(&mut way.rooms, &own.rooms), (&mut way.things, &own.things)] {
         for (usual, names) in own {
             let seen = measured.entry(usual.clone()).or_default();

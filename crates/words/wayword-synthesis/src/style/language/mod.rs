@@ -9,6 +9,7 @@ mod learn;
 mod tests;
 
 use super::way::{ClauseJoint, ClauseKind, ShapeTraits, WayWording};
+use super::wording::WordingShares;
 use serde::{Deserialize, Serialize};
 use std::{
     collections::BTreeMap,
@@ -68,8 +69,8 @@ struct LanguageWords {
     numbered_doors: BTreeMap<String, String>,
     /// The words that count things, by usual English name or by class.
     counters: BTreeMap<String, String>,
-    /// What joins clauses.
-    joining: BTreeMap<ClauseJoint, String>,
+    /// What joins clauses, with the share of each of several words.
+    joining: BTreeMap<ClauseJoint, WordingShares>,
     /// Phrases for places and tasks, by what they say.
     phrases: BTreeMap<String, Vec<String>>,
     /// Tasks with `{o}` for the object, by their English words.
@@ -172,7 +173,8 @@ impl LanguageWording {
     /// The names of a thing or a room in the style's texts with their counts, by its English name.
     #[must_use]
     pub fn names(&self, english: &str) -> Option<&BTreeMap<String, f64>> {
-        let room = room_name(english).and_then(|usual| self.way.rooms.get(usual));
+        let tables = |usual| self.way.rooms_by_label.get(usual).or_else(|| self.way.rooms.get(usual));
+        let room = room_name(english).and_then(tables);
         room.or_else(|| self.way.things.get(find_thing(english)?.name))
     }
 
@@ -208,10 +210,11 @@ impl LanguageWording {
         format!("{one}{}{other}", self.words.and)
     }
 
-    /// What joins two clauses.
+    /// What may join two clauses, with the share of each.
     #[must_use]
-    pub fn joining_words(&self, joint: ClauseJoint) -> &str {
-        self.words.joining.get(&joint).map_or("", String::as_str)
+    pub fn joining_words(&self, joint: ClauseJoint) -> &WordingShares {
+        static NONE: WordingShares = WordingShares::new();
+        self.words.joining.get(&joint).unwrap_or(&NONE)
     }
 
     /// What ends a sentence.
@@ -242,7 +245,7 @@ impl LanguageWording {
     #[must_use]
     pub fn words_for(&self, text: &str, plan: &WayWording) -> usize {
         let characters = text.chars().filter(|c| c.is_alphanumeric()).count();
-        (characters as f64 / self.characters_per_word(plan)).round() as usize
+        (characters as f64 / self.characters_per_word(plan) / PLANNED_SHARE).round() as usize
     }
 
     /// How many characters a clause has for each word of the English one.
@@ -273,6 +276,8 @@ impl LanguageWording {
     }
 }
 
+/// Share of the words that a text is planned for which it gets, as few walks have things for all.
+const PLANNED_SHARE: f64 = 0.78;
 /// Characters of a name in a text of a language without blanks, for the slots of shapes.
 const NAME_CHARACTERS: f64 = 2.2;
 

@@ -88,6 +88,11 @@ impl WayClause {
         Self::new(ClauseKind::Straight, self.at, self.weight)
     }
 
+    /// The same clause of another kind.
+    pub(super) fn of_kind(&self, kind: ClauseKind) -> Self {
+        Self { kind, ..self.clone() }
+    }
+
     /// Lets it fall back to "go straight" if it gets no thing.
     pub(super) fn or_straight_on(&mut self) {
         if let Some(offer) = &mut self.offer {

@@ -10,11 +10,21 @@ use wayword_checks::memory::WalkBend;
 use wayword_core::{Side, motion};
 use wayword_language::lexicon::room_name;
 
+/// A style that says "go along the hallway" in at least this share of the clauses that go straight on says it wherever it can.
+const ALONG_SHARE: f64 = 0.3;
+
 impl WayPlanner<'_> {
     /// Adds "go along the hallway".
     pub(super) fn go_along(&mut self, at: usize, room: &str, weight: u8) {
         self.push(WayClause::new(ClauseKind::Along, at, weight).with_room(room));
         self.along = true;
+    }
+
+    /// Whether the text says "go along the hallway" where "go straight" says the same. Some styles hardly ever name a hallway.
+    pub(super) fn says_along(&mut self) -> bool {
+        let (along, straight) = (self.kind_count(ClauseKind::Along), self.kind_count(ClauseKind::Straight));
+        let share = along / (along + straight).max(f64::EPSILON);
+        share >= ALONG_SHARE || self.rng.random_bool(share / ALONG_SHARE)
     }
 
     /// Whether the walk goes far along the room of a frame before it turns.
@@ -43,6 +53,9 @@ impl WayPlanner<'_> {
         let room = self.memory.room_at(at + 1).and_then(usable_room);
         let hall = room.filter(|room| room_name(room) == Some("hallway"));
         if let Some(hall) = hall.filter(|_| !self.along && self.rng.random_bool(0.5) && self.goes_far_along(at + 1)) {
+            if !self.says_along() {
+                return self.push(WayClause::new(ClauseKind::Straight, at, SIDE_WEIGHT));
+            }
             let left = self.memory.stay_at(at + 1).map_or(at, |stay| stay.left);
             let weight = if self.brief.walk.walked_m(at, left) >= LONG_HOP_M { MAIN_WEIGHT } else { SIDE_WEIGHT };
             return self.go_along(at, &hall, weight);

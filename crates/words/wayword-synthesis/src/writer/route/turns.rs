@@ -101,8 +101,8 @@ impl WayPlanner<'_> {
     /// last clause.
     pub(super) fn go_on_to(&mut self, at: usize) {
         let Some((from, room)) = self.walked_since(at) else { return };
-        let room = usable_room(room);
-        match room.filter(|room| room_name(room) == Some("hallway")) {
+        let hall = usable_room(room).filter(|room| room_name(room) == Some("hallway"));
+        match hall.filter(|_| self.says_along()) {
             Some(hall) => self.go_along(from, &hall, MAIN_WEIGHT),
             None => self.push(WayClause::new(ClauseKind::Straight, from, MAIN_WEIGHT)),
         }
