@@ -3,6 +3,7 @@
 //! The text is planned, written and checked in English. Its version in the other language is made from what its phrases say, not from their
 //! words. So texts for a path agree in all languages in what they name, and in which order.
 
+mod clauses;
 mod place;
 mod way;
 
@@ -22,9 +23,9 @@ use wayword_checks::TextTopic;
 use wayword_language::languages::ReadableText;
 
 /// Most versions of a text that are made until enough are read as saying the same as the English text.
-const MAX_VERSIONS: usize = 16;
+const MAX_VERSIONS: usize = 24;
 /// So many versions are offered to the checks.
-const ENOUGH_VERSIONS: usize = 4;
+const ENOUGH_VERSIONS: usize = 7;
 
 /// Writes by rules in English, and remembers what each text is in the language of its style.
 pub struct RulesInLanguage<'a> {

@@ -21,7 +21,7 @@ use wayword_language::{
 /// Most characters of a shape, slots counted as one.
 const MAX_SHAPE_CHARACTERS: usize = 14;
 /// A shape is used if at least this share of the clauses of its kind have it.
-const MIN_SHAPE_SHARE: f64 = 0.005;
+const MIN_SHAPE_SHARE: f64 = 0.015;
 
 /// The wording of texts in a language; what they show too little of is that of the built-in wording.
 #[must_use]
