@@ -14,3 +14,12 @@ crate::data::lists! {
     words: ANNOUNCED, BARE_REFUSAL;
     phrases: AGREEING, ANNOUNCING, PARTING, REFUSING, UNHELPING;
 }
+
+/// The same in Chinese, by the beginnings of sentences: it writes no blanks between words.
+pub mod zh {
+    crate::data::lists! {
+        "languages/zh/chatter.txt";
+        words: AGREEING, ANNOUNCED, REFUSING;
+        phrases:;
+    }
+}

@@ -1,13 +1,15 @@
 //! Removes the chatter around a text that a model was asked for ("Sure! Here is ..."), and recognises refusals.
 
 use wayword_language::{
-    PhraseList,
-    chatter::{AGREEING, ANNOUNCED, ANNOUNCING, PARTING, REFUSING},
+    PhraseList, WordList,
+    chatter::{AGREEING, ANNOUNCED, ANNOUNCING, PARTING, REFUSING, zh},
     text::split_words,
 };
 
 /// Most words of a sentence that announces a text; a longer one belongs to the text.
 const MAX_ANNOUNCING_WORDS: usize = 24;
+/// Most characters of words that announce a text in a language without blanks.
+const MAX_ANNOUNCING_CHARACTERS: usize = 30;
 /// How much of a sentence is examined, bytes. Its beginning is enough to classify it.
 const MAX_EXAMINED_BYTES: usize = 300;
 
@@ -27,8 +29,19 @@ pub(crate) fn without_chatter(text: &str) -> &str {
 /// Whether a reply is a refusal.
 #[must_use]
 pub fn is_refusal(text: &str) -> bool {
-    let words = sentence_words(text.trim_start_matches(['"', '“', '*']));
-    begins_with_phrase(&words, &REFUSING)
+    let text = text.trim_start_matches(['"', '“', '*']);
+    begins_with_phrase(&sentence_words(text), &REFUSING) || starts_with_any(text, &zh::REFUSING)
+}
+
+/// A text in a language without blanks, without the words before its first colon that only announce it.
+pub(crate) fn without_foreign_chatter(text: &str) -> &str {
+    let Some((before, rest)) = text.split_once(':') else { return text };
+    let announces = zh::ANNOUNCED.iter().any(|word| before.contains(word)) || starts_with_any(before, &zh::AGREEING);
+    if announces && before.chars().count() <= MAX_ANNOUNCING_CHARACTERS { rest.trim() } else { text }
+}
+
+fn starts_with_any(text: &str, starts: &WordList) -> bool {
+    starts.iter().any(|start| text.starts_with(*start))
 }
 
 /// The content of the first code fence, without the name of its language.

@@ -22,7 +22,7 @@ mod tools;
 pub use chatter::is_refusal;
 pub use json::{ObjectReading, find_object};
 pub use marks::without_template_marks;
-pub use text::{read_sentences, read_text, without_repeats};
+pub use text::{read_sentences, read_text, read_text_in, without_repeats};
 pub use thinking::without_thinking;
 pub use tools::{ToolCallReading, find_tool_calls};
 

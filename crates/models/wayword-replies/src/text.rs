@@ -2,7 +2,7 @@
 
 use crate::{
     MAX_REPLY_BYTES,
-    chatter::without_chatter,
+    chatter::{without_chatter, without_foreign_chatter},
     json::{mended_value, text_in_value},
     markdown::{join_lines, without_inline_marks},
     marks::next_mark,
@@ -10,7 +10,10 @@ use crate::{
     without_template_marks,
 };
 use wayword_core::{FinishReason, ModelReply};
-use wayword_language::text::{split_tokens, split_words};
+use wayword_language::{
+    languages::ReadableText,
+    text::{split_tokens, split_words},
+};
 
 /// How many wrappings around each other are taken off.
 const MAX_WRAPPINGS: usize = 6;
@@ -41,6 +44,34 @@ const FOREIGN_SIGNS: [char; 11] = ['<', '>', '|', '{', '}', '[', ']', '\\', '`',
 /// When something is left that belongs to no text, the text is not English, or the reply is too long. The words are for the model, which is
 /// asked again.
 pub fn read_text(reply: &str, labels: &[&str]) -> Result<String, String> {
+    let text = plain_text(reply, labels)?;
+    if text.chars().any(|c| c.is_alphabetic() && c > '\u{24F}') {
+        return Err("it is not in English: write it in English alone".to_owned());
+    }
+    Ok(text)
+}
+
+/// Least letters of a Latin word that is taken for English in a text of another language; "TV" is written so everywhere.
+const MIN_ENGLISH_LETTERS: usize = 3;
+
+/// The one text in a reply, as [`read_text`] takes it out, for a text in another language than English, of this name.
+///
+/// # Errors
+/// When something is left that belongs to no text, the text is not in that language or has English words, or the reply is too long.
+pub fn read_text_in(language: &str, reply: &str, labels: &[&str]) -> Result<String, String> {
+    let text = without_foreign_chatter(&plain_text(&reply.replace('：', ":"), labels)?).to_owned();
+    if ReadableText::new(&text, None).glossed_language() != Some(language) {
+        return Err(format!("it is not in {language}: write it in {language} alone"));
+    }
+    let mut words = text.split(|c: char| !c.is_ascii_alphabetic());
+    if let Some(word) = words.find(|word| word.len() >= MIN_ENGLISH_LETTERS) {
+        return Err(format!("it has the word {word:?}: write every name in {language}"));
+    }
+    Ok(text)
+}
+
+/// The one text in a reply, in whatever language.
+fn plain_text(reply: &str, labels: &[&str]) -> Result<String, String> {
     if reply.len() > MAX_REPLY_BYTES {
         return Err(format!("it has {} bytes, more than {MAX_REPLY_BYTES}", reply.len()));
     }
@@ -58,9 +89,6 @@ pub fn read_text(reply: &str, labels: &[&str]) -> Result<String, String> {
     let text = without_repeats(without_label_and_quotes(&joined, labels)).to_owned();
     if let Some(sign) = text.chars().find(|c| FOREIGN_SIGNS.contains(c)) {
         return Err(format!("it has the sign {sign:?}: write the text alone, without marks or formatting"));
-    }
-    if text.chars().any(|c| c.is_alphabetic() && c > '\u{24F}') {
-        return Err("it is not in English: write it in English alone".to_owned());
     }
     Ok(text)
 }

@@ -179,3 +179,26 @@ fn a_cut_summary_is_requested_again_and_then_used_in_part() {
     assert_eq!((caption.text.as_str(), caption.by), ("A bedroom with a bed.", None));
     assert!(model.prompts()[1].contains("it was cut off"));
 }
+
+#[test]
+fn a_text_in_chinese_is_asked_for_and_english_words_in_it_are_refused() {
+    let walk = trial_fill::trial_walk(PathMotion::Known).unwrap();
+    let style = built_in("r2r").unwrap().in_language("zh");
+    let profile = StyleProfile::for_style(&style);
+    let memory = walk.memory();
+    let brief = WritingBrief::new(&walk, &memory, &style, &profile, 0);
+    let model = Scripted::new(&[
+        "Walk into the bedroom and stop.",
+        "走进卧室，停在 lamp 旁边。",
+        "抱歉，我无法提供帮助。",
+        "好的，以下是导航指令：走进卧室，停在台灯旁边。",
+    ]);
+    let writer = ModelWriter::new(model.clone(), prompts());
+    for wanted in ["it is not in Chinese", "it has the word \"lamp\"", "it refused"] {
+        let Err(WriteError::Unusable { reason, .. }) = writer.write(&brief) else { panic!("{wanted}: it is used") };
+        assert!(reason.contains(wanted), "{reason}");
+    }
+    assert_eq!(writer.write(&brief).unwrap(), "走进卧室，停在台灯旁边。");
+    let prompt = &model.prompts()[0];
+    assert!(prompt.contains("Write it in Simplified Chinese alone") && prompt.contains("lamp 台灯"), "{prompt}");
+}

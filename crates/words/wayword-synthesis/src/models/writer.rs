@@ -7,7 +7,8 @@ use crate::{
 };
 use std::sync::Arc;
 use wayword_core::{ChatMessage, FinishReason, LanguageModel, MAX_TEXT_BYTES, ModelError, SamplingOptions};
-use wayword_replies::{is_refusal, read_text};
+use wayword_language::Language;
+use wayword_replies::{is_refusal, read_text, read_text_in};
 
 /// Lets a language model write. Its prompt includes the reasons why earlier texts failed.
 #[derive(Clone)]
@@ -22,8 +23,16 @@ const WRITING_TEMPERATURE: f64 = 0.7;
 const MAX_TOKENS: u32 = 300;
 /// Bytes of a prompt for each token of the context that a model has: fewer than English text has, so that the prompt surely fits.
 const BYTES_PER_TOKEN: usize = 3;
+/// What models call the text before it.
+const TEXT_LABELS: [&str; 3] = ["instruction", "answer", "final answer"];
 /// How much of an over-long text the next prompt shows, bytes.
 const MAX_SHOWN_BYTES: usize = 500;
+
+/// The name of the language that a text has to be in, if that is not English.
+fn written_language(brief: &WritingBrief<'_>) -> Option<&'static str> {
+    let tag = brief.profile.language.as_ref()?.tag();
+    Language::from_tag(tag).foreign_name()
+}
 
 impl ModelWriter {
     /// A writer behind a model.
@@ -65,7 +74,10 @@ impl InstructionWriter for ModelWriter {
             let text = if end < text.len() { format!("{} ...", &text[..end]) } else { text.to_owned() };
             Err(WriteError::Unusable { text, reason })
         };
-        let read = read_text(&reply.text, &["instruction", "answer", "final answer"]);
+        let read = match written_language(brief) {
+            Some(language) => read_text_in(language, &reply.text, &TEXT_LABELS),
+            None => read_text(&reply.text, &TEXT_LABELS),
+        };
         let text = read.as_deref().unwrap_or(reply.text.trim());
         if text.len() > MAX_TEXT_BYTES {
             let reason = format!("it has {} bytes, more than {MAX_TEXT_BYTES}: write a few sentences", text.len());

@@ -11,6 +11,7 @@ use wayword_checks::{
 };
 use wayword_core::{CheckFinding, CheckKind, ClimbDirection, PathMove, Side, TurnKind, Verdict};
 use wayword_language::{
+    languages::ReadableText,
     lexicon::{is_fabric, names_agree, same_room},
     reading::{EventContent, read_instruction},
 };
@@ -64,8 +65,9 @@ fn describe_right(brief: &WritingBrief<'_>, text: &str, finding: &CheckFinding, 
 
 /// The clause of a text around a span.
 fn clause_around(text: &str, [from, to]: [usize; 2]) -> &str {
-    let is_mark = |c: char| matches!(c, '.' | ',' | ';');
-    let start = text.get(..from).and_then(|before| before.rfind(is_mark)).map_or(0, |mark| mark + 1);
+    let is_mark = |c: char| matches!(c, '.' | ',' | ';' | '。' | '，' | '；');
+    let behind = |mark: usize| mark + text[mark..].chars().next().map_or(0, char::len_utf8);
+    let start = text.get(..from).and_then(|before| before.rfind(is_mark)).map_or(0, behind);
     let end = text.get(to..).and_then(|behind| behind.find(is_mark)).map_or(text.len(), |mark| to + mark);
     text.get(start..end).unwrap_or_default().trim()
 }
@@ -74,9 +76,10 @@ fn clause_around(text: &str, [from, to]: [usize; 2]) -> &str {
 fn describe_turns(brief: &WritingBrief<'_>, text: &str, span: Option<[usize; 2]>) -> String {
     let moves = brief.walk.moves.iter().enumerate().filter(|(_, step)| step.turn() != TurnKind::Straight);
     let walked: Vec<(usize, &PathMove)> = moves.collect();
-    let reading = read_instruction(text, &std::collections::BTreeSet::new());
+    let readable = ReadableText::new(text, None);
+    let reading = read_instruction(readable.english(), &std::collections::BTreeSet::new());
     let turns = reading.events.iter().filter(|event| matches!(event.what, EventContent::Turn(_)) && !event.denied);
-    let turns: Vec<[usize; 2]> = turns.map(|event| event.span).collect();
+    let turns: Vec<[usize; 2]> = turns.map(|event| readable.source_span(event.span)).collect();
     let overlaps = |other: &[usize; 2]| span.is_some_and(|span| span[0] < other[1] && other[0] < span[1]);
     let at = turns.iter().position(overlaps).filter(|_| turns.len() == walked.len());
     if let Some((frame, step)) = at.and_then(|at| walked.get(at)) {
@@ -111,7 +114,8 @@ fn seen_at_end(brief: &WritingBrief<'_>) -> Option<String> {
 
 /// Where the named place is along the walk, and how a thing looks; advice if it is nowhere.
 fn where_seen(brief: &WritingBrief<'_>, words: &str) -> Option<String> {
-    let name = words.trim_start_matches("the ").trim();
+    let readable = ReadableText::new(words, None);
+    let name = readable.english().trim_start_matches("the ").trim();
     let stays = brief.known.stays.iter().filter(|stay| same_room(&stay.room, name));
     let stays: Vec<String> = stays.map(|stay| frame_range(stay.entered, stay.left)).collect();
     if !stays.is_empty() {

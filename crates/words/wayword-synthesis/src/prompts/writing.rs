@@ -4,8 +4,9 @@ use super::{corrections::refusal_reasons, detail::PromptDetail, walk_parts::walk
 use crate::writer::WritingBrief;
 use minijinja::{Value, context};
 use rand::seq::index;
+use std::collections::BTreeSet;
 use wayword_core::{ObjectDistinction, PathTarget, Side, seeded_rng};
-use wayword_language::{lexicon::names_agree, text::word_count};
+use wayword_language::{Language, lexicon::names_agree, text::word_count};
 
 /// The variables of the template `write.j2`.
 pub(super) fn writing_context(brief: &WritingBrief<'_>, detail: PromptDetail) -> Value {
@@ -25,7 +26,30 @@ pub(super) fn writing_context(brief: &WritingBrief<'_>, detail: PromptDetail) ->
         target => walk.path.target.as_ref().filter(|_| ends_in_task(brief)).map(|target| target_line(brief, target)),
         constraints => style_constraints(brief),
         earlier => brief.earlier,
+        language => language_words(brief),
+        own_names => own_names(brief),
     }
+}
+
+/// The language to write in, as a model knows it; nothing for English.
+fn language_words(brief: &WritingBrief<'_>) -> Option<&'static str> {
+    let tag = brief.profile.language.as_ref()?.tag();
+    Some(if tag == "zh" { "Simplified Chinese" } else { Language::from_tag(tag).foreign_name()? })
+}
+
+/// Most names that a prompt gives in the language to write in.
+const MAX_OWN_NAMES: usize = 60;
+
+/// The rooms and things of the walk in the language to write in, as "sofa 沙发".
+fn own_names(brief: &WritingBrief<'_>) -> Vec<String> {
+    let Some(language) = &brief.profile.language else { return Vec::new() };
+    let memory = brief.memory;
+    let rooms = memory.stays.iter().map(|stay| stay.room.as_str());
+    let things = memory.things.iter().map(|thing| thing.name.as_str());
+    let target = brief.walk.path.target.iter().map(|target| target.name.as_str());
+    let names: BTreeSet<&str> = rooms.chain(things).chain(target).collect();
+    let named = names.into_iter().filter_map(|name| Some(format!("{name} {}", language.usual_name(name)?)));
+    named.take(MAX_OWN_NAMES).collect()
 }
 
 /// The references that a prompt shows: all of them, or some that are drawn by the seed.

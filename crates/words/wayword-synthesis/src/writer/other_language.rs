@@ -24,6 +24,8 @@ use wayword_language::languages::ReadableText;
 
 /// Most versions of a text that are made until enough are read as saying the same as the English text.
 const MAX_VERSIONS: usize = 24;
+/// The usual name of a thing is drawn more often than people use it, by this power of its count: rare names fit few things.
+const NAME_POWER: f64 = 2.0;
 /// So many versions are offered to the checks.
 const ENOUGH_VERSIONS: usize = 7;
 
@@ -119,7 +121,7 @@ impl<'a> LanguageWriter<'a> {
             return Some(chosen.clone());
         }
         let names = self.language.names(english).into_iter().flatten();
-        let all: Vec<(f64, &String)> = names.map(|(name, count)| (*count, name)).collect();
+        let all: Vec<(f64, &String)> = names.map(|(name, count)| (count.powf(NAME_POWER), name)).collect();
         let drawn = draw_option(&all, &mut self.dice.named_rng(&["name", english])).cloned();
         let name = drawn.or_else(|| self.language.usual_name(english).map(str::to_owned))?;
         self.chosen.insert(english.to_owned(), name.clone());

@@ -4,7 +4,7 @@
 //! shape that texts of the language have for this kind.
 
 use super::super::way::{
-    ALLOWED_SHAPE_WORDS, ClauseJoint, ClauseKind, ENOUGH_CLAUSES, MIN_NAME_SHARE, MIN_SHAPE_TEXTS, WayWording,
+    ALLOWED_SHAPE_WORDS, ClauseJoint, ClauseKind, ENOUGH_CLAUSES, MIN_SHAPE_TEXTS, WayWording,
     shapes::{ShapedClause, has_its_slots, shape_clauses},
 };
 use super::LanguageWording;
@@ -18,6 +18,8 @@ use wayword_language::{
     reading::{EventContent, TextReading, read_instruction},
 };
 
+/// A name is used if at least this share of the mentions of the room or thing use it.
+const MIN_NAME_SHARE: f64 = 0.1;
 /// Most characters of a shape, slots counted as one.
 const MAX_SHAPE_CHARACTERS: usize = 14;
 /// A shape is used if at least this share of the clauses of its kind have it.

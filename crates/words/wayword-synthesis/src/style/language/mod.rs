@@ -71,6 +71,8 @@ struct LanguageWords {
     counters: BTreeMap<String, String>,
     /// What joins clauses, with the share of each of several words.
     joining: BTreeMap<ClauseJoint, WordingShares>,
+    /// The same before the last clause, where that differs.
+    joining_last: BTreeMap<ClauseJoint, WordingShares>,
     /// Phrases for places and tasks, by what they say.
     phrases: BTreeMap<String, Vec<String>>,
     /// Tasks with `{o}` for the object, by their English words.
@@ -210,11 +212,18 @@ impl LanguageWording {
         format!("{one}{}{other}", self.words.and)
     }
 
-    /// What may join two clauses, with the share of each.
+    /// What may join two clauses, with the share of each; the second may be the last one of its text.
     #[must_use]
-    pub fn joining_words(&self, joint: ClauseJoint) -> &WordingShares {
+    pub fn joining_words(&self, joint: ClauseJoint, is_last: bool) -> &WordingShares {
         static NONE: WordingShares = WordingShares::new();
-        self.words.joining.get(&joint).unwrap_or(&NONE)
+        let last = self.words.joining_last.get(&joint).filter(|_| is_last);
+        last.or_else(|| self.words.joining.get(&joint)).unwrap_or(&NONE)
+    }
+
+    /// Whether a clause always has a mark before it.
+    #[must_use]
+    pub fn is_parted(&self, clause: &str) -> bool {
+        self.has_trait(clause, "parted")
     }
 
     /// What ends a sentence.

@@ -12,8 +12,10 @@ use crate::{
     },
 };
 
-/// A clause of at most so many characters may follow another one, or come before it, without a mark.
+/// A clause of at most so many characters may come before another one without a mark.
 const MAX_UNPARTED_CHARACTERS: usize = 4;
+/// Least number of clauses from one "then" to the next.
+const MIN_CLAUSES_BETWEEN_THEN: usize = 4;
 
 impl LanguageWriter<'_> {
     /// A text about a way. Its joints are those of the language.
@@ -36,7 +38,8 @@ impl LanguageWriter<'_> {
         self.smooth_joints(&mut joints, &phrases);
         let mut text = String::new();
         for (at, (joint, phrase)) in joints.iter().zip(&phrases).enumerate() {
-            let words = self.language.joining_words(*joint).iter().map(|(words, share)| (*share, words));
+            let is_last = at + 1 == phrases.len();
+            let words = self.language.joining_words(*joint, is_last).iter().map(|(words, share)| (*share, words));
             let rng = &mut self.dice.named_rng(&["joint", &at.to_string()]);
             text += &draw_option(&words.collect::<Vec<_>>(), rng).cloned().unwrap_or_default();
             text += &phrase.text;
@@ -58,6 +61,11 @@ impl LanguageWriter<'_> {
                 PhraseContent::Clause(content) => self.kinds_to_say(clause, content, before, at == last),
                 PhraseContent::Stay | PhraseContent::Task(_) => vec![clause.kind],
             };
+            // Along a hallway one goes straight on.
+            let is_said = before.is_some_and(|before| matches!(before, ClauseKind::Along | ClauseKind::Straight));
+            if is_said && clause.kind == ClauseKind::Straight && at != last {
+                continue;
+            }
             let takes_straight = said.last().is_some_and(SaidClause::is_straight_on)
                 && kinds.first().is_some_and(|kind| may_go_straight(*kind));
             if takes_straight {
@@ -71,20 +79,21 @@ impl LanguageWriter<'_> {
         said
     }
 
-    /// Puts a comma where two long clauses would follow each other without any word or mark between them, and where "then" would follow
-    /// "then".
+    /// Puts a comma where two clauses would run together that always have a mark between them, and where "then" would come soon after "then".
     fn smooth_joints(&self, joints: &mut [ClauseJoint], phrases: &[ClausePhrase]) {
         let is_short = |phrase: &ClausePhrase| phrase.text.chars().count() <= MAX_UNPARTED_CHARACTERS;
-        let mut is_unparted = false;
+        let (mut is_unparted, mut last_then) = (false, None);
         for at in 1..joints.len() {
-            let has_no_mark = joints[at] == ClauseJoint::And && self.language.joining_words(joints[at]).is_empty();
-            if has_no_mark && (is_unparted || !is_short(&phrases[at - 1]) && !is_short(&phrases[at])) {
+            let runs_together =
+                is_unparted || !is_short(&phrases[at - 1]) || self.language.is_parted(&phrases[at].text);
+            if joints[at] == ClauseJoint::And && runs_together {
                 joints[at] = ClauseJoint::Comma;
             }
             is_unparted = joints[at] == ClauseJoint::And;
-            if says_then(joints[at]) && says_then(joints[at - 1]) {
+            if says_then(joints[at]) && last_then.is_some_and(|then| at < then + MIN_CLAUSES_BETWEEN_THEN) {
                 joints[at] = if joints[at].begins_sentence() { ClauseJoint::Stop } else { ClauseJoint::Comma };
             }
+            last_then = if says_then(joints[at]) { Some(at) } else { last_then };
         }
     }
 }

@@ -22,6 +22,10 @@ impl WayPlanner<'_> {
     /// the frame where the plan goes on.
     pub(super) fn leave_at_once(&mut self) -> Option<usize> {
         let opening = self.memory.openings.first().filter(|opening| opening.before <= MAX_SOON_HOPS)?;
+        // Stairs that begin on the way to the door have a clause of their own.
+        if self.memory.flights.iter().any(|flight| flight.from < opening.behind) {
+            return None;
+        }
         let mut bends = self.memory.bends.iter().filter(|bend| bend.first > 0);
         if bends.any(|bend| bend.first <= opening.before && !self.is_left_out(*bend)) {
             return None;
