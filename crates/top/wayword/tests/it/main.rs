@@ -63,3 +63,4 @@ mod turning_worlds;
 mod view;
 mod workers;
 mod writers;
+mod written_languages;

@@ -51,6 +51,8 @@ pub(super) struct ClauseContent {
     pub(super) from: String,
     /// Which of the doors on its side it means, where that is not the first.
     pub(super) door_number: Option<usize>,
+    /// Whether its words name the thing before the room.
+    pub(super) thing_first: bool,
     pub(super) needs: ShapeNeeds,
 }
 
@@ -153,8 +155,10 @@ impl<'a> ChosenNames<'a> {
         let is_clause = !["in", "at", "with"].contains(&shape.split(' ').next().unwrap_or_default());
         let numbered = door_number.and_then(|number| number_door(&shape, number)).unwrap_or(shape);
         let text = fill_gaps(&numbered, &gaps);
+        let thing_first = ShapeTraits::names_thing_first(&numbered);
         let room = if numbered.contains("{r}") { room } else { String::new() };
-        let content = ClauseContent { kind: clause.kind, side: clause.side, thing, room, from, door_number, needs };
+        let content =
+            ClauseContent { kind: clause.kind, side: clause.side, thing, room, from, door_number, thing_first, needs };
         ClausePhrase { runs_on: is_until(&text), text, is_clause, content: PhraseContent::Clause(content) }
     }
 

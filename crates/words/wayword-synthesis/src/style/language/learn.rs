@@ -156,9 +156,8 @@ fn keep_common(language: &LanguageWording, way: &mut WayWording) {
     way.shapes.retain(|_, shapes| !shapes.is_empty());
     for (usual, names) in way.rooms.iter_mut().chain(way.things.iter_mut()) {
         let total: f64 = names.values().sum();
-        names.retain(|name, texts| {
-            *texts >= MIN_SHAPE_TEXTS && *texts >= total * MIN_NAME_SHARE && is_name_of(name, usual)
-        });
+        let is_known = total >= ENOUGH_CLAUSES;
+        names.retain(|name, texts| is_known && *texts >= total * MIN_NAME_SHARE && is_name_of(name, usual));
     }
     way.rooms.retain(|_, names| !names.is_empty());
     way.things.retain(|_, names| !names.is_empty());

@@ -264,6 +264,12 @@ pub struct ShapeTraits {
 }
 
 impl ShapeTraits {
+    /// Whether a shape of any language names its thing before its room.
+    #[must_use]
+    pub fn names_thing_first(shape: &str) -> bool {
+        matches!((shape.find("{l}"), shape.find("{r}")), (Some(thing), Some(room)) if thing < room)
+    }
+
     /// The traits of an English shape.
     #[must_use]
     pub fn of_english(shape: &str) -> Self {

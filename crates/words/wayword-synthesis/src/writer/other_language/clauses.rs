@@ -2,7 +2,7 @@
 
 use super::LanguageWriter;
 use crate::{
-    style::way::ClauseKind,
+    style::way::{ClauseKind, ShapeTraits},
     writer::{
         naming::{ClauseContent, PhraseContent},
         phrases::draw_option,
@@ -112,7 +112,9 @@ impl LanguageWriter<'_> {
         let fits = |shape: &str| {
             let is_numbered =
                 content.door_number.is_none_or(|number| self.language.number_door(shape, number).is_some());
-            shape.contains("{r}") == says_room && is_numbered
+            let is_ordered = !(shape.contains("{l}") && shape.contains("{r}"))
+                || ShapeTraits::names_thing_first(shape) == content.thing_first;
+            shape.contains("{r}") == says_room && is_numbered && is_ordered
         };
         let admitted = |shape: &str| {
             let traits = self.language.traits_of(shape);
