@@ -36,6 +36,26 @@ fn vectors_agree_with_pytorch() {
     agrees(&load(&fixture("bert")).unwrap(), &fixture("bert").join("expected.json"));
 }
 
+/// A tokenizer as paraphrase-multilingual-MiniLM-L12-v2 has it: SentencePiece's normalisation and a Unigram vocabulary.
+/// `fixtures/make_bert_multilingual.py` made the numbers.
+#[test]
+fn vectors_of_other_languages_agree_with_pytorch() {
+    agrees(&load(&fixture("bert_multilingual")).unwrap(), &fixture("bert_multilingual").join("expected.json"));
+}
+
+/// The same with the real weights: needs a folder with paraphrase-multilingual-MiniLM-L12-v2 and the `expected.json` of
+/// `make_bert_multilingual.py --expect`.
+#[test]
+fn real_multilingual_weights_agree_with_pytorch() {
+    let Some(folder) = std::env::var_os("WAYWORD_MULTILINGUAL_MINILM").map(PathBuf::from) else {
+        eprintln!(
+            "skipped: set WAYWORD_MULTILINGUAL_MINILM to a folder with paraphrase-multilingual-MiniLM-L12-v2 and expected.json (fixtures/make_bert_multilingual.py --expect)"
+        );
+        return;
+    };
+    agrees(&load(&folder).unwrap(), &folder.join("expected.json"));
+}
+
 /// Real sentences with the real weights: needs a folder with all-MiniLM-L6-v2 and the `expected.json` of `make_bert.py
 /// --expect`.
 #[test]
