@@ -98,6 +98,14 @@ impl Language {
         }
     }
 
+    /// The tag of the language of a text by its script, such as "zh"; `None` for Latin letters, and for a script that the program does not
+    /// know.
+    #[must_use]
+    pub fn tag_of_script(text: &str) -> Option<&'static str> {
+        let Self::Other(language) = script_language(text) else { return None };
+        LANGUAGE_NAMES.iter().find(|(.., name)| *name == language).map(|(tag, ..)| *tag)
+    }
+
     /// The language of a text that its dataset gives a tag. A tag of another language is believed. A tag "en" is not
     /// believed against the text itself, because people mix languages.
     #[must_use]

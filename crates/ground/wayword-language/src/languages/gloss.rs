@@ -65,12 +65,6 @@ impl<'a> ReadableText<'a> {
         Self { text, gloss: super::gloss_text(text).filter(fits) }
     }
 
-    /// A text that is read as it is, in whatever language.
-    #[must_use]
-    pub fn as_written(text: &'a str) -> Self {
-        Self { text, gloss: None }
-    }
-
     /// The English words.
     #[must_use]
     pub fn english(&self) -> &str {

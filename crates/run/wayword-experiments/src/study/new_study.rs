@@ -9,6 +9,7 @@ use crate::study_args::{StudyMode, StudyNew, StudyRecruiter};
 use serde::Serialize;
 use std::{fmt, fs, path::PathBuf};
 use wayword_core::Platform;
+use wayword_language::Language;
 use wayword_report::view;
 use wayword_run::{
     count::count_phrase, error::CommandError, interrupt, output::CommandOutput, terms, written_files::write_file,
@@ -80,6 +81,13 @@ fn missing_paths(asked: u32, routes: usize, has_practice: bool) -> String {
     )
 }
 
+/// The tag of the language that the texts are in, where most are in other letters than English; else empty.
+fn text_language(items: &[StudyItem]) -> String {
+    let texts = || items.iter().flat_map(|item| &item.texts);
+    let tags: Vec<&str> = texts().filter_map(|text| Language::tag_of_script(&text.text)).collect();
+    if 2 * tags.len() > texts().count() { tags[0].to_owned() } else { String::new() }
+}
+
 pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), CommandError> {
     let _interrupt_guard = interrupt::finish_items_first(None);
     let mode = match args.mode {
@@ -121,6 +129,7 @@ pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), 
     settings.recruiter = recruiter_settings(args.recruiter);
     settings.codes = completion_codes(args.recruiter);
     settings.examples = style_examples(&style);
+    settings.text_language = text_language(&items);
     let plan = StudyDesign { mode, seed: args.seed, per_item: args.per_item, per_participant, conditions, style };
     let wanted = items.iter().filter(|item| !item.is_practice).count();
     let summary = NewStudySummary {

@@ -11,6 +11,7 @@ use super::{
 use serde::Serialize;
 use std::{cmp::Reverse, collections::BTreeSet};
 use wayword_core::{CheckFinding, CheckKind, Verdict};
+use wayword_language::Language;
 use wayword_run::run_folder::{FailedItem, text_label};
 
 /// Most characters of a text in a row. The rest is cut off; the section of the path shows the whole text.
@@ -86,6 +87,8 @@ struct TextRow {
     usd: Option<f64>,
     /// The text, cut at the words that something speaks against.
     said: Vec<(String, bool)>,
+    /// The tag of its language, if that is written in other letters than English.
+    lang: Option<&'static str>,
     signs: Vec<SuspicionSign>,
     /// The view at the end of the path.
     picture: Option<PagePicture>,
@@ -147,6 +150,7 @@ fn failed_row(failed: &FailedItem) -> TextRow {
         unverified: 0,
         usd: None,
         said: Vec::new(),
+        lang: None,
         signs: vec![SuspicionSign { class: "bad", words, span: None }],
         picture: None,
     }
@@ -181,6 +185,7 @@ fn rows_for_item(
             unverified: suspicion.map_or(0, |suspicion| suspicion.unverified),
             usd: usd.or(item.walk.used.map(|used| used.usd)).filter(|usd| *usd > 0.0),
             said: marked_words(text, &signs),
+            lang: Language::tag_of_script(text),
             signs: signs.iter().filter(|sign| !sign.words.is_empty()).map(SuspicionSign::cut_to_row).collect(),
             picture: picture.clone(),
         }

@@ -12,6 +12,7 @@ use serde::Serialize;
 use wayword_core::{
     CheckFinding, Instruction, InstructionPart, MentionKind, TextDoubt, TextMention, Verdict, WrittenDraft,
 };
+use wayword_language::Language;
 use wayword_run::{
     check::{CheckedAgain, SecondCheck},
     run_folder::text_label,
@@ -32,6 +33,8 @@ pub(super) struct TextView {
     /// Its style, with its number if the path has several of that style.
     label: String,
     state: TextState,
+    /// The tag of its language, if that is written in other letters than English.
+    lang: Option<&'static str>,
     /// Why it was rejected.
     reason: Option<String>,
     /// Empty if no text could be written.
@@ -131,6 +134,7 @@ pub(super) fn text_views(record: &ItemRecord, again: &CheckedAgain, places: Link
     let rejected = record.rejected.iter().map(|rejected| TextView {
         label: text_label(&rejected.style, rejected.number),
         state: TextState::Rejected,
+        lang: rejected.last.as_ref().and_then(|last| Language::tag_of_script(&last.text)),
         reason: Some(rejected.reason.clone()),
         segments: rejected.last.as_ref().map(|last| segment_views(last, places)).unwrap_or_default(),
         parts: rejected.last.as_ref().map(|last| part_views(last, places)).unwrap_or_default(),
@@ -176,6 +180,7 @@ fn accepted_view(text: &AcceptedText, second: SecondCheck<'_>, places: LinkTarge
     TextView {
         label: text_label(&shown.style, text.number),
         state: suspicion.state,
+        lang: Language::tag_of_script(&shown.text),
         reason: None,
         segments: segment_views(&shown, places),
         parts: part_views(&shown, places),

@@ -230,14 +230,6 @@ impl<'a> TextChecker<'a> {
         checked
     }
 
-    /// A text as it is read. The texts of a run are read as they were when it wrote them.
-    fn readable_text<'t>(&self, text: &'t FileText) -> ReadableText<'t> {
-        match self.is_own_run {
-            true => ReadableText::as_written(&text.words),
-            false => ReadableText::new(&text.words, text.tag.as_deref()),
-        }
-    }
-
     /// Checks all texts of a path: collects the evidence once, follows each text, and checks it in its world.
     fn check_walk(&self, walk: &PathTexts) -> Result<CheckedWalk, CommandError> {
         let Self { platform, how, lookout, sources, .. } = *self;
@@ -272,7 +264,7 @@ impl<'a> TextChecker<'a> {
         // A text of a Wayword record is no witness: one writer wrote all texts of its run, with the same mistakes in
         // each.
         let texts: Vec<(&FileText, ReadableText<'_>)> =
-            walk.texts.iter().map(|text| (text, self.readable_text(text))).collect();
+            walk.texts.iter().map(|text| (text, ReadableText::new(&text.words, text.tag.as_deref()))).collect();
         let testimony = |(text, readable): &(&FileText, ReadableText<'_>)| {
             (uses_witnesses && text.origin.is_none()).then(|| Testimony::from_text(readable.english(), &evidence))
         };
