@@ -1,4 +1,5 @@
-//! Counts how people's texts describe a way, for `style/builtin/way.toml` of `wayword-synthesis`.
+//! Counts how people's texts describe a way, for `style/builtin/way.toml` of `wayword-synthesis`, and for the file of another language
+//! beside it.
 
 use crate::matterport::open_matterport;
 use clap::Args;
@@ -15,8 +16,9 @@ use wayword_run::{
     error::CommandError,
     output::CommandOutput,
     people::{PeopleText, PeopleWalk, left_out, read_people_walks},
+    text_language::ForeignTexts,
 };
-use wayword_synthesis::style::way::WayWording;
+use wayword_synthesis::style::{LanguageWording, count_shapes, way::WayWording};
 
 /// The flags of `fit-wording`.
 #[derive(Debug, Args)]
@@ -40,6 +42,7 @@ type RoomNames = BTreeMap<String, BTreeMap<String, f64>>;
 
 /// Prints the constructions of the texts with their counts, as TOML. Shapes consist of the words that `way.toml` lists, and where the
 /// texts show too few of a kind, those of `way.toml` are printed. `rooms_by_label` has the names that people give to rooms of a label.
+/// Of texts in another language all counts are printed, and no `rooms_by_label`.
 ///
 /// # Errors
 /// When the texts or the data cannot be read.
@@ -50,10 +53,19 @@ pub fn fit_wording(flags: &FitWordingArgs, output: &CommandOutput) -> Result<(),
     let apart = left_out(&scenes);
     walks.retain(|walk| !apart.contains(&walk.path.scene));
     let texts: Vec<&PeopleText> = walks.iter().flat_map(|walk| &walk.texts).collect();
+    let language = ForeignTexts::find(texts.iter().map(|text| text.words.as_str()));
+    if let Some(language) = language.and_then(|found| LanguageWording::of_language(found.language)) {
+        let words: Vec<String> = texts.iter().map(|text| text.words.clone()).collect();
+        return print_wording(&count_shapes(language, &words), texts.len(), output);
+    }
     let mut wording = WayWording::from_texts(texts.iter().map(|text| (text.words.as_str(), &text.reading)));
     wording.rooms_by_label = count_room_names(&walks);
-    let as_toml = toml::to_string(&wording).map_err(|error| CommandError::usage(error.to_string(), "report this"))?;
-    output.print_result(&(), format!("# {} texts\n{as_toml}", texts.len()));
+    print_wording(&wording, texts.len(), output)
+}
+
+fn print_wording(wording: &WayWording, texts: usize, output: &CommandOutput) -> Result<(), CommandError> {
+    let as_toml = toml::to_string(wording).map_err(|error| CommandError::usage(error.to_string(), "report this"))?;
+    output.print_result(&(), format!("# {texts} texts\n{as_toml}"));
     Ok(())
 }
 

@@ -1,5 +1,5 @@
 //! Measures generated texts, each figure next to that of people's texts. To be independent, it shares no code with the writer or the
-//! checks, except the names in the lexicon.
+//! checks, except the names in the lexicon, and the English words for texts in other languages.
 
 mod clauses;
 mod copies;
@@ -21,6 +21,7 @@ use std::{
 };
 use wayword_core::{Platform, SceneId, ViewpointSurvey};
 use wayword_formats::Episode;
+use wayword_language::languages::ReadableText;
 use wayword_run::{
     error::CommandError,
     output::CommandOutput,
@@ -59,9 +60,9 @@ pub struct TextFiguresArgs {
 /// # Errors
 /// When a file cannot be read, or the platform cannot be opened or lacks a scene.
 pub fn measure_texts(flags: &TextFiguresArgs, output: &CommandOutput) -> Result<(), CommandError> {
-    let generated = wayword_formats::read_any_format(&flags.generated)?;
+    let generated = read_in_english(&flags.generated)?;
     let people = flags.people.as_deref().map(|file| read_same_items(file, &generated)).transpose()?;
-    let train = flags.train.as_deref().map(wayword_formats::read_any_format).transpose()?;
+    let train = flags.train.as_deref().map(read_in_english).transpose()?;
     let train = train.map(|episodes| TrainingTexts::from_texts(&texts_in_turn(&episodes)));
     let platform = flags.platform.clone().map(|name| open_platform(name, flags.data.clone())).transpose()?;
     let mut sides: Vec<(&str, Vec<TextFigureRow>)> = Vec::new();
@@ -84,6 +85,18 @@ pub fn measure_texts(flags: &TextFiguresArgs, output: &CommandOutput) -> Result<
     Ok(())
 }
 
+/// The items of a file. A text in another language that the program reads is in English words, so that all figures count the same.
+fn read_in_english(file: &Path) -> Result<Vec<Episode>, CommandError> {
+    let mut episodes = wayword_formats::read_any_format(file)?;
+    for text in episodes.iter_mut().flat_map(|episode| &mut episode.instructions) {
+        let readable = ReadableText::new(text, None);
+        if readable.is_glossed() {
+            *text = readable.english().to_owned();
+        }
+    }
+    Ok(episodes)
+}
+
 fn open_platform(platform: String, data: Option<PathBuf>) -> Result<Box<dyn Platform>, CommandError> {
     let asked = AskedPlatform { platform: Some(platform), data, ..AskedPlatform::default() };
     platforms::open_platform(&AskedSettings::from(asked).resolve()?)
@@ -104,7 +117,7 @@ fn survey_scenes(
 fn read_same_items(file: &Path, generated: &[Episode]) -> Result<Vec<Episode>, CommandError> {
     let ids: BTreeSet<&str> = generated.iter().map(|episode| episode.id.as_str()).collect();
     let (same, others): (Vec<Episode>, Vec<Episode>) =
-        wayword_formats::read_any_format(file)?.into_iter().partition(|episode| ids.contains(episode.id.as_str()));
+        read_in_english(file)?.into_iter().partition(|episode| ids.contains(episode.id.as_str()));
     Ok(if same.is_empty() { others } else { same })
 }
 

@@ -12,8 +12,8 @@ mod wording;
 use sha2::{Digest, Sha256};
 use wayword_core::{InstructionStyle, StyleConstraints, WordingPolicy, hex_text};
 
-pub use language::LanguageWording;
 pub(crate) use language::TextContent;
+pub use language::{LanguageWording, count_shapes};
 pub use profile::StyleProfile;
 use wording::MAX_SHARP_POWER;
 pub use wording::{PlaceWording, WordingShares};

@@ -31,17 +31,38 @@ pub(in crate::style) fn learn_wording<'a>(
     built_in: &LanguageWording,
     texts: impl IntoIterator<Item = (&'a ReadableText<'a>, &'a TextReading)>,
 ) -> LanguageWording {
-    let mut way = WayWording::default();
-    let (mut count, mut stops) = (0.0, 0.0);
-    for (text, reading) in texts {
-        add_text(built_in, &mut way, text, reading);
-        count += 1.0;
-        stops += f64::from(u8::from(reading.events.iter().any(|event| event.what == EventContent::Stop)));
+    let (mut way, count) = counted_way(built_in, texts);
+    if count < ENOUGH_CLAUSES {
+        way.stop_share = built_in.way.stop_share;
     }
-    way.stop_share = if count < ENOUGH_CLAUSES { built_in.way.stop_share } else { stops / count };
     keep_common(built_in, &mut way);
     fill_from(built_in, &mut way);
     LanguageWording { way: Arc::new(way), ..built_in.clone() }
+}
+
+/// Counts all shapes, joints and names of texts in a language that the program writes, also those that are too rare to be used.
+#[must_use]
+pub fn count_shapes(language: &LanguageWording, texts: &[String]) -> WayWording {
+    let texts: Vec<ReadableText<'_>> = texts.iter().map(|text| ReadableText::new(text, Some(language.tag))).collect();
+    let readings: Vec<TextReading> =
+        texts.iter().map(|text| read_instruction(text.english(), &BTreeSet::new())).collect();
+    counted_way(language, texts.iter().zip(&readings)).0
+}
+
+/// The counts of texts, and their number.
+fn counted_way<'a>(
+    language: &LanguageWording,
+    texts: impl IntoIterator<Item = (&'a ReadableText<'a>, &'a TextReading)>,
+) -> (WayWording, f64) {
+    let mut way = WayWording::default();
+    let (mut count, mut stops) = (0.0, 0.0);
+    for (text, reading) in texts {
+        add_text(language, &mut way, text, reading);
+        count += 1.0;
+        stops += f64::from(u8::from(reading.events.iter().any(|event| event.what == EventContent::Stop)));
+    }
+    way.stop_share = stops / f64::max(count, 1.0);
+    (way, count)
 }
 
 /// Counts the shapes, joints and names of one text.

@@ -23,6 +23,7 @@ use wayword_language::{
 };
 
 pub(crate) use content::TextContent;
+pub use learn::count_shapes;
 pub(super) use learn::learn_wording;
 
 /// The languages that the program writes beside English: tag, and text of the TOML file.
