@@ -43,7 +43,7 @@ mod tests {
             let from = words.english().find(said).unwrap();
             InstructionPart { span: [from, from + said.len()], frames: [0, 1], confidence: None }
         };
-        let mut parts = vec![part("walk to the sofa"), part("turn left"), part("go up the stairs")];
+        let mut parts = vec![part("walk to the sofa"), part("turn left"), part("go upstairs")];
         put_parts_into_text(&mut parts, &words);
         let shown: Vec<&str> = parts.iter().map(|part| &text[part.span[0]..part.span[1]]).collect();
         assert_eq!(shown, ["走到沙发旁边", "左转", "上楼梯"]);

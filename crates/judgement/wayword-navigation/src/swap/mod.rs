@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn a_chinese_text_is_changed_in_english_words() {
         let swapped = swap_text(InstructionSwap::Directions, "走到沙发旁边，左转上楼梯。", 0, "a").unwrap();
-        assert_eq!(swapped, "walk to the sofa, turn right, go down the stairs.");
+        assert_eq!(swapped, "walk to the sofa, turn right, go downstairs.");
     }
 
     #[test]
