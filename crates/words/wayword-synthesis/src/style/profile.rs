@@ -73,9 +73,12 @@ impl StyleProfile {
         let all: Vec<ReadableText<'_>> = worded.map(|text| ReadableText::new(text, None)).collect();
         let texts: Vec<&str> = all.iter().map(ReadableText::english).collect();
         let readings: Vec<TextReading> = texts.iter().map(|text| read_instruction(text, &BTreeSet::new())).collect();
-        let way = WayWording::from_texts(texts.iter().copied().zip(&readings));
+        let mut way = WayWording::from_texts(texts.iter().copied().zip(&readings));
         let language = built_in
             .map(|built_in| learn_wording(built_in, all.iter().zip(&readings).filter(|(text, _)| text.is_glossed())));
+        if let Some(language) = built_in.filter(|_| all.iter().any(ReadableText::is_glossed)) {
+            language.adapt_plan(&mut way);
+        }
         let length = |at: usize| match &language {
             Some(language) if all[at].is_glossed() => language.words_for(all[at].text(), &way),
             _ => word_count(texts[at]),

@@ -25,7 +25,7 @@ use wayword_language::languages::ReadableText;
 /// Most versions of a text that are made until enough are read as saying the same as the English text.
 const MAX_VERSIONS: usize = 40;
 /// The usual name of a thing is drawn more often than people use it, by this power of its count: rare names fit few things.
-const NAME_POWER: f64 = 2.0;
+const NAME_POWER: f64 = 3.0;
 /// So many versions are offered to the checks.
 const ENOUGH_VERSIONS: usize = 16;
 

@@ -113,7 +113,7 @@ fn goes_out(clause: &WayClause, brief: &WritingBrief<'_>) -> bool {
 }
 
 /// Whether a thing is so long that one may still be beside it when its middle is passed.
-fn is_long(name: &str) -> bool {
+pub(super) fn is_long(name: &str) -> bool {
     find_thing(name)
         .is_some_and(|thing| matches!(thing.class, ThingClass::Bed | ThingClass::Seat | ThingClass::Surface))
 }

@@ -23,7 +23,7 @@ const MIN_NAME_SHARE: f64 = 0.1;
 /// Most characters of a shape, slots counted as one.
 const MAX_SHAPE_CHARACTERS: usize = 14;
 /// A shape is used if at least this share of the clauses of its kind have it.
-const MIN_SHAPE_SHARE: f64 = 0.015;
+const MIN_SHAPE_SHARE: f64 = 0.01;
 
 /// The wording of texts in a language; what they show too little of is that of the built-in wording.
 #[must_use]
@@ -95,7 +95,8 @@ fn add_text(language: &LanguageWording, way: &mut WayWording, text: &ReadableTex
         if let Some(shape) =
             region.filter(|_| stands_alone).and_then(|region| own_shape(language, text, clause, region))
         {
-            *way.shapes.entry(kind).or_default().entry(shape).or_default() += 1.0;
+            let shapes = if at == 0 { &mut way.first_shapes } else { &mut way.shapes };
+            *shapes.entry(kind).or_default().entry(shape).or_default() += 1.0;
         }
     }
     for event in &reading.events {
@@ -168,13 +169,14 @@ fn joint_of(language: &LanguageWording, between: &str) -> ClauseJoint {
 
 /// Keeps the shapes that several texts have and that are read as the same kind; likewise the names.
 fn keep_common(language: &LanguageWording, way: &mut WayWording) {
-    for (kind, shapes) in &mut way.shapes {
+    for (kind, shapes) in way.shapes.iter_mut().chain(&mut way.first_shapes) {
         let all: f64 = shapes.values().sum();
         shapes.retain(|shape, texts| {
             *texts >= (all * MIN_SHAPE_SHARE).max(MIN_SHAPE_TEXTS) && is_read_as(language, *kind, shape)
         });
     }
     way.shapes.retain(|_, shapes| !shapes.is_empty());
+    way.first_shapes.retain(|_, shapes| shapes.values().sum::<f64>() >= ENOUGH_CLAUSES);
     for (usual, names) in way.rooms.iter_mut().chain(way.things.iter_mut()) {
         let total: f64 = names.values().sum();
         let is_known = total >= ENOUGH_CLAUSES;
@@ -195,6 +197,12 @@ fn fill_from(built_in: &LanguageWording, way: &mut WayWording) {
         if measured.values().sum::<f64>() < ENOUGH_CLAUSES {
             *measured = shapes.clone();
         }
+    }
+    for (kind, joined) in &built_in.words.joined_shapes {
+        let measured = way.shapes.entry(*kind).or_default();
+        let own: f64 = measured.values().sum();
+        let rest = (1.0 - joined.values().sum::<f64>()).max(f64::EPSILON);
+        measured.extend(joined.iter().map(|(shape, share)| (shape.clone(), own * share / rest)));
     }
     for (measured, own) in [
         (&mut way.joints, &own.joints),

@@ -66,10 +66,16 @@ struct LanguageWords {
     traits: BTreeMap<String, Vec<String>>,
     /// The words for doors, with their English words.
     doors: BTreeMap<String, String>,
+    /// What stands before a doorway that gets a room, and the doorway of the room `{r}`.
+    doors_of_rooms: BTreeMap<String, String>,
+    /// Share of the doorways whose room is named.
+    named_doors: f64,
     /// What stands before a door that gets a number, and the door with the number `{n}`, by the words for doors.
     numbered_doors: BTreeMap<String, String>,
     /// The words that count things, by usual English name or by class.
     counters: BTreeMap<String, String>,
+    /// What may stand behind a clause with the trait `takes_after`, with the share of each of several words.
+    after: WordingShares,
     /// What joins clauses, with the share of each of several words.
     joining: BTreeMap<ClauseJoint, WordingShares>,
     /// The same before the last clause, where that differs.
@@ -78,6 +84,10 @@ struct LanguageWords {
     phrases: BTreeMap<String, Vec<String>>,
     /// Tasks with `{o}` for the object, by their English words.
     tasks: BTreeMap<String, String>,
+    /// Factors on how often a plan draws a kind of clause, whose weights were set by English texts.
+    plan_factors: BTreeMap<ClauseKind, f64>,
+    /// Shapes that are read as several clauses, with their share of the clauses of the kind.
+    joined_shapes: BTreeMap<ClauseKind, WordingShares>,
 }
 
 impl LanguageWording {
@@ -111,6 +121,14 @@ impl LanguageWording {
     #[must_use]
     pub fn way(&self) -> &WayWording {
         &self.way
+    }
+
+    /// Lets the plan of a text leave out what texts of the language leave out; `way` was measured on such texts.
+    pub(super) fn adapt_plan(&self, way: &mut WayWording) {
+        for (kind, count) in &mut way.kinds {
+            *count *= self.words.plan_factors.get(kind).unwrap_or(&1.0);
+        }
+        way.untold_first_turns = self.way.untold_first_turns;
     }
 
     /// Whether words have one of the marks of a trait.
@@ -167,6 +185,25 @@ impl LanguageWording {
         Some(shape.replacen(plain, &numbered.replace("{n}", number), 1))
     }
 
+    /// Share of the doorways whose room is named.
+    #[must_use]
+    pub fn named_doors(&self) -> f64 {
+        self.words.named_doors
+    }
+
+    /// A clause whose doorway gets the name of its room; `None` where it has no place for that.
+    #[must_use]
+    pub fn name_doorway(&self, clause: &str, room: &str) -> Option<String> {
+        let (plain, named) = self.words.doors_of_rooms.iter().find(|(plain, _)| clause.contains(plain.as_str()))?;
+        Some(clause.replacen(plain, &named.replace("{r}", room), 1))
+    }
+
+    /// What may stand behind a clause before the next one, with the share of each of several words.
+    #[must_use]
+    pub fn words_after(&self, clause: &str) -> Option<&WordingShares> {
+        self.has_trait(clause, "takes_after").then_some(&self.words.after)
+    }
+
     /// The word for a number from one on.
     #[must_use]
     pub fn number(&self, number: usize) -> Option<&str> {
@@ -219,6 +256,18 @@ impl LanguageWording {
         static NONE: WordingShares = WordingShares::new();
         let last = self.words.joining_last.get(&joint).filter(|_| is_last);
         last.or_else(|| self.words.joining.get(&joint)).unwrap_or(&NONE)
+    }
+
+    /// Whether a text does not begin with a clause.
+    #[must_use]
+    pub fn begins_no_text(&self, clause: &str) -> bool {
+        self.has_trait(clause, "not_first")
+    }
+
+    /// Whether a shape goes along its thing, which has to be long.
+    #[must_use]
+    pub fn goes_along_thing(&self, shape: &str) -> bool {
+        self.has_trait(shape, "along_thing")
     }
 
     /// Whether a clause always has a mark before it.
@@ -279,15 +328,16 @@ impl LanguageWording {
         if english > 0.0 { own / english } else { 1.0 }
     }
 
-    /// The shapes of a kind.
+    /// The shapes of a kind, at the beginning of a text or behind other clauses.
     #[must_use]
-    pub fn shapes(&self, kind: ClauseKind) -> Option<&BTreeMap<String, f64>> {
-        self.way.shapes.get(&kind)
+    pub fn shapes(&self, kind: ClauseKind, is_first: bool) -> Option<&BTreeMap<String, f64>> {
+        let first = self.way.first_shapes.get(&kind).filter(|_| is_first);
+        first.or_else(|| self.way.shapes.get(&kind))
     }
 }
 
 /// Share of the words that a text is planned for which it gets, as few walks have things for all.
-const PLANNED_SHARE: f64 = 0.78;
+const PLANNED_SHARE: f64 = 0.9;
 /// Characters of a name in a text of a language without blanks, for the slots of shapes.
 const NAME_CHARACTERS: f64 = 2.2;
 

@@ -37,6 +37,10 @@ pub struct WayWording {
     pub stop_joints: BTreeMap<ClauseJoint, f64>,
     /// Share of the texts that say to stop, from 0 to 1.
     pub stop_share: f64,
+    /// Of a language beside English: the shapes of clauses at the beginning of a text; `shapes` has those of the other clauses then.
+    pub first_shapes: BTreeMap<ClauseKind, BTreeMap<String, f64>>,
+    /// Share of the turns at the start that texts leave out, where they leave out more than R2R's texts do.
+    pub untold_first_turns: f64,
     /// The names of each room, by its usual name.
     pub rooms: BTreeMap<String, BTreeMap<String, f64>>,
     /// What people call the rooms of a scan, by the usual name of their label: also names of other rooms, which they do not keep apart from
@@ -191,6 +195,15 @@ impl WayWording {
     #[must_use]
     pub fn kind_count(&self, kind: ClauseKind) -> f64 {
         self.kinds.get(&kind).copied().unwrap_or_default()
+    }
+
+    /// How often texts have a kind of clause, as a share of how often R2R's texts have it; 1 where that is at least half, since a few texts
+    /// show it only roughly.
+    #[must_use]
+    pub fn usual_share(&self, kind: ClauseKind) -> f64 {
+        let share = |way: &Self| way.kind_count(kind) / way.kinds.values().sum::<f64>().max(1.0);
+        let usual = share(&BUILT_IN.way);
+        if usual > 0.0 && share(self) < usual / 2.0 { share(self) / usual } else { 1.0 }
     }
 
     /// Share of the plain orders to stop ("and stop") that is left out, so that as many texts as in the references say none.

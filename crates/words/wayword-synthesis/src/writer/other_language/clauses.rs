@@ -7,6 +7,7 @@ use crate::{
         naming::{ClauseContent, PhraseContent},
         phrases::draw_option,
         route::WayClause,
+        shape_needs::is_long,
     },
 };
 use wayword_core::Side;
@@ -33,6 +34,8 @@ const PASSED_SHARE: f64 = 0.3;
 const TURN_SHARE: f64 = 0.2;
 /// Share of the clauses that go to a door which a clause through it follows.
 const DOOR_SHARE: f64 = 0.3;
+/// How much more a bare "stop" weighs behind a clause that goes to the place than its count, against "stop at the sofa".
+const APART_FACTOR: f64 = 1.5;
 
 impl LanguageWriter<'_> {
     /// The kinds of the clauses that say what a clause says, by how often texts of the language have them. What is named, and in which order,
@@ -52,7 +55,13 @@ impl LanguageWriter<'_> {
             return own;
         }
         let is_said = before.is_some() && is_last;
-        let unsaid = if is_said { (1.0 - way.stop_share) / way.stop_share.max(f64::EPSILON) } else { 0.0 };
+        let unsaid = if is_said { 1.0 - way.stop_share } else { 0.0 };
+        // "Walk to the sofa and stop" is more usual than "stop at the sofa".
+        let apart = |own| {
+            let (own, apart) = (count(own), count(ClauseKind::Stop) * APART_FACTOR);
+            let said = (1.0 - unsaid) / (own + apart).max(f64::EPSILON);
+            (said * own, said * apart)
+        };
         let arrives = before.is_some_and(|before| !before.is_bare_turn() && before != ClauseKind::Straight);
         let options: Vec<(f64, Vec<ClauseKind>)> = match content.kind {
             ClauseKind::Pass => {
@@ -68,9 +77,14 @@ impl LanguageWriter<'_> {
                 let by_door = vec![ClauseKind::ToDoor, content.kind];
                 vec![(count(content.kind), own), (count(ClauseKind::ToDoor) * DOOR_SHARE, by_door)]
             }
-            ClauseKind::StopAt => vec![(1.0, own), (unsaid, vec![ClauseKind::To])],
-            ClauseKind::StopInDoorway => vec![(1.0, own), (unsaid, vec![ClauseKind::ToDoor])],
-            ClauseKind::Stop if arrives => vec![(1.0, own), (unsaid, Vec::new())],
+            ClauseKind::StopAt | ClauseKind::StopInDoorway | ClauseKind::StopIn if is_last => {
+                let Some(to) = arriving_kind(content.kind, before) else { return own };
+                let (together, apart) = apart(content.kind);
+                // "Go straight to the sofa and stop" rather than "go straight, stop at the sofa".
+                let together = if before == Some(ClauseKind::Straight) { 0.0 } else { together };
+                vec![(together, own), (apart, vec![to, ClauseKind::Stop]), (unsaid, vec![to])]
+            }
+            ClauseKind::Stop if arrives => vec![(1.0 - unsaid, own), (unsaid, Vec::new())],
             _ => return own,
         };
         let is_known = options.iter().any(|(weight, _)| *weight > 0.0);
@@ -109,20 +123,26 @@ impl LanguageWriter<'_> {
             !content.room.is_empty() && !matches!(kind, ClauseKind::ToDoor | ClauseKind::To | ClauseKind::Turn);
         // "Go straight, go straight to the sofa" says it once too often.
         let may_go_straight = kind == ClauseKind::Straight || !self.language.traits_of(before).goes_straight;
+        let is_long = content.thing.as_ref().is_some_and(|thing| is_long(&thing.name));
         let fits = |shape: &str| {
             let is_numbered =
                 content.door_number.is_none_or(|number| self.language.number_door(shape, number).is_some());
             let is_ordered = !(shape.contains("{l}") && shape.contains("{r}"))
                 || ShapeTraits::names_thing_first(shape) == content.thing_first;
-            shape.contains("{r}") == says_room && is_numbered && is_ordered
+            shape.contains("{r}") == says_room
+                && is_numbered
+                && is_ordered
+                && (is_long || !self.language.goes_along_thing(shape))
         };
+        let is_first = before.is_empty();
         let admitted = |shape: &str| {
             let traits = self.language.traits_of(shape);
-            fits(shape) && content.needs.admit(&traits) && (may_go_straight || !traits.goes_straight)
+            let may_begin = !is_first || !self.language.begins_no_text(shape);
+            fits(shape) && content.needs.admit(&traits) && (may_go_straight || !traits.goes_straight) && may_begin
         };
         let rng = &mut said.clause.clause_rng("language words", self.dice);
         let mut draw = |fits: &dyn Fn(&str) -> bool| {
-            let shapes = self.language.shapes(kind).into_iter().flatten().filter(|(shape, _)| fits(shape));
+            let shapes = self.language.shapes(kind, is_first).into_iter().flatten().filter(|(shape, _)| fits(shape));
             let all: Vec<(f64, &String)> = shapes.map(|(shape, count)| (*count, shape)).collect();
             draw_option(&all, rng).cloned()
         };
@@ -132,6 +152,18 @@ impl LanguageWriter<'_> {
             None
         };
         straight.or_else(|| draw(&admitted)).or_else(|| draw(&fits))
+    }
+}
+
+/// The kind of a clause that arrives where one of a kind stops; `None` where the walker may have been there for some time.
+fn arriving_kind(stops: ClauseKind, before: Option<ClauseKind>) -> Option<ClauseKind> {
+    match stops {
+        ClauseKind::StopAt => Some(ClauseKind::To),
+        ClauseKind::StopInDoorway => (before != Some(ClauseKind::ToDoor)).then_some(ClauseKind::ToDoor),
+        _ if before.is_some_and(|before| before.is_bare_turn() || before.goes_on() || before == ClauseKind::ToDoor) => {
+            Some(ClauseKind::Enter)
+        }
+        _ => None,
     }
 }
 

@@ -11,9 +11,13 @@ use crate::{
         route::WayClause,
     },
 };
+use rand::Rng;
+use wayword_language::lexicon::room_name;
 
 /// A clause of at most so many characters may come before another one without a mark.
 const MAX_UNPARTED_CHARACTERS: usize = 4;
+/// A clause of at most so many characters may come behind any other without a mark.
+const MAX_TINY_CHARACTERS: usize = 2;
 /// Least number of clauses from one "then" to the next.
 const MIN_CLAUSES_BETWEEN_THEN: usize = 4;
 
@@ -27,7 +31,8 @@ impl LanguageWriter<'_> {
                 PhraseContent::Task(task) => self.task(task)?,
                 PhraseContent::Clause(content) => {
                     let before = phrases.last().map_or("", |phrase: &ClausePhrase| phrase.text.as_str());
-                    self.clause(&said, content, before)?
+                    let text = self.clause(&said, content, before)?;
+                    self.doorway_of_room(&said.clause, &text, brief).unwrap_or(text)
                 }
             };
             let runs_on = self.language.traits_of(&text).is_until;
@@ -35,7 +40,7 @@ impl LanguageWriter<'_> {
             clauses.push(said.clause);
         }
         let mut joints = choose_joints(&clauses, &phrases, self.language.way(), brief, self.dice);
-        self.smooth_joints(&mut joints, &phrases);
+        self.smooth_joints(&mut joints, &clauses, &phrases);
         let mut text = String::new();
         for (at, (joint, phrase)) in joints.iter().zip(&phrases).enumerate() {
             let is_last = at + 1 == phrases.len();
@@ -43,6 +48,11 @@ impl LanguageWriter<'_> {
             let rng = &mut self.dice.named_rng(&["joint", &at.to_string()]);
             text += &draw_option(&words.collect::<Vec<_>>(), rng).cloned().unwrap_or_default();
             text += &phrase.text;
+            let next = joints.get(at + 1).is_some_and(|next| *next == ClauseJoint::And);
+            if let Some(after) = self.language.words_after(&phrase.text).filter(|_| next) {
+                let after: Vec<(f64, &String)> = after.iter().map(|(words, share)| (*share, words)).collect();
+                text += &draw_option(&after, rng).cloned().unwrap_or_default();
+            }
         }
         let sentences = joints.iter().filter(|joint| joint.begins_sentence()).count();
         if draft.ends_in_full_stop() || sentences > 1 {
@@ -79,13 +89,36 @@ impl LanguageWriter<'_> {
         said
     }
 
+    /// The words of a clause to a doorway with the name of its room: the one that the walker is in at the start, or else the one behind it.
+    fn doorway_of_room(&mut self, clause: &WayClause, text: &str, brief: &WritingBrief<'_>) -> Option<String> {
+        let openings = &brief.memory.openings;
+        let at = openings.iter().position(|opening| match clause.kind {
+            ClauseKind::ToDoor => opening.before == clause.at,
+            ClauseKind::StopInDoorway => opening.behind == clause.at,
+            _ => false,
+        })?;
+        let is_named = clause.clause_rng("doorway", self.dice).random_bool(self.language.named_doors());
+        let room = if at == 0 && clause.kind == ClauseKind::ToDoor { &openings[at].from } else { &openings[at].to };
+        let has_walls = !matches!(room_name(room), None | Some("hallway" | "stairs" | "entryway" | "outdoor area"));
+        if !is_named || !has_walls {
+            return None;
+        }
+        let room = self.name(room)?;
+        self.language.name_doorway(text, &room)
+    }
+
     /// Puts a comma where two clauses would run together that always have a mark between them, and where "then" would come soon after "then".
-    fn smooth_joints(&self, joints: &mut [ClauseJoint], phrases: &[ClausePhrase]) {
+    fn smooth_joints(&self, joints: &mut [ClauseJoint], clauses: &[WayClause], phrases: &[ClausePhrase]) {
         let is_short = |phrase: &ClausePhrase| phrase.text.chars().count() <= MAX_UNPARTED_CHARACTERS;
+        let is_tiny = |phrase: &ClausePhrase| phrase.text.chars().count() <= MAX_TINY_CHARACTERS;
         let (mut is_unparted, mut last_then) = (false, None);
         for at in 1..joints.len() {
-            let runs_together =
-                is_unparted || !is_short(&phrases[at - 1]) || self.language.is_parted(&phrases[at].text);
+            let runs_together = match clauses[at].kind {
+                // "Walk to the sofa and stop", "turn left and walk to the sofa".
+                ClauseKind::Stop => false,
+                _ if clauses[at - 1].kind.is_bare_turn() || is_tiny(&phrases[at]) => is_unparted,
+                _ => is_unparted || !is_short(&phrases[at - 1]) || self.language.is_parted(&phrases[at].text),
+            };
             if joints[at] == ClauseJoint::And && runs_together {
                 joints[at] = ClauseJoint::Comma;
             }

@@ -35,6 +35,19 @@ enum FillerKind {
     Onward,
 }
 
+impl FillerKind {
+    /// The kind of clause that it makes, where a style may hardly have that.
+    fn clause(self) -> Option<ClauseKind> {
+        match self {
+            Self::Room => Some(ClauseKind::Through),
+            Self::Door => Some(ClauseKind::ThroughDoor),
+            Self::With => Some(ClauseKind::EnterWith),
+            Self::StopRoom => Some(ClauseKind::StopAtIn),
+            Self::Landmark | Self::Side | Self::Pair | Self::Onward => None,
+        }
+    }
+}
+
 /// How often each kind is tried first, relative to the others.
 const FILLER_SHARES: [(f64, FillerKind); 8] = [
     (4.0, FillerKind::Landmark),
@@ -54,7 +67,10 @@ const MIN_OFFERS: usize = 2;
 
 /// Adds one detail; `false` if there is none to add.
 pub(in crate::writer) fn fill_plan(clauses: &mut Vec<WayClause>, brief: &WritingBrief<'_>, dice: TextDice) -> bool {
-    let mut untried = FILLER_SHARES.to_vec();
+    let way = &brief.profile.way;
+    let share =
+        |(share, kind): &(f64, FillerKind)| (share * kind.clause().map_or(1.0, |kind| way.usual_share(kind)), *kind);
+    let mut untried: Vec<(f64, FillerKind)> = FILLER_SHARES.iter().map(share).collect();
     let mut rng = dice.named_rng(&["more"]);
     while let Some(more) = draw_option(&untried, &mut rng) {
         let mut filler = PlanFiller { clauses, brief, rng: dice.named_rng(&["more of", &format!("{more:?}")]) };

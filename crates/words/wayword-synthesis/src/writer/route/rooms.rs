@@ -16,6 +16,8 @@ use wayword_language::lexicon::room_name;
 const MAX_SOON_HOPS: usize = 2;
 /// Share of texts that begin with leaving the start room, where the path leaves it soon.
 const LEAVE_AT_ONCE_SHARE: f64 = 0.6;
+/// A style that goes to a door in at least this share of its clauses about doors and rooms mostly says no more of the door.
+const TO_DOOR_SHARE: f64 = 0.25;
 
 impl WayPlanner<'_> {
     /// Begins the text with leaving the room of the start, as many texts do, without describing the first turn. Returns
@@ -136,6 +138,9 @@ impl WayPlanner<'_> {
             return self.change_room(opening);
         }
         if kind == ClauseKind::ToDoor {
+            if self.goes_no_further_than_doors() {
+                return self.enter_room(None);
+            }
             let kinds = [(1.0, ClauseKind::ThroughDoor), (if to.is_some() { 2.0 } else { 0.0 }, ClauseKind::Enter)];
             let kind = draw_option(&kinds, &mut self.rng).unwrap_or(ClauseKind::ThroughDoor);
             if kind == ClauseKind::Enter {
@@ -146,6 +151,14 @@ impl WayPlanner<'_> {
         let names_new_room =
             !matches!(kind, ClauseKind::Leave | ClauseKind::LeaveByDoor | ClauseKind::ThroughDoor | ClauseKind::ToDoor);
         self.enter_room(to.as_deref().filter(|_| names_new_room));
+    }
+
+    /// Whether a text that sends the walker to a door leaves it there, as the texts of a style do that mostly name doors so.
+    fn goes_no_further_than_doors(&mut self) -> bool {
+        let to = self.kind_count(ClauseKind::ToDoor);
+        let on = self.kind_count(ClauseKind::ThroughDoor) + self.kind_count(ClauseKind::Enter);
+        let share = to / (to + on).max(f64::EPSILON);
+        share >= TO_DOOR_SHARE && self.rng.random_bool(share)
     }
 
     /// Whether the walk passes no other door on a side between what the text tells before and a frame.
@@ -226,6 +239,9 @@ impl WayPlanner<'_> {
         let to = usable_room(&opening.to);
         let can_leave = usable_room(&opening.from).is_some_and(|from| self.here == Some(from));
         self.go_on_to(at);
+        if at == 0 && self.leaves_out_first_turn() {
+            return self.change_room(opening);
+        }
         if side == Side::Behind {
             self.push(WayClause::new(ClauseKind::TurnAround, at, MAIN_WEIGHT));
             return self.change_room(opening);

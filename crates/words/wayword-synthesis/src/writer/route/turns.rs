@@ -32,7 +32,8 @@ impl WayPlanner<'_> {
         if is_small && !is_silent && self.is_untold_before(at) {
             self.push(WayClause::new(ClauseKind::Straight, at.saturating_sub(1), MAIN_WEIGHT));
         }
-        let slight = is_small || (bend.is_slight() && self.rng.random_bool(0.5));
+        let says_slightly = 0.5 * self.brief.profile.way.usual_share(ClauseKind::TurnSlightly);
+        let slight = is_small || (bend.is_slight() && self.rng.random_bool(says_slightly));
         let bare = if slight { ClauseKind::TurnSlightly } else { ClauseKind::Turn };
         let follows = self.follows_a_place(at);
         let room = self.memory.room_at(at).and_then(usable_room);
@@ -110,6 +111,9 @@ impl WayPlanner<'_> {
 
     /// Plans the turn at the start. It is mostly left out, because the first landmark shows the direction, and nothing shows where to turn.
     fn first_turn(&mut self, bend: WalkBend) {
+        if self.leaves_out_first_turn() {
+            return;
+        }
         let side = bend.side();
         let leaves_soon =
             self.memory.openings.first().is_some_and(|opening| opening.before <= 1) && self.here.is_some();
@@ -125,6 +129,12 @@ impl WayPlanner<'_> {
         }
     }
 
+    /// Whether a turn at the start is left out because texts of the style hardly have one.
+    pub(super) fn leaves_out_first_turn(&mut self) -> bool {
+        let share = self.brief.profile.way.untold_first_turns;
+        share > 0.0 && self.rng.random_bool(share.min(1.0))
+    }
+
     /// Whether a turn is left out: people do not mention small turns that the way requires anyway. All candidates of a
     /// text leave out the same ones, and the way back the same ones as the way there.
     pub(super) fn is_left_out(&self, bend: WalkBend) -> bool {
@@ -137,7 +147,8 @@ impl WayPlanner<'_> {
         let place = on_the_way.iter().position(|last| *last == bend.last);
         let from_an_end = place.map_or(0, |place| 1 + place.min(on_the_way.len() - 1 - place));
         let names = ["left out", brief.style.draw_name(), &brief.walk.path.id, &from_an_end.to_string()];
-        seeded_rng(brief.seed, &names).random_bool(LEFT_OUT_SHARE)
+        let told = (1.0 - LEFT_OUT_SHARE) * brief.profile.way.usual_share(ClauseKind::TurnSlightly);
+        seeded_rng(brief.seed, &names).random_bool(1.0 - told)
     }
 }
 
