@@ -10,6 +10,7 @@ use crate::{
 use matterport::{FreeNumbers, PathNumbers, number_of};
 use serde_json::{Map, Value, json};
 use std::{collections::BTreeSet, path::Path};
+use wayword_language::Language;
 
 /// Fields that describe the text: they are written back only while the text is unchanged.
 const TEXT_FIELDS: [&str; 4] = ["annotator_id", "language", "timed_instruction", "edit_distance"];
@@ -70,7 +71,7 @@ fn check_timed_words(item: &DatasetItem<'_>, field: &str, value: &Value) -> Resu
 
 /// Writes guide annotations, one line per instruction; gzip where the name ends in `.gz`.
 ///
-/// A text that differs from the one that was read gets `language` "en-US", the `annotator_id` 0 (no annotator wrote
+/// A text that differs from the one that was read gets the `language` of its script ("en-US" for Latin letters), the `annotator_id` 0 (no annotator wrote
 /// it), an `edit_distance` of 0 (it is no transcription) and words without times, like some of RxR's own words.
 /// Instructions get new numbers where an item has several, or where its id is not a number or is used already. A path
 /// with a name that is not a number gets one, and keeps its name in `path_name`; so does the second of two different
@@ -103,6 +104,11 @@ fn keeps_its_id(episode: &Episode) -> bool {
     number_of(&episode.id).is_some() || episode.as_read.contains_key("instruction_id")
 }
 
+/// The tag of the language of a text by its script, as RxR writes it: "en-US" for English.
+pub(crate) fn language_tag(text: &str) -> &'static str {
+    Language::tag_of_script(text).unwrap_or("en-US")
+}
+
 /// The fields of a line, in RxR's order.
 fn line_fields(
     file: &Path,
@@ -121,7 +127,7 @@ fn line_fields(
     fields.insert("split".to_owned(), episode.split.as_deref().unwrap_or("train").into());
     fields.insert("instruction_id".to_owned(), id);
     fields.insert("annotator_id".to_owned(), text_field("annotator_id", 0.into()));
-    fields.insert("language".to_owned(), text_field("language", "en-US".into()));
+    fields.insert("language".to_owned(), text_field("language", language_tag(text).into()));
     paths.put_own_path_id(&mut fields, episode);
     fields.insert("scan".to_owned(), episode.scene.as_str().into());
     fields.insert("path".to_owned(), matterport::path_field(file, episode)?);

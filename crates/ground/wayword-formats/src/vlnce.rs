@@ -15,6 +15,7 @@ use crate::{
     habitat::{habitat_from_heading, habitat_from_wayword, heading_from_habitat, wayword_from_habitat},
     input, limits, output,
     read_tally::ReadTally,
+    rxr::language_tag,
     vocabulary::TokenVocabulary,
 };
 use serde_json::{Map, Value, json};
@@ -26,8 +27,6 @@ use wayword_core::{DVec3, SceneId};
 
 /// Within this distance of the goal an agent has arrived, metres (VLN-CE's own value).
 const GOAL_RADIUS_M: f64 = 3.0;
-/// The language of texts that name none: RxR's loader knows en-US, en-IN, hi-IN and te-IN.
-const RXR_LANGUAGE: &str = "en-US";
 
 /// The contents of a VLN-CE file.
 #[derive(Debug, Clone, PartialEq)]
@@ -266,7 +265,8 @@ pub fn write_vlnce_file(file: &Path, dataset: &VlnceDataset) -> Result<(), Forma
 ///
 /// Its loader (`RxRVLNCEDatasetV1` in jacobkrantz/VLN-CE, `habitat_extensions/task.py`) crashes on fields that it does not know, its trainer
 /// looks for episodes by names that are texts, and for features by `instruction_id`, which has to be a number. So episodes are
-/// numbered. There is no vocabulary: tokens are those of language models. A text without a language is "en-US".
+/// numbered. There is no vocabulary: tokens are those of language models. A text without a language gets that of its
+/// script: "en-US" for Latin letters. RxR's own loader knows en-US, en-IN, hi-IN and te-IN.
 ///
 /// # Errors
 /// When an item has no floor positions, or the file cannot be written.
@@ -283,7 +283,7 @@ pub fn write_rxrce_file(file: &Path, episodes: &[Episode]) -> Result<Vec<String>
                 let path = path.to_string();
                 fields.insert("trajectory_id".to_owned(), path.into());
             }
-            let language = episode.language_of(index).unwrap_or(RXR_LANGUAGE);
+            let language = episode.language_of(index).unwrap_or_else(|| language_tag(text));
             let instruction = json!({
                 "instruction_id": number,
                 "instruction_text": text,

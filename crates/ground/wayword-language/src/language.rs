@@ -106,6 +106,12 @@ impl Language {
         LANGUAGE_NAMES.iter().find(|(.., name)| *name == language).map(|(tag, ..)| *tag)
     }
 
+    /// The tag of the language of a text by its script; "en" where that tells none.
+    #[must_use]
+    pub fn tag_of_text(text: &str) -> &'static str {
+        Self::tag_of_script(text).unwrap_or("en")
+    }
+
     /// The language of a text that its dataset gives a tag. A tag of another language is believed. A tag "en" is not
     /// believed against the text itself, because people mix languages.
     #[must_use]

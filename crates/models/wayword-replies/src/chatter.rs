@@ -33,10 +33,15 @@ pub fn is_refusal(text: &str) -> bool {
     begins_with_phrase(&sentence_words(text), &REFUSING) || starts_with_any(text, &zh::REFUSING)
 }
 
-/// A text in a language without blanks, without the words before its first colon that only announce it.
+/// A text in a language without blanks, without a sentence before it that only agrees, and without the words up to its first colon that only
+/// announce it.
 pub(crate) fn without_foreign_chatter(text: &str) -> &str {
-    let Some((before, rest)) = text.split_once(':') else { return text };
-    let announces = zh::ANNOUNCED.iter().any(|word| before.contains(word)) || starts_with_any(before, &zh::AGREEING);
+    let agreed =
+        zh::AGREEING.iter().find_map(|word| text.strip_prefix(*word)?.strip_prefix(['！', '!', '。', '，', ',']));
+    let text = agreed.map_or(text, str::trim);
+    let Some((before, rest)) = text.split_once([':', '：']) else { return text };
+    let announces =
+        zh::ANNOUNCED.iter().any(|word| before.trim().ends_with(word)) || starts_with_any(before, &zh::AGREEING);
     if announces && before.chars().count() <= MAX_ANNOUNCING_CHARACTERS { rest.trim() } else { text }
 }
 

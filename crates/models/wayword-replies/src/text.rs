@@ -59,7 +59,7 @@ const MIN_ENGLISH_LETTERS: usize = 3;
 /// # Errors
 /// When something is left that belongs to no text, the text is not in that language or has English words, or the reply is too long.
 pub fn read_text_in(language: &str, reply: &str, labels: &[&str]) -> Result<String, String> {
-    let text = without_foreign_chatter(&plain_text(&reply.replace('：', ":"), labels)?).to_owned();
+    let text = without_foreign_chatter(&plain_text(reply, labels)?).to_owned();
     if ReadableText::new(&text, None).glossed_language() != Some(language) {
         return Err(format!("it is not in {language}: write it in {language} alone"));
     }
@@ -226,7 +226,9 @@ fn without_label_and_quotes<'a>(text: &'a str, labels: &[&str]) -> &'a str {
     let mut rest = text.trim();
     for label in labels {
         let starts = rest.get(..label.len()).is_some_and(|start| start.eq_ignore_ascii_case(label));
-        if let Some(after) = rest.get(label.len()..).filter(|_| starts).and_then(|after| after.strip_prefix(':')) {
+        if let Some(after) =
+            rest.get(label.len()..).filter(|_| starts).and_then(|after| after.strip_prefix([':', '：']))
+        {
             rest = after.trim();
         }
     }

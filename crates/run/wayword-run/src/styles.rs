@@ -6,6 +6,7 @@ use crate::{
 };
 use std::path::Path;
 use wayword_core::{InstructionStyle, StyleConstraints};
+use wayword_language::Language;
 use wayword_synthesis::style::{
     LanguageWording, StyleError, StyleProfile, built_in, built_in_names, hash_style, parse_style_with, validate_style,
 };
@@ -120,7 +121,8 @@ fn in_languages(style: &InstructionStyle, languages: &[String]) -> Vec<Instructi
     let own = if style.language.is_empty() { ENGLISH } else { &style.language };
     let mut all: Vec<InstructionStyle> = Vec::new();
     for tag in languages {
-        let style = if tag == own { style.clone() } else { style.in_language(tag) };
+        let is_own = Language::from_tag(tag) == Language::from_tag(own);
+        let style = if is_own { style.clone() } else { style.in_language(tag) };
         if !all.contains(&style) {
             all.push(style);
         }
@@ -174,8 +176,9 @@ fn find_one(name: &str) -> Result<InstructionStyle, CommandError> {
     if style.language.is_empty()
         && let Some(tag) = written_language(&style.references)
     {
-        // A style keeps its name in its own language.
-        style = InstructionStyle { name: style.name.clone(), ..style.in_language(tag) };
+        // A style keeps its name in its own language; a built-in one has its number of sentences for English.
+        let constraints = if dataset.is_some() { style.in_language(tag).constraints } else { style.constraints };
+        style = InstructionStyle { language: tag.to_owned(), constraints, ..style };
     }
     Ok(style)
 }

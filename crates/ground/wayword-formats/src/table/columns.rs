@@ -11,9 +11,7 @@ use parquet::{
 };
 use std::io::Write;
 use wayword_core::{CheckFinding, PathTarget, TextAmbiguity, Verdict};
-
-/// The language of Wayword's texts.
-const TEXT_LANGUAGE_TAG: &str = "en";
+use wayword_language::Language;
 
 /// Writes the columns of some rows.
 pub(super) fn write_columns<W: Write + Send>(
@@ -67,7 +65,7 @@ impl<W: Write + Send> ColumnWriter<'_, '_, W> {
         self.put_texts(rows, |row| row.split)?;
         self.put_texts(rows, |row| &row.record.instruction.style)?;
         self.put_texts(rows, |row| &row.record.instruction.text)?;
-        self.put_texts(rows, |_| TEXT_LANGUAGE_TAG)?;
+        self.put_texts(rows, |row| Language::tag_of_text(&row.record.instruction.text))?;
         self.put_texts(rows, |row| verdict_name(row.record.instruction.verdict))
     }
 

@@ -13,7 +13,7 @@ mod pack_words;
 mod rules;
 
 pub use gloss::ReadableText;
-pub use naming::{names_within, word_for_look, word_for_name};
+pub use naming::{NameSense, names_within, word_for_look, word_for_name};
 
 use crate::Language;
 use crate::language::script_language;

@@ -7,15 +7,26 @@ use crate::lexicon::{kinds_of, normalise_name, room_name};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
+/// Whether a name is meant as that of a thing or of a room: "toilet" is both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NameSense {
+    /// A thing, a door or stairs.
+    Thing,
+    /// A room.
+    Room,
+}
+
 /// The classes of words that name things, rooms and their parts.
-const NAME_CLASSES: [&str; 4] = ["thing", "room", "door", "stairs"];
+const NAME_CLASSES: [(&str, NameSense); 4] =
+    [("thing", NameSense::Thing), ("room", NameSense::Room), ("door", NameSense::Thing), ("stairs", NameSense::Thing)];
 /// The class of words for colours and materials.
 const LOOK: &str = "look";
 
 /// The words of a language by their English words, the first of each row.
 struct NamingWords {
     language: &'static str,
-    names: HashMap<String, &'static str>,
+    things: HashMap<String, &'static str>,
+    rooms: HashMap<String, &'static str>,
     looks: HashMap<String, &'static str>,
 }
 
@@ -23,17 +34,19 @@ static NAMING_WORDS: LazyLock<Vec<NamingWords>> = LazyLock::new(|| PACKS.iter().
 
 impl NamingWords {
     fn of_pack(files: &PackFiles) -> Self {
-        let mut words = Self { language: files.language, names: HashMap::new(), looks: HashMap::new() };
+        let (things, rooms, looks) = (HashMap::new(), HashMap::new(), HashMap::new());
+        let mut words = Self { language: files.language, things, rooms, looks };
         for line in data::content_lines(files.words) {
             let [class, english, own] = data::row_columns(line);
             let Some(first) = own.split(|c: char| if files.is_spaced { c == ',' } else { c.is_whitespace() }).next()
             else {
                 continue;
             };
-            if NAME_CLASSES.contains(&class) {
-                words.names.entry(normalise_name(english)).or_insert(first.trim());
+            if let Some((_, sense)) = NAME_CLASSES.iter().find(|(name, _)| *name == class) {
+                let names = if *sense == NameSense::Room { &mut words.rooms } else { &mut words.things };
+                names.entry(normalise_name(english)).or_insert(first.trim());
                 if let Some(usual) = room_name(english) {
-                    words.names.entry(normalise_name(usual)).or_insert(first.trim());
+                    names.entry(normalise_name(usual)).or_insert(first.trim());
                 }
             } else if class == LOOK {
                 words.looks.entry(english.to_owned()).or_insert(first.trim());
@@ -48,22 +61,34 @@ impl NamingWords {
     }
 }
 
-/// The usual word of a language, by its tag, for a thing, a room, a door or stairs with this English name; a more general word where the
-/// language has none for the name itself.
+/// The usual word of a language, by its tag, for a thing or a room with this English name; a more general word where the language has none
+/// for the name itself.
 #[must_use]
-pub fn word_for_name(tag: &str, english: &str) -> Option<&'static str> {
+pub fn word_for_name(tag: &str, english: &str, sense: NameSense) -> Option<&'static str> {
     let words = NamingWords::of_language(tag)?;
     let whole = normalise_name(english);
     let room = room_name(english).map(normalise_name);
     let kinds = kinds_of(english).into_iter().map(|kind| normalise_name(&kind));
-    let mut names = [whole].into_iter().chain(room).chain(kinds);
-    names.find_map(|name| words.names.get(&name).copied())
+    let names: Vec<String> = [whole].into_iter().chain(room).chain(kinds).collect();
+    let (first, other) = match sense {
+        NameSense::Thing => (&words.things, &words.rooms),
+        NameSense::Room => (&words.rooms, &words.things),
+    };
+    [first, other].into_iter().find_map(|table| names.iter().find_map(|name| table.get(name))).copied()
 }
 
 /// The word of a language, by its tag, for a colour or a material with this English name.
 #[must_use]
-pub fn word_for_look(tag: &str, english: &str) -> Option<&'static str> {
-    NamingWords::of_language(tag)?.looks.get(english).copied()
+pub fn word_for_look(tag: &str, english: &str) -> Option<String> {
+    let looks = &NamingWords::of_language(tag)?.looks;
+    let english = &english.replace("gray", "grey");
+    if let Some(own) = looks.get(english) {
+        return Some((*own).to_owned());
+    }
+    // "Light blue" is made of the beginning of "light-coloured" and "blue".
+    let (shade, colour) = english.split_once([' ', '-'])?;
+    let shade = looks.get(shade)?.chars().next().filter(|_| ["light", "dark"].contains(&shade))?;
+    Some(format!("{shade}{}", looks.get(colour)?))
 }
 
 /// The English words of the things and rooms that words of a language, by its tag, name.
@@ -92,12 +117,24 @@ mod tests {
             ("corridor", "走廊"),
             ("doorway", "门口"),
         ] {
-            assert_eq!(word_for_name("zh-CN", english), Some(chinese), "{english}");
+            assert_eq!(word_for_name("zh-CN", english, NameSense::Thing), Some(chinese), "{english}");
         }
-        assert_eq!(word_for_name("zh", "zorble"), None);
-        assert_eq!(word_for_name("en", "sofa"), None);
+        let toilet = [NameSense::Thing, NameSense::Room].map(|sense| word_for_name("zh", "toilet", sense));
+        assert_eq!(toilet, [Some("马桶"), Some("厕所")]);
+        assert_eq!(word_for_name("zh", "zorble", NameSense::Thing), None);
+        assert_eq!(word_for_name("en", "sofa", NameSense::Thing), None);
         assert_eq!(names_within("zh", "走到{l}旁边的卧室"), ["bedroom"]);
-        assert_eq!((word_for_look("zh", "red"), word_for_look("zh", "plaid")), (Some("红色"), None));
+    }
+
+    #[test]
+    fn every_colour_has_a_chinese_word() {
+        let colours = include_str!("en/colours.txt");
+        let all = data::content_lines(colours).flat_map(|line| line.split(',')).map(str::trim);
+        let shades = all.clone().flat_map(|colour| ["", "light ", "dark "].map(|shade| format!("{shade}{colour}")));
+        let missing: Vec<String> = shades.filter(|colour| word_for_look("zh", colour).is_none()).collect();
+        assert!(missing.is_empty(), "{missing:?}");
+        assert_eq!(word_for_look("zh", "dark grey").as_deref(), Some("深灰色"));
+        assert_eq!(word_for_look("zh", "plaid"), None);
     }
 
     #[test]
@@ -112,8 +149,9 @@ mod tests {
             })
         };
         let landmarks = names.filter(|name| find_thing(name).is_some_and(is_landmark));
-        let wrong: Vec<&str> =
-            landmarks.filter(|name| !word_for_name("zh", name).is_some_and(|word| is_read(name, word))).collect();
+        let wrong: Vec<&str> = landmarks
+            .filter(|name| !word_for_name("zh", name, NameSense::Thing).is_some_and(|word| is_read(name, word)))
+            .collect();
         assert!(wrong.is_empty(), "{wrong:?}");
     }
 }

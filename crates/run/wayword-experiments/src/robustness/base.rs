@@ -14,6 +14,21 @@ use wayword_run::{
     styles::{self, MeasuredStyle},
 };
 
+/// Refuses a run with texts in another language, since the texts of two worlds are compared by their English words.
+fn refuse_other_languages(folder: &FilePath, styles: &[MeasuredStyle]) -> Result<(), CommandError> {
+    let other = styles.iter().find(|style| !matches!(style.style.language.as_str(), "" | "en"));
+    other.map_or(Ok(()), |style| {
+        let MeasuredStyle { style, .. } = style;
+        let problem = format!(
+            "{}: style {} is written in the language {:?}, and robustness compares English texts",
+            folder.display(),
+            style.name,
+            style.language
+        );
+        Err(CommandError::usage(problem, "test a run of the same paths with --language en"))
+    })
+}
+
 /// A run: its settings, paths, styles and texts.
 pub(super) struct BaseRun {
     pub(super) folder: PathBuf,
@@ -34,6 +49,7 @@ impl BaseRun {
         expect_run(folder)?;
         let settings = RunSettings { per_path: 1, ..read_run_settings(folder)? };
         let styles = styles::find_run_styles(&settings)?;
+        refuse_other_languages(folder, &styles)?;
         let max_paths = limit.map_or(usize::MAX, |limit| limit as usize);
         let mut paths: Vec<Path> = Vec::new();
         lines::each_line(&folder.join(file::WALKS), |line| {

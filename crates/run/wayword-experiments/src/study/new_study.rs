@@ -7,7 +7,7 @@ use super::{
 };
 use crate::study_args::{StudyMode, StudyNew, StudyRecruiter};
 use serde::Serialize;
-use std::{fmt, fs, path::PathBuf};
+use std::{collections::BTreeSet, fmt, fs, path::PathBuf};
 use wayword_core::Platform;
 use wayword_language::Language;
 use wayword_report::view;
@@ -81,11 +81,11 @@ fn missing_paths(asked: u32, routes: usize, has_practice: bool) -> String {
     )
 }
 
-/// The tag of the language that the texts are in, where most are in other letters than English; else empty.
+/// The tag of the language that all texts are in, where it has other letters than English; else empty.
 fn text_language(items: &[StudyItem]) -> String {
-    let texts = || items.iter().flat_map(|item| &item.texts);
-    let tags: Vec<&str> = texts().filter_map(|text| Language::tag_of_script(&text.text)).collect();
-    if 2 * tags.len() > texts().count() { tags[0].to_owned() } else { String::new() }
+    let texts = items.iter().flat_map(|item| &item.texts);
+    let tags: BTreeSet<Option<&str>> = texts.map(|text| Language::tag_of_script(&text.text)).collect();
+    tags.first().filter(|_| tags.len() == 1).copied().flatten().unwrap_or_default().to_owned()
 }
 
 pub(super) fn make_study(args: &StudyNew, output: &CommandOutput) -> Result<(), CommandError> {

@@ -6,7 +6,7 @@ use minijinja::{Value, context};
 use rand::seq::index;
 use std::collections::BTreeSet;
 use wayword_core::{ObjectDistinction, PathTarget, Side, seeded_rng};
-use wayword_language::{Language, lexicon::names_agree, text::word_count};
+use wayword_language::{Language, languages::NameSense, lexicon::names_agree, text::word_count};
 
 /// The variables of the template `write.j2`.
 pub(super) fn writing_context(brief: &WritingBrief<'_>, detail: PromptDetail) -> Value {
@@ -44,12 +44,13 @@ const MAX_OWN_NAMES: usize = 60;
 fn own_names(brief: &WritingBrief<'_>) -> Vec<String> {
     let Some(language) = &brief.profile.language else { return Vec::new() };
     let memory = brief.memory;
-    let rooms = memory.stays.iter().map(|stay| stay.room.as_str());
+    let rooms = memory.stays.iter().map(|stay| (stay.room.as_str(), NameSense::Room));
     let things = memory.things.iter().map(|thing| thing.name.as_str());
     let target = brief.walk.path.target.iter().map(|target| target.name.as_str());
-    let names: BTreeSet<&str> = rooms.chain(things).chain(target).collect();
-    let named = names.into_iter().filter_map(|name| Some(format!("{name} {}", language.usual_name(name)?)));
-    named.take(MAX_OWN_NAMES).collect()
+    let things = things.chain(target).map(|thing| (thing, NameSense::Thing));
+    let own = |(name, sense): (&str, NameSense)| Some(format!("{name} {}", language.usual_name(name, sense)?));
+    let names: BTreeSet<String> = rooms.chain(things).filter_map(own).collect();
+    names.into_iter().take(MAX_OWN_NAMES).collect()
 }
 
 /// The references that a prompt shows: all of them, or some that are drawn by the seed.

@@ -6,7 +6,7 @@ use crate::{
     writer::{InstructionWriter, RulesWriter},
 };
 use wayword_core::{ChosenBy, Instruction, ModelError, TextSelection, Verdict, WrittenDraft};
-use wayword_language::text::word_count;
+use wayword_language::{languages::ReadableText, text::word_count};
 
 /// The cost of a word in natural logs of the probability to arrive: of two texts that lead there equally surely the
 /// shorter is chosen, and ten more words have to raise the probability by a twentieth.
@@ -96,8 +96,9 @@ fn best_candidate(accepted: Vec<TextCandidate>, order: InstructionOrder<'_>) -> 
 /// The value of a text that leads to the end with probability `share`, natural logs: this probability times the chance
 /// to take the right object there, less the cost of its words.
 fn text_worth(share: f64, instruction: &Instruction) -> f64 {
+    let readable = ReadableText::new(&instruction.text, None);
     let objects = instruction.ambiguity.as_ref().map_or(1, |ambiguity| ambiguity.objects.max(1));
-    share.max(f64::MIN_POSITIVE).ln() - (objects as f64).ln() - WORD_COST_LN * word_count(&instruction.text) as f64
+    share.max(f64::MIN_POSITIVE).ln() - (objects as f64).ln() - WORD_COST_LN * word_count(readable.english()) as f64
 }
 
 #[cfg(test)]

@@ -190,7 +190,7 @@ fn write_in_language(
         }
     }
     let Some(instruction) = best else {
-        let reason = format!("{} has no words for this text: {:?}", language.tag(), instruction.text);
+        let reason = format!("no text in {} says the same as {:?}", language.tag(), instruction.text);
         return Ok(WritingOutcome::Rejected { last: None, reason, drafts: Vec::new() });
     };
     Ok(match (instruction.verdict, english) {

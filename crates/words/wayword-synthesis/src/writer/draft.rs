@@ -41,6 +41,9 @@ impl<'a> TextDraft<'a> {
     ) -> Self {
         // "Walk straight. Go forward": once is enough.
         told.dedup_by(|next, before| next.kind == ClauseKind::Straight && before.kind == ClauseKind::Straight);
+        if begins_behind_untold_turn(&told, brief) {
+            told.remove(0);
+        }
         if task.is_none() && leaves_out_stop(&told, brief, dice) {
             told.pop();
         }
@@ -127,6 +130,13 @@ impl<'a> TextDraft<'a> {
         let all: Vec<(f64, ClauseJoint)> = shares.map(|(joint, share)| (*share, *joint)).collect();
         draw_option(&all, rng).unwrap_or(old)
     }
+}
+
+/// Whether a text goes straight on first although it leaves out the turn at the start, as texts of some languages do.
+fn begins_behind_untold_turn(told: &[WayClause], brief: &WritingBrief<'_>) -> bool {
+    let [first, _, ..] = told else { return false };
+    let turns = brief.memory.bends.first().is_some_and(|bend| bend.first == 0 && !bend.is_slight());
+    brief.profile.way.untold_first_turns > 0.0 && first.kind == ClauseKind::Straight && first.at == 0 && turns
 }
 
 /// Whether a text says no "and stop": the clause before it tells where the way ends.

@@ -20,7 +20,7 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 use wayword_checks::TextTopic;
-use wayword_language::languages::ReadableText;
+use wayword_language::languages::{NameSense, ReadableText};
 
 /// Most versions of a text that are made until enough are read as saying the same as the English text.
 const MAX_VERSIONS: usize = 40;
@@ -42,8 +42,8 @@ impl<'a> RulesInLanguage<'a> {
         Self { language, versions: Mutex::default() }
     }
 
-    /// What an English text of this writer is in the other language, the best first; none for a text that it did not write, or that the
-    /// language has no words for.
+    /// What an English text of this writer is in the other language, the best first; none for a text that it did not write, or where no
+    /// version in that language says the same.
     #[must_use]
     pub fn versions_of(&self, english: &str) -> Vec<String> {
         self.versions.lock().unwrap_or_else(PoisonError::into_inner).get(english).cloned().unwrap_or_default()
@@ -63,7 +63,8 @@ impl InstructionWriter for RulesInLanguage<'_> {
     }
 }
 
-/// Versions of a text that are read as saying the same, and share no run of words with a reference; then those that come nearest to this.
+/// Versions of a text that are read as saying nothing else: first those in which everything is read again, and which share no run of words
+/// with a reference.
 fn faithful_versions(
     english: &str,
     draft: &RulesDraft<'_>,
@@ -81,9 +82,11 @@ fn faithful_versions(
         let copies = &brief.profile.copies;
         let is_copied = copies.find_copy(&tokens, TextTopic::default()).is_some();
         let is_shared = copies.find_avoidable_copy(&tokens).is_some();
-        let cost = 8 * said.difference(&TextContent::read(readable.english()))
-            + 2 * usize::from(is_copied)
-            + usize::from(is_shared);
+        let own = TextContent::read(readable.english());
+        if own.says_other_than(&said) {
+            continue;
+        }
+        let cost = 8 * said.difference(&own) + 2 * usize::from(is_copied) + usize::from(is_shared);
         if versions.iter().all(|(_, other)| *other != text) {
             versions.push((cost, text));
         }
@@ -99,7 +102,7 @@ fn faithful_versions(
 struct LanguageWriter<'a> {
     language: &'a LanguageWording,
     dice: TextDice,
-    chosen: BTreeMap<String, String>,
+    chosen: BTreeMap<(String, bool), String>,
 }
 
 impl<'a> LanguageWriter<'a> {
@@ -116,25 +119,37 @@ impl<'a> LanguageWriter<'a> {
     }
 
     /// The name of a thing or a room: one of those that texts of the style use, or the usual one.
-    fn name(&mut self, english: &str) -> Option<String> {
-        if let Some(chosen) = self.chosen.get(english) {
+    fn name(&mut self, english: &str, sense: NameSense) -> Option<String> {
+        let key = (english.to_owned(), sense == NameSense::Room);
+        if let Some(chosen) = self.chosen.get(&key) {
             return Some(chosen.clone());
         }
-        let names = self.language.names(english).into_iter().flatten();
+        let names = self.language.names(english, sense).into_iter().flatten();
         let all: Vec<(f64, &String)> = names.map(|(name, count)| (count.powf(NAME_POWER), name)).collect();
         let drawn = draw_option(&all, &mut self.dice.named_rng(&["name", english])).cloned();
-        let name = drawn.or_else(|| self.language.usual_name(english).map(str::to_owned))?;
-        self.chosen.insert(english.to_owned(), name.clone());
+        let name = drawn.or_else(|| self.language.usual_name(english, sense).map(str::to_owned))?;
+        self.chosen.insert(key, name.clone());
         Some(name)
+    }
+
+    fn room_name(&mut self, english: &str) -> Option<String> {
+        self.name(english, NameSense::Room)
+    }
+
+    fn thing_name(&mut self, english: &str) -> Option<String> {
+        self.name(english, NameSense::Thing)
     }
 
     /// A thing with its colour, its number, and what is named with it.
     fn thing(&mut self, thing: &NamedThing) -> Option<String> {
-        let name = self.name(&thing.name)?;
-        let name = thing.colour.as_ref().map_or(name.clone(), |look| self.language.with_look(look, &name));
+        let name = self.thing_name(&thing.name)?;
+        let name = match &thing.colour {
+            Some(look) => self.language.with_look(look, &name)?,
+            None => name,
+        };
         let name = if thing.count == ThingCount::Two { self.language.two_of(&thing.name, &name) } else { name };
-        match thing.with.as_ref().and_then(|with| self.name(with)) {
-            Some(with) => Some(self.language.both(&name, &with)),
+        match &thing.with {
+            Some(with) => Some(self.language.both(&name, &self.thing_name(with)?)),
             None => Some(name),
         }
     }

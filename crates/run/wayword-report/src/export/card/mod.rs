@@ -12,6 +12,7 @@ use std::{
 };
 use wayword_core::{CheckKind, SceneId, TextAmbiguity, Verdict};
 use wayword_formats::jsonl::InstructionRecord;
+use wayword_language::Language;
 use wayword_run::{
     count::count_phrase,
     error::CommandError,
@@ -43,6 +44,7 @@ struct DatasetCard {
     labels: usize,
     rules: usize,
     styles: BTreeSet<String>,
+    languages: BTreeSet<&'static str>,
     seeds: BTreeSet<String>,
     repaired: usize,
     #[serde(flatten)]
@@ -180,6 +182,7 @@ impl DatasetCard {
             labels: count(|record| RolePlayer::Labels.is_named(&record.instruction.provenance.answerer)),
             rules: count(|record| RolePlayer::Rules.is_named(&record.instruction.provenance.writer)),
             styles: records.iter().map(|record| record.instruction.style.clone()).collect(),
+            languages: records.iter().map(|record| Language::tag_of_text(&record.instruction.text)).collect(),
             seeds: records.iter().map(|record| record.instruction.provenance.seed.to_string()).collect(),
             repaired: count(|record| record.instruction.provenance.repairs > 0),
             outcome: CardVerdictCounts::from_verdicts(records.iter().map(|record| record.instruction.verdict)),

@@ -40,13 +40,24 @@ impl TextContent {
         content
     }
 
+    /// Whether it has other sides or climbs than another text, or names a thing that the other text lacks. A name that is not read, such as that
+    /// of a room before that of a thing, may still be there.
+    pub(crate) fn says_other_than(&self, other: &Self) -> bool {
+        let is_known = |name: &String| room_name(name).is_some() || other.names.iter().any(|known| agree(name, known));
+        self.sides != other.sides || self.climbs != other.climbs || !self.names.iter().all(is_known)
+    }
+
     /// How much another text differs: in how many places its lists have another entry.
     pub(crate) fn difference(&self, other: &Self) -> usize {
-        let agree = |a: &String, b: &String| names_agree(a, b) || same_room(a, b);
         differing(&self.sides, &other.sides, |a, b| a == b)
             + differing(&self.climbs, &other.climbs, |a, b| a == b)
             + differing(&self.names, &other.names, agree)
     }
+}
+
+/// Whether two names may be of one thing or room.
+fn agree(one: &String, other: &String) -> bool {
+    names_agree(one, other) || same_room(one, other)
 }
 
 /// In how many places two lists differ.

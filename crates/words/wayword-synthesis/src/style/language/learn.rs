@@ -8,12 +8,10 @@ use super::super::way::{
     shapes::{ShapedClause, has_its_slots, shape_clauses},
 };
 use super::LanguageWording;
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    sync::Arc,
-};
+use std::{collections::BTreeSet, sync::Arc};
+use wayword_core::Side;
 use wayword_language::{
-    languages::{ReadableText, names_within},
+    languages::{NameSense, ReadableText, names_within},
     lexicon::{find_thing, room_name},
     reading::{EventContent, TextReading, read_instruction},
 };
@@ -238,19 +236,27 @@ fn is_name_of(name: &str, usual: &str) -> bool {
     matches!(places.as_slice(), [place] if is_it(place))
 }
 
+/// A shape filled with names and with this side: the text, and its English names for `{l}`, `{r}` and `{a}`.
+pub(super) fn filled_shape(
+    language: &LanguageWording,
+    kind: ClauseKind,
+    shape: &str,
+    side: Side,
+) -> (String, [&'static str; 3]) {
+    let in_hall = matches!(kind, ClauseKind::Along | ClauseKind::AlongToEnd | ClauseKind::TurnAtEnd);
+    let names = ["sofa", if in_hall { "hallway" } else { "bedroom" }, "kitchen"];
+    let senses = [NameSense::Thing, NameSense::Room, NameSense::Room];
+    let own = ["{l}", "{r}", "{a}"].iter().zip(names.iter().zip(senses));
+    let text = own.fold(shape.to_owned(), |text, (slot, (name, sense))| {
+        text.replace(slot, language.usual_name(name, sense).unwrap_or_default())
+    });
+    (text.replace("{s}", language.side(side)).replace("{p}", language.side(side)), names)
+}
+
 /// Whether a shape, filled with names, is read as one clause of its kind, whole and with the same side.
 pub(super) fn is_read_as(language: &LanguageWording, kind: ClauseKind, shape: &str) -> bool {
-    let room = if matches!(kind, ClauseKind::Along | ClauseKind::AlongToEnd | ClauseKind::TurnAtEnd) {
-        "hallway"
-    } else {
-        "bedroom"
-    };
-    let name = |english: &str| language.usual_name(english).unwrap_or_default();
-    let fills: BTreeMap<&str, &str> =
-        BTreeMap::from([("{l}", name("sofa")), ("{r}", name(room)), ("{a}", name("kitchen"))]);
-    language.words.sides.iter().all(|side| {
-        let filled = fills.iter().fold(shape.to_owned(), |text, (slot, name)| text.replace(slot, name));
-        let filled = filled.replace("{s}", side).replace("{p}", side);
+    [Side::Left, Side::Right].into_iter().all(|side| {
+        let (filled, _) = filled_shape(language, kind, shape, side);
         let readable = ReadableText::new(&filled, Some(language.tag));
         let reading = read_instruction(readable.english(), &BTreeSet::new());
         let clauses = shape_clauses(readable.english(), &reading, &ALLOWED_SHAPE_WORDS);

@@ -18,7 +18,7 @@ use std::{
 use wayword_core::Side;
 use wayword_language::{
     Language,
-    languages::{word_for_look, word_for_name},
+    languages::{NameSense, word_for_look, word_for_name},
     lexicon::{ThingClass, find_thing, room_name},
 };
 
@@ -57,11 +57,8 @@ struct LanguageWords {
     numbers: Vec<String>,
     /// What ends a sentence.
     full_stop: String,
-    /// What stands between two things, and between a colour and its thing.
+    /// What stands between two things.
     and: String,
-    of: String,
-    /// The ends of words for looks behind which `of` stands.
-    of_after: Vec<String>,
     /// By the name of a trait of shapes, the words that have it.
     traits: BTreeMap<String, Vec<String>>,
     /// The words for doors, with their English words.
@@ -212,24 +209,26 @@ impl LanguageWording {
 
     /// The names of a thing or a room in the style's texts with their counts, by its English name.
     #[must_use]
-    pub fn names(&self, english: &str) -> Option<&BTreeMap<String, f64>> {
-        let tables = |usual| self.way.rooms_by_label.get(usual).or_else(|| self.way.rooms.get(usual));
-        let room = room_name(english).and_then(tables);
-        room.or_else(|| self.way.things.get(find_thing(english)?.name))
+    pub fn names(&self, english: &str, sense: NameSense) -> Option<&BTreeMap<String, f64>> {
+        match sense {
+            NameSense::Thing => self.way.things.get(find_thing(english)?.name),
+            NameSense::Room => {
+                let usual = room_name(english)?;
+                self.way.rooms_by_label.get(usual).or_else(|| self.way.rooms.get(usual))
+            }
+        }
     }
 
     /// The usual name of a thing or a room, by its English name.
     #[must_use]
-    pub fn usual_name(&self, english: &str) -> Option<&'static str> {
-        word_for_name(self.tag, english)
+    pub fn usual_name(&self, english: &str, sense: NameSense) -> Option<&'static str> {
+        word_for_name(self.tag, english, sense)
     }
 
-    /// A thing with its colour or its material, if the language has a word for that.
+    /// A thing with its colour or its material; `None` if the language has no word for that.
     #[must_use]
-    pub fn with_look(&self, look: &str, thing: &str) -> String {
-        let Some(look) = word_for_look(self.tag, look) else { return thing.to_owned() };
-        let takes_of = self.words.of_after.iter().any(|end| look.ends_with(end.as_str()));
-        format!("{look}{}{thing}", if takes_of { self.words.of.as_str() } else { "" })
+    pub fn with_look(&self, look: &str, thing: &str) -> Option<String> {
+        Some(format!("{}{thing}", word_for_look(self.tag, look)?))
     }
 
     /// Two things of a kind; `english` is their English name.

@@ -84,6 +84,12 @@ impl LanguageWriter<'_> {
                 let together = if before == Some(ClauseKind::Straight) { 0.0 } else { together };
                 vec![(together, own), (apart, vec![to, ClauseKind::Stop]), (unsaid, vec![to])]
             }
+            // "Go up the stairs, at the top of the stairs turn left" says the stairs twice.
+            ClauseKind::TurnAtTop | ClauseKind::TurnAtBottom
+                if matches!(before, Some(ClauseKind::Up | ClauseKind::Down)) =>
+            {
+                vec![(1.0, vec![ClauseKind::Turn])]
+            }
             ClauseKind::Stop if arrives => vec![(1.0 - unsaid, own), (unsaid, Vec::new())],
             _ => return own,
         };
@@ -100,8 +106,8 @@ impl LanguageWriter<'_> {
             Some(Some(name)) => (said.clause.kind, name),
             None => (said.clause.kind, String::new()),
         };
-        let room = if content.room.is_empty() { String::new() } else { self.name(&content.room)? };
-        let from = if content.from.is_empty() { String::new() } else { self.name(&content.from)? };
+        let room = if content.room.is_empty() { String::new() } else { self.room_name(&content.room)? };
+        let from = if content.from.is_empty() { String::new() } else { self.room_name(&content.from)? };
         let shape = self.draw_shape(said, content, kind, before)?;
         let side = content
             .side
@@ -137,9 +143,9 @@ impl LanguageWriter<'_> {
         let is_first = before.is_empty();
         let admitted = |shape: &str| {
             let traits = self.language.traits_of(shape);
-            let may_begin = !is_first || !self.language.begins_no_text(shape);
-            fits(shape) && content.needs.admit(&traits) && (may_go_straight || !traits.goes_straight) && may_begin
+            fits(shape) && content.needs.admit(&traits) && (may_go_straight || !traits.goes_straight)
         };
+        let begins_well = |shape: &str| admitted(shape) && !(is_first && self.language.begins_no_text(shape));
         let rng = &mut said.clause.clause_rng("language words", self.dice);
         let mut draw = |fits: &dyn Fn(&str) -> bool| {
             let shapes = self.language.shapes(kind, is_first).into_iter().flatten().filter(|(shape, _)| fits(shape));
@@ -151,7 +157,9 @@ impl LanguageWriter<'_> {
         } else {
             None
         };
-        straight.or_else(|| draw(&admitted)).or_else(|| draw(&fits))
+        // Where none fits the walk, one that says nothing of doors still may.
+        let says_no_door = |shape: &str| fits(shape) && self.language.traits_of(shape).doors.is_empty();
+        straight.or_else(|| draw(&begins_well)).or_else(|| draw(&admitted)).or_else(|| draw(&says_no_door))
     }
 }
 

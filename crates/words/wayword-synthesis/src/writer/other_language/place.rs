@@ -7,6 +7,7 @@ use crate::writer::{
     task::TaskContent,
 };
 use wayword_core::{ClimbDirection, ObjectDistinction, ObjectRelation, Side};
+use wayword_language::languages::NameSense;
 
 /// The task where the language has no words for the verb.
 const PLAIN_TASK: &str = "look at {o}";
@@ -30,17 +31,17 @@ impl LanguageWriter<'_> {
             }
             GoalContent::Stay(None) => self.phrase("stay").map(str::to_owned),
             GoalContent::Stay(Some(room)) => {
-                let room = self.name(room)?;
+                let room = self.room_name(room)?;
                 Some(self.phrase("stay_in_room")?.replace("{r}", &room))
             }
             GoalContent::Climb(ClimbDirection::Up) => self.phrase("climb_up").map(str::to_owned),
             GoalContent::Climb(_) => self.phrase("climb_down").map(str::to_owned),
             GoalContent::Thing(thing) => {
-                let thing = self.name(thing)?;
+                let thing = self.thing_name(thing)?;
                 Some(self.phrase("go_to_thing")?.replace("{l}", &thing))
             }
             GoalContent::Through(room) => {
-                let room = self.name(room)?;
+                let room = self.room_name(room)?;
                 Some(self.phrase("through_room")?.replace("{r}", &room))
             }
             GoalContent::Onward => self.phrase("onward").map(str::to_owned),
@@ -49,7 +50,7 @@ impl LanguageWriter<'_> {
 
     /// A room with its storey and its properties, which all stand before it.
     fn room(&mut self, content: &RoomContent) -> Option<String> {
-        let mut room = self.name(&content.name)?;
+        let mut room = self.room_name(&content.name)?;
         // What is in the room stands next to it, or else it would be in the other room.
         let with = content.by.iter().filter_map(|by| match by {
             ObjectDistinction::RoomWith { thing } => Some(thing),
@@ -59,8 +60,10 @@ impl LanguageWriter<'_> {
             ObjectDistinction::RoomBy { room } => Some(room),
             _ => None,
         });
-        for (phrase, others) in [("room_with", with.collect::<Vec<_>>()), ("room_by", beside.collect())] {
-            let names: Vec<String> = others.into_iter().map(|other| self.name(other)).collect::<Option<_>>()?;
+        let others =
+            [("room_with", NameSense::Thing, with.collect::<Vec<_>>()), ("room_by", NameSense::Room, beside.collect())];
+        for (phrase, sense, others) in others {
+            let names: Vec<String> = others.into_iter().map(|other| self.name(other, sense)).collect::<Option<_>>()?;
             let all = names.into_iter().reduce(|all, name| self.language.both(&all, &name));
             let Some(all) = all else { continue };
             room = self.phrase(phrase)?.replace("{x}", &all).replace("{r}", &room);
@@ -79,15 +82,20 @@ impl LanguageWriter<'_> {
 
     /// An object with its properties, which all stand before it.
     fn object(&mut self, content: &ObjectContent) -> Option<String> {
-        let mut object = self.name(&content.called)?;
-        for by in &content.by {
-            object = match by {
-                ObjectDistinction::Colour { colour } => self.language.with_look(colour, &object),
-                other => self.with_property(other, &object)?,
-            };
+        let mut object = self.thing_name(&content.called)?;
+        // The colour and the wall stand next to the object, or else another thing would have them.
+        let (colours, others): (Vec<_>, Vec<_>) =
+            content.by.iter().partition(|by| matches!(by, ObjectDistinction::Colour { .. }));
+        for by in colours {
+            if let ObjectDistinction::Colour { colour } = by {
+                object = self.language.with_look(colour, &object)?;
+            }
         }
         if content.on_wall {
             object = self.phrase("wall")?.replace("{o}", &object);
+        }
+        for by in others {
+            object = self.with_property(by, &object)?;
         }
         Some(object)
     }
@@ -125,7 +133,7 @@ impl LanguageWriter<'_> {
         };
         let mut words = self.phrase(phrase)?.to_owned();
         for (slot, name) in ["{x}", "{y}"].iter().zip(names) {
-            words = words.replace(slot, &self.name(name)?);
+            words = words.replace(slot, &self.thing_name(name)?);
         }
         if let Some(number) = number {
             words = words.replace("{n}", self.language.number(number)?);

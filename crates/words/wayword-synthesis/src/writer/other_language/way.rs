@@ -48,7 +48,8 @@ impl LanguageWriter<'_> {
             let rng = &mut self.dice.named_rng(&["joint", &at.to_string()]);
             text += &draw_option(&words.collect::<Vec<_>>(), rng).cloned().unwrap_or_default();
             text += &phrase.text;
-            let next = joints.get(at + 1).is_some_and(|next| *next == ClauseJoint::And);
+            // "First leave the room, after that turn left" joins once too often.
+            let next = at > 0 && joints.get(at + 1).is_some_and(|next| *next == ClauseJoint::And);
             if let Some(after) = self.language.words_after(&phrase.text).filter(|_| next) {
                 let after: Vec<(f64, &String)> = after.iter().map(|(words, share)| (*share, words)).collect();
                 text += &draw_option(&after, rng).cloned().unwrap_or_default();
@@ -103,7 +104,7 @@ impl LanguageWriter<'_> {
         if !is_named || !has_walls {
             return None;
         }
-        let room = self.name(room)?;
+        let room = self.room_name(room)?;
         self.language.name_doorway(text, &room)
     }
 
