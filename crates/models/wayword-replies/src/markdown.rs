@@ -57,7 +57,7 @@ pub(crate) fn without_inline_marks(line: &str) -> String {
     let line = ENTITIES.iter().fold(line.to_owned(), |line, (entity, sign)| line.replace(entity, sign));
     let line = without_links(&line).replace('`', "");
     let line = without_emphasis(&line);
-    let belongs = |c: char| c.is_alphanumeric() || "\"“'‘(«„.!?)”’»<>[]{}|\\#*".contains(c);
+    let belongs = |c: char| c.is_alphanumeric() || "\"“'‘(«„.!?。！？)”’»<>[]{}|\\#*".contains(c);
     without_remark(line.trim_matches(|c: char| !belongs(c))).to_owned()
 }
 

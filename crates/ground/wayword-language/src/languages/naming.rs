@@ -130,7 +130,7 @@ mod tests {
     fn every_colour_has_a_chinese_word() {
         let colours = include_str!("en/colours.txt");
         let all = data::content_lines(colours).flat_map(|line| line.split(',')).map(str::trim);
-        let shades = all.clone().flat_map(|colour| ["", "light ", "dark "].map(|shade| format!("{shade}{colour}")));
+        let shades = all.flat_map(|colour| ["", "light ", "dark "].map(|shade| format!("{shade}{colour}")));
         let missing: Vec<String> = shades.filter(|colour| word_for_look("zh", colour).is_none()).collect();
         assert!(missing.is_empty(), "{missing:?}");
         assert_eq!(word_for_look("zh", "dark grey").as_deref(), Some("深灰色"));

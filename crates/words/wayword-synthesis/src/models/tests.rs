@@ -192,13 +192,16 @@ fn a_text_in_chinese_is_asked_for_and_english_words_in_it_are_refused() {
         "走进卧室，停在 lamp 旁边。",
         "抱歉，我无法提供帮助。",
         "好的，以下是导航指令：走进卧室，停在台灯旁边。",
+        "好的！走进卧室，停在台灯旁边。",
     ]);
     let writer = ModelWriter::new(model.clone(), prompts());
     for wanted in ["it is not in Chinese", "it has the word \"lamp\"", "it refused"] {
         let Err(WriteError::Unusable { reason, .. }) = writer.write(&brief) else { panic!("{wanted}: it is used") };
         assert!(reason.contains(wanted), "{reason}");
     }
-    assert_eq!(writer.write(&brief).unwrap(), "走进卧室，停在台灯旁边。");
+    for _chatter in ["an announcement", "a word of agreement"] {
+        assert_eq!(writer.write(&brief).unwrap(), "走进卧室，停在台灯旁边。");
+    }
     let prompt = &model.prompts()[0];
-    assert!(prompt.contains("Write it in Simplified Chinese alone") && prompt.contains("lamp 台灯"), "{prompt}");
+    assert!(prompt.contains("Write it in Simplified Chinese alone") && prompt.contains("lamp 灯"), "{prompt}");
 }
