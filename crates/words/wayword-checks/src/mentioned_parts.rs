@@ -4,7 +4,10 @@
 
 use std::collections::BTreeSet;
 use wayword_core::{InstructionPart, MentionKind, TextMention};
-use wayword_language::reading::{read_instruction, steps::read_steps};
+use wayword_language::{
+    languages::ReadableText,
+    reading::{read_instruction, steps::read_steps},
+};
 
 /// A part of an instruction, with the frames of its mentions.
 #[derive(Debug, Clone, Copy)]
@@ -24,9 +27,11 @@ pub fn parts_from_mentions(text: &str, mentions: &[TextMention], frames: usize) 
     let mut all: Vec<MentionedPart> = Vec::new();
     // Where the words without evidence before the first part begin; the first part takes them.
     let mut waiting_begin: Option<usize> = None;
-    for step in read_steps(&read_instruction(text, &BTreeSet::new())) {
-        let begin = waiting_begin.take().unwrap_or(step.span[0]);
-        let span = [begin, step.span[1]];
+    let readable = ReadableText::new(text, None);
+    for step in read_steps(&read_instruction(readable.english(), &BTreeSet::new())) {
+        let [begin, end] = readable.source_span(step.span);
+        let begin = waiting_begin.take().unwrap_or(begin);
+        let span = [begin, end];
         match (part_from_span(mentions, span, last), all.last_mut()) {
             (Some(part), _) => all.push(part),
             (None, Some(before)) => before.span[1] = span[1],

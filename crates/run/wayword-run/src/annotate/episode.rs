@@ -31,6 +31,7 @@ use wayword_follower::{
     pair::{FilmedPlace, FilmedWalk, JudgedPair},
 };
 use wayword_language::{
+    languages::ReadableText,
     lexicon::{find_thing, is_fabric, names_agree, same_room},
     reading::read_instruction,
 };
@@ -458,8 +459,9 @@ impl<'a> SeenFilm<'a> {
 
 /// Whether the claims of a text fit a film, and the reasons where they do not.
 fn judge_text(text: &str, walk: &FilmedWalk) -> (PairPartState, String) {
-    let reading = read_instruction(text, &BTreeSet::new()).into_claims();
-    let judged = JudgedPair::new(&PartedText::from_reading(text, &reading), walk);
+    let readable = ReadableText::new(text, None);
+    let reading = read_instruction(readable.english(), &BTreeSet::new()).into_claims();
+    let judged = JudgedPair::new(&PartedText::from_reading(readable.english(), &reading), walk);
     let Some(judged) = judged else { return (PairPartState::Unverified, "it tells no step".to_owned()) };
     let parts: Vec<PairPartRecord> = judged.parts.iter().map(|part| PairPartRecord::new(part, walk)).collect();
     let state = parts.iter().map(|part| part.state).max().unwrap_or(PairPartState::Fits);

@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 use wayword_checks::Evidence;
 use wayword_core::Platform;
 use wayword_language::{
+    languages::ReadableText,
     lexicon::find_thing,
     reading::{EventContent, read_instruction},
 };
@@ -64,9 +65,10 @@ pub(super) fn detector_evidence(
     Ok(Evidence::from_detector(&walk.path, &seen))
 }
 
-/// The things that a text names, as far as the lexicon has them.
+/// The things that a text names, in English, as far as the lexicon has them.
 pub(crate) fn named_things(text: &str) -> Vec<String> {
-    let events = read_instruction(text, &BTreeSet::new()).events.into_iter();
+    let readable = ReadableText::new(text, None);
+    let events = read_instruction(readable.english(), &BTreeSet::new()).events.into_iter();
     let places = events.filter_map(|event| match event.what {
         EventContent::Place(place) => (place.is_thing && find_thing(&place.name).is_some()).then_some(place.name),
         _ => None,

@@ -159,7 +159,7 @@ impl PairJudge<'_> {
 fn read_text(text: &NamedText, walk: &FilmedWalk) -> Result<JudgedPair, &'static str> {
     let reading = read_instruction(&text.words, &BTreeSet::new());
     if matches!(reading.language.or_tagged(text.tag.as_deref()), Language::Other(_)) {
-        return Err("the text is in another language than English, which the program cannot read");
+        return Err("the text is in another language than English, which `pairs` does not read");
     }
     if walk.places.len() < 2 {
         return Err("its film has fewer than two frames");

@@ -65,8 +65,6 @@ struct LanguageWords {
     doors: BTreeMap<String, String>,
     /// What stands before a doorway that gets a room, and the doorway of the room `{r}`.
     doors_of_rooms: BTreeMap<String, String>,
-    /// Share of the doorways whose room is named.
-    named_doors: f64,
     /// What stands before a door that gets a number, and the door with the number `{n}`, by the words for doors.
     numbered_doors: BTreeMap<String, String>,
     /// The words that count things, by usual English name or by class.
@@ -126,6 +124,7 @@ impl LanguageWording {
             *count *= self.words.plan_factors.get(kind).unwrap_or(&1.0);
         }
         way.untold_first_turns = self.way.untold_first_turns;
+        way.named_doorways = self.way.named_doorways;
     }
 
     /// Whether words have one of the marks of a trait.
@@ -180,12 +179,6 @@ impl LanguageWording {
         let number = self.number(number)?;
         let (plain, numbered) = self.words.numbered_doors.iter().rfind(|(plain, _)| shape.contains(plain.as_str()))?;
         Some(shape.replacen(plain, &numbered.replace("{n}", number), 1))
-    }
-
-    /// Share of the doorways whose room is named.
-    #[must_use]
-    pub fn named_doors(&self) -> f64 {
-        self.words.named_doors
     }
 
     /// A clause whose doorway gets the name of its room; `None` where it has no place for that.

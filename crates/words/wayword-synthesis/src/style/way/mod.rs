@@ -41,6 +41,8 @@ pub struct WayWording {
     pub first_shapes: BTreeMap<ClauseKind, BTreeMap<String, f64>>,
     /// Share of the turns at the start that texts leave out, where they leave out more than R2R's texts do.
     pub untold_first_turns: f64,
+    /// Share of the doorways whose room texts of such a language name.
+    pub named_doorways: f64,
     /// The names of each room, by its usual name.
     pub rooms: BTreeMap<String, BTreeMap<String, f64>>,
     /// What people call the rooms of a scan, by the usual name of their label: also names of other rooms, which they do not keep apart from

@@ -90,7 +90,7 @@ impl LanguageWriter<'_> {
         said
     }
 
-    /// The words of a clause to a doorway with the name of its room: the one that the walker is in at the start, or else the one behind it.
+    /// The words of a clause to a doorway with the name of its room, where texts of the style name it: the one that the walker is in at the start, or else the one behind it.
     fn doorway_of_room(&mut self, clause: &WayClause, text: &str, brief: &WritingBrief<'_>) -> Option<String> {
         let openings = &brief.memory.openings;
         let at = openings.iter().position(|opening| match clause.kind {
@@ -98,7 +98,7 @@ impl LanguageWriter<'_> {
             ClauseKind::StopInDoorway => opening.behind == clause.at,
             _ => false,
         })?;
-        let is_named = clause.clause_rng("doorway", self.dice).random_bool(self.language.named_doors());
+        let is_named = clause.clause_rng("doorway", self.dice).random_bool(brief.profile.way.named_doorways);
         let room = if at == 0 && clause.kind == ClauseKind::ToDoor { &openings[at].from } else { &openings[at].to };
         let has_walls = !matches!(room_name(room), None | Some("hallway" | "stairs" | "entryway" | "outdoor area"));
         if !is_named || !has_walls {
