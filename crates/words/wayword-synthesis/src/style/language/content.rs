@@ -51,12 +51,12 @@ impl TextContent {
     pub(crate) fn difference(&self, other: &Self) -> usize {
         differing(&self.sides, &other.sides, |a, b| a == b)
             + differing(&self.climbs, &other.climbs, |a, b| a == b)
-            + differing(&self.names, &other.names, agree)
+            + differing(&self.names, &other.names, |a, b| agree(a, b))
     }
 }
 
 /// Whether two names may be of one thing or room.
-fn agree(one: &String, other: &String) -> bool {
+fn agree(one: &str, other: &str) -> bool {
     names_agree(one, other) || same_room(one, other)
 }
 
