@@ -136,7 +136,7 @@ impl<'a> TextDraft<'a> {
 fn begins_behind_untold_turn(told: &[WayClause], brief: &WritingBrief<'_>) -> bool {
     let [first, _, ..] = told else { return false };
     let turns = brief.memory.bends.first().is_some_and(|bend| bend.first == 0 && !bend.is_slight());
-    brief.profile.way.untold_first_turns > 0.0 && first.kind == ClauseKind::Straight && first.at == 0 && turns
+    brief.profile.way.untold_first_turns > 0.0 && first.kind == ClauseKind::Straight && turns
 }
 
 /// Whether a text says no "and stop": the clause before it tells where the way ends.

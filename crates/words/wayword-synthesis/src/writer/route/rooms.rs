@@ -239,7 +239,7 @@ impl WayPlanner<'_> {
         let to = usable_room(&opening.to);
         let can_leave = usable_room(&opening.from).is_some_and(|from| self.here == Some(from));
         self.go_on_to(at);
-        if at == 0 && self.leaves_out_first_turn() {
+        if at == 0 && self.leaves_out_first_turn(side) {
             return self.change_room(opening);
         }
         if side == Side::Behind {

@@ -111,14 +111,15 @@ impl WayPlanner<'_> {
 
     /// Plans the turn at the start. It is mostly left out, because the first landmark shows the direction, and nothing shows where to turn.
     fn first_turn(&mut self, bend: WalkBend) {
-        if self.leaves_out_first_turn() {
+        let side = bend.side();
+        if self.leaves_out_first_turn(side) {
             return;
         }
-        let side = bend.side();
         let leaves_soon =
             self.memory.openings.first().is_some_and(|opening| opening.before <= 1) && self.here.is_some();
         let kind = if side == Side::Behind { ClauseKind::TurnAround } else { ClauseKind::Turn };
         let is_told = match (side, leaves_soon) {
+            (Side::Behind, _) if self.brief.profile.way.untold_first_turns > 0.0 => true,
             (Side::Behind, true) => self.rng.random_bool(0.03),
             (Side::Behind, false) => self.rng.random_bool(0.1),
             (_, true) => bend.turn_rad.to_degrees().abs() >= motion::TOLD_DEG && self.rng.random_bool(0.03),
@@ -129,10 +130,10 @@ impl WayPlanner<'_> {
         }
     }
 
-    /// Whether a turn at the start is left out because texts of the style hardly have one.
-    pub(super) fn leaves_out_first_turn(&mut self) -> bool {
+    /// Whether a turn at the start is left out because texts of the style hardly have one. What lies behind the walker is not left to be found.
+    pub(super) fn leaves_out_first_turn(&mut self, side: Side) -> bool {
         let share = self.brief.profile.way.untold_first_turns;
-        share > 0.0 && self.rng.random_bool(share.min(1.0))
+        share > 0.0 && side != Side::Behind && self.rng.random_bool(share.min(1.0))
     }
 
     /// Whether a turn is left out: people do not mention small turns that the way requires anyway. All candidates of a
