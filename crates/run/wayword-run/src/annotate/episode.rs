@@ -228,7 +228,7 @@ impl EpisodeAnnotator<'_> {
         Ok((motion_phrase(part, is_last), "motion".to_owned(), PairPartState::Fits))
     }
 
-    /// What the model that writes says about a part; `None` where rules write, or the part has too few frames.
+    /// What the model that writes tells about a part; `None` where rules write, or the part has too few frames.
     fn model_text(&self, seen: &SeenFilm<'_>, part: &FilmPart) -> Result<Option<(String, String)>, CommandError> {
         if self.settings.roles.write.model_name().is_none() {
             return Ok(None);

@@ -36,7 +36,7 @@ pub struct CheckReport {
     pub ambiguous: usize,
     /// Each of them, whether it passed or not.
     pub ambiguous_texts: Vec<AmbiguousText>,
-    /// The decisions of the walks by kind, `turn` (where another way is open, as far as a graph says so), `climb` and `room`, and how many
+    /// The decisions of the walks by kind, `turn` (where another way is open, as far as a graph tells so), `climb` and `room`, and how many
     /// of them their texts tell in each way: `told`, `early`, `late`, `merged` (only the place where the way leads is named) or
     /// `left_out`. It counts against no text.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]

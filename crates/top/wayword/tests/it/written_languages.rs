@@ -62,7 +62,7 @@ const NAMES: &[(&str, &str)] = &[
     ("plant, potted plant", "盆栽, 绿植"),
     ("radiator", "暖气片"),
     ("refrigerator, fridge", "冰箱"),
-    ("rug, carpet, doormat", "地毯"),
+    ("rug, carpet, doormat, bath mat", "地毯"),
     ("shelf", "架子"),
     ("shoe rack", "鞋架"),
     ("shower", "淋浴间, 淋浴"),

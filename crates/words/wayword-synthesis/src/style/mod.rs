@@ -52,7 +52,7 @@ pub enum StyleError {
     UnknownLanguage {
         /// The style.
         name: String,
-        /// What it says.
+        /// What it tells.
         found: String,
     },
     /// The style has no reference texts.
@@ -70,7 +70,7 @@ pub enum StyleError {
         name: String,
         /// The field of `choice`.
         field: &'static str,
-        /// What it says.
+        /// What it tells.
         found: String,
         /// The greatest number that it takes.
         most: f64,

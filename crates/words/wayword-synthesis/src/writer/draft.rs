@@ -139,7 +139,7 @@ fn begins_behind_untold_turn(told: &[WayClause], brief: &WritingBrief<'_>) -> bo
     brief.profile.way.untold_first_turns > 0.0 && first.kind == ClauseKind::Straight && turns
 }
 
-/// Whether a text says no "and stop": the clause before it tells where the way ends.
+/// Whether a text ends without "and stop": the clause before it tells where the way ends.
 fn leaves_out_stop(told: &[WayClause], brief: &WritingBrief<'_>, dice: TextDice) -> bool {
     let [.., before, stop] = told else { return false };
     if !brief.memory.is_on_graph() {

@@ -24,11 +24,11 @@ pub(super) struct ClausePhrase {
     pub(super) is_clause: bool,
     /// Whether it limits the clause before it, as in "until you reach the sofa".
     pub(super) runs_on: bool,
-    /// What it says.
+    /// What it tells.
     pub(super) content: PhraseContent,
 }
 
-/// What a phrase says, apart from its words.
+/// What a phrase tells, apart from its words.
 #[derive(Clone)]
 pub(super) enum PhraseContent {
     /// To stay, on a path that goes nowhere.

@@ -12,14 +12,14 @@ use std::collections::BTreeMap;
 use wayword_core::{ObjectDescription, ObjectDistinction, ObjectRelation, Side, Verdict};
 use wayword_language::lexicon::{ThingClass, find_thing, is_plural, names_agree, normalise_name};
 
-/// What a text says of the object of its task, in English names.
+/// What a text tells of the object of its task, in English names.
 #[derive(Clone)]
 pub(super) struct ObjectContent {
     /// Its name in this text.
     pub(super) called: String,
     /// The properties of the object that the text names.
     pub(super) by: Vec<ObjectDistinction>,
-    /// Whether it says "on the wall".
+    /// Whether it has "on the wall".
     pub(super) on_wall: bool,
 }
 
@@ -203,7 +203,7 @@ fn draw_distinctions<'a>(
     for by in all {
         of_kind.entry(by.iter().map(construction_table).collect()).or_default().push(by);
     }
-    // A description that holds another one says more than it has to.
+    // A description that holds another one tells more than it has to.
     let is_idle = |kind: &Vec<&str>| {
         of_kind.keys().any(|other| other.len() < kind.len() && other.iter().all(|table| kind.contains(table)))
     };

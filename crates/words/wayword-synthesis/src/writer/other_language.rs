@@ -43,7 +43,7 @@ impl<'a> RulesInLanguage<'a> {
     }
 
     /// What an English text of this writer is in the other language, the best first; none for a text that it did not write, or where no
-    /// version in that language says the same.
+    /// version in that language means the same.
     #[must_use]
     pub fn versions_of(&self, english: &str) -> Vec<String> {
         self.versions.lock().unwrap_or_else(PoisonError::into_inner).get(english).cloned().unwrap_or_default()

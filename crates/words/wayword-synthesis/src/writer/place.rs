@@ -32,7 +32,7 @@ const NEVER_FAULT_WORDS: f64 = 1000.0;
 /// Cost of a run of words that a draft shares with a reference, in words of length difference.
 const AVOIDED_FAULT_WORDS: f64 = 100.0;
 
-/// What a text says that names the place at the end.
+/// What a text tells that names the place at the end.
 #[derive(Clone)]
 pub(super) struct PlaceContent {
     pub(super) goal: GoalContent,

@@ -24,7 +24,7 @@ impl InstructionWriter for RulesWriter {
     }
 }
 
-/// What a text by rules says.
+/// What a text by rules tells.
 pub(super) enum RulesDraft<'a> {
     /// A way, step by step.
     Way(TextDraft<'a>),
@@ -33,7 +33,7 @@ pub(super) enum RulesDraft<'a> {
 }
 
 impl<'a> RulesDraft<'a> {
-    /// The English text for a brief, and what it says.
+    /// The English text for a brief, and what it tells.
     pub(super) fn write(brief: &'a WritingBrief<'_>) -> Result<(String, Self), WriteError> {
         let dice = TextDice::for_brief(brief);
         if !brief.profile.tells_turns() {

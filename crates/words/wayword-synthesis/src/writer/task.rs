@@ -6,7 +6,7 @@ use super::{
 };
 use rand_chacha::ChaCha8Rng;
 
-/// What a task says: the English verb with `{o}` for the object, and the object.
+/// What a task tells: the English verb with `{o}` for the object, and the object.
 #[derive(Clone)]
 pub(super) struct TaskContent {
     pub(super) verb: String,

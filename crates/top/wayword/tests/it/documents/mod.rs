@@ -17,7 +17,7 @@ use wayword_testkit::documents::{self, DocumentedCommand};
 use reader_folder::{ReaderFolder, RunExtent};
 
 /// Commands that a test cannot run: a word by which to recognise them, and what they need. The test runs all others.
-const NEEDS: [(&str, &str); 11] = [
+const NEEDS: [(&str, &str); 12] = [
     ("--platform tdw", "ThreeDWorld's simulator"),
     ("--platform virtualhome", "VirtualHome's simulator"),
     ("--platform process", "Python and a simulator"),
@@ -29,6 +29,7 @@ const NEEDS: [(&str, &str); 11] = [
     ("DATASET", "a LeRobot dataset of the reader's own"),
     ("--data NAME", "a recording of the reader's own"),
     ("DATA/zh/", "XL-R2R's texts"),
+    ("runs/written", "the run by XL-R2R's texts"),
 ];
 
 /// The exit codes that a documented command may end with: done, or done with loss.

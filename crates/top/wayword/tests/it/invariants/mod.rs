@@ -135,7 +135,7 @@ enum Below {
 const BELOW: [(&str, Below); 33] = [
     ("wayword-core", Below::Crates(&[])),
     ("wayword-testkit", Below::Crates(&["wayword-core"])),
-    ("wayword-formats", Below::Crates(&["wayword-core"])),
+    ("wayword-formats", Below::Crates(&["wayword-core", "wayword-language"])),
     ("wayword-language", Below::Crates(&["wayword-core"])),
     ("wayword-render", Below::Crates(&["wayword-core"])),
     ("wayword-world", Below::Crates(&["wayword-core"])),

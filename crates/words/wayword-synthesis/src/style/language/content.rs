@@ -1,4 +1,4 @@
-//! What a text says, read back from its words, to compare the texts of a walk in several languages.
+//! What a text tells, read back from its words, to compare the texts of a walk in several languages.
 
 use std::collections::BTreeSet;
 use wayword_core::{ClimbDirection, Side};

@@ -1,4 +1,4 @@
-//! The words of a language beside English for what a text says.
+//! The words of a language beside English for what a text tells.
 //!
 //! The writer by rules plans a text, and decides in English what each clause names. The wording of another language has shapes for the same
 //! kinds of clauses, joints, and names. So the texts for a path say the same in every language. The file `builtin/zh.toml` is Chinese.
@@ -38,7 +38,7 @@ static READ: LazyLock<Vec<LanguageWording>> = LazyLock::new(|| {
     WRITTEN.iter().map(parse).collect()
 });
 
-/// How texts in a language say what a text says.
+/// How texts in a language say what a text tells.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LanguageWording {
     tag: &'static str,
@@ -57,13 +57,13 @@ struct LanguageWords {
     numbers: Vec<String>,
     /// What ends a sentence.
     full_stop: String,
-    /// What stands between two things.
+    /// The word between two things.
     and: String,
     /// By the name of a trait of shapes, the words that have it.
     traits: BTreeMap<String, Vec<String>>,
     /// The words for doors, with their English words.
     doors: BTreeMap<String, String>,
-    /// What stands before a doorway that gets a room, and the doorway of the room `{r}`.
+    /// The words before a doorway that gets a room, and the same with the room `{r}`.
     doors_of_rooms: BTreeMap<String, String>,
     /// What stands before a door that gets a number, and the door with the number `{n}`, by the words for doors.
     numbered_doors: BTreeMap<String, String>,
@@ -79,7 +79,7 @@ struct LanguageWords {
     phrases: BTreeMap<String, Vec<String>>,
     /// Tasks with `{o}` for the object, by their English words.
     tasks: BTreeMap<String, String>,
-    /// Factors on how often a plan draws a kind of clause, whose weights were set by English texts.
+    /// Factors on how often a plan draws a kind of clause: its own weights were set by English texts.
     plan_factors: BTreeMap<ClauseKind, f64>,
     /// Shapes that are read as several clauses, with their share of the clauses of the kind.
     joined_shapes: BTreeMap<ClauseKind, WordingShares>,
@@ -181,7 +181,7 @@ impl LanguageWording {
         Some(shape.replacen(plain, &numbered.replace("{n}", number), 1))
     }
 
-    /// A clause whose doorway gets the name of its room; `None` where it has no place for that.
+    /// A clause with the name of its room before the doorway; `None` where it has no place for that.
     #[must_use]
     pub fn name_doorway(&self, clause: &str, room: &str) -> Option<String> {
         let (plain, named) = self.words.doors_of_rooms.iter().find(|(plain, _)| clause.contains(plain.as_str()))?;

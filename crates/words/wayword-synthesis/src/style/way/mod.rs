@@ -41,7 +41,7 @@ pub struct WayWording {
     pub first_shapes: BTreeMap<ClauseKind, BTreeMap<String, f64>>,
     /// Share of the turns at the start that texts leave out, where they leave out more than R2R's texts do.
     pub untold_first_turns: f64,
-    /// Share of the doorways whose room texts of such a language name.
+    /// Share of the doorways that such texts name by their room.
     pub named_doorways: f64,
     /// The names of each room, by its usual name.
     pub rooms: BTreeMap<String, BTreeMap<String, f64>>,

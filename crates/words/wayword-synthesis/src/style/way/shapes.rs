@@ -234,30 +234,30 @@ pub fn is_until(shape: &str) -> bool {
     shape.starts_with("until ")
 }
 
-/// What a shape says beside its kind, on which it depends where the shape fits.
+/// What a shape tells beside its kind, on which it depends where the shape fits.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ShapeTraits {
-    /// It says "straight" or the like.
+    /// It has "straight" or the like.
     pub goes_straight: bool,
-    /// It says that its thing is in front of the walker.
+    /// It tells that its thing is in front of the walker.
     pub says_front: bool,
     /// It names a room.
     pub names_room: bool,
-    /// It says "the room" without a name.
+    /// It has "the room" without a name.
     pub says_room: bool,
     /// It leads into the open air.
     pub goes_outside: bool,
     /// It means the part of the room by its door.
     pub is_at_door: bool,
-    /// It says "at the kitchen".
+    /// It has "at the kitchen".
     pub is_at_room: bool,
     /// It leads out of a room.
     pub leaves: bool,
     /// It limits the clause before it, as in "until you reach the sofa".
     pub is_until: bool,
-    /// It says "past" or "after".
+    /// It has "past" or "after".
     pub says_past: bool,
-    /// It says "all the way".
+    /// It has "all the way".
     pub goes_all_the_way: bool,
     /// Its words for doors, in English.
     pub doors: Vec<String>,

@@ -15,14 +15,14 @@ use wayword_core::Side;
 /// A clause to put into words.
 pub(super) struct SaidClause<'d> {
     pub(super) clause: WayClause,
-    /// What it says.
+    /// What it tells.
     pub(super) content: &'d PhraseContent,
-    /// Whether it also says that the walker goes straight on.
+    /// Whether it also tells that the walker goes straight on.
     pub(super) goes_straight: bool,
 }
 
 impl SaidClause<'_> {
-    /// Whether it says no more than to go straight on.
+    /// Whether it tells no more than to go straight on.
     pub(super) fn is_straight_on(&self) -> bool {
         self.clause.kind == ClauseKind::Straight && matches!(self.content, PhraseContent::Clause(_))
     }
@@ -38,7 +38,7 @@ const DOOR_SHARE: f64 = 0.3;
 const APART_FACTOR: f64 = 1.5;
 
 impl LanguageWriter<'_> {
-    /// The kinds of the clauses that say what a clause says, by how often texts of the language have them. What is named, and in which order,
+    /// The kinds of the clauses for the content of a clause, by how often texts of the language have them. What is named, and in which order,
     /// is the same in all. `before` is the kind of the clause before.
     pub(super) fn kinds_to_say(
         &self,
@@ -50,7 +50,7 @@ impl LanguageWriter<'_> {
         let way = self.language.way();
         let count = |kind| way.kind_count(kind);
         let own = vec![content.kind];
-        // Where frames lie close together, a clause for each step says where the walker is.
+        // Where frames lie close together, a clause for each step tells where the walker is.
         if !content.needs.is_on_graph {
             return own;
         }
@@ -84,7 +84,7 @@ impl LanguageWriter<'_> {
                 let together = if before == Some(ClauseKind::Straight) { 0.0 } else { together };
                 vec![(together, own), (apart, vec![to, ClauseKind::Stop]), (unsaid, vec![to])]
             }
-            // "Go up the stairs, at the top of the stairs turn left" says the stairs twice.
+            // "Go up the stairs, at the top of the stairs turn left" names the stairs twice.
             ClauseKind::TurnAtTop | ClauseKind::TurnAtBottom
                 if matches!(before, Some(ClauseKind::Up | ClauseKind::Down)) =>
             {
@@ -127,7 +127,7 @@ impl LanguageWriter<'_> {
     ) -> Option<String> {
         let says_room =
             !content.room.is_empty() && !matches!(kind, ClauseKind::ToDoor | ClauseKind::To | ClauseKind::Turn);
-        // "Go straight, go straight to the sofa" says it once too often.
+        // "Go straight, go straight to the sofa" repeats itself.
         let may_go_straight = kind == ClauseKind::Straight || !self.language.traits_of(before).goes_straight;
         let is_long = content.thing.as_ref().is_some_and(|thing| is_long(&thing.name));
         let fits = |shape: &str| {
@@ -157,7 +157,7 @@ impl LanguageWriter<'_> {
         } else {
             None
         };
-        // Where none fits the walk, one that says nothing of doors still may.
+        // Where none fits the walk, one without a door still may.
         let says_no_door = |shape: &str| fits(shape) && self.language.traits_of(shape).doors.is_empty();
         straight.or_else(|| draw(&begins_well)).or_else(|| draw(&admitted)).or_else(|| draw(&says_no_door))
     }
@@ -175,7 +175,7 @@ fn arriving_kind(stops: ClauseKind, before: Option<ClauseKind>) -> Option<Clause
     }
 }
 
-/// The kind of a clause that says the same without its thing.
+/// The kind of the same clause without its thing.
 fn without_thing(kind: ClauseKind) -> ClauseKind {
     match kind {
         ClauseKind::TurnAt => ClauseKind::Turn,

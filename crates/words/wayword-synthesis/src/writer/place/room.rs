@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use wayword_core::{ClimbDirection, ObjectDescription, ObjectDistinction};
 use wayword_language::lexicon::{room_name, with_article};
 
-/// What a text says of the room where a path ends, in English names.
+/// What a text tells of the room where a path ends, in English names.
 #[derive(Clone)]
 pub(in crate::writer) struct RoomContent {
     pub(in crate::writer) name: String,

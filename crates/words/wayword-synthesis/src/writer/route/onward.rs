@@ -10,7 +10,7 @@ use wayword_checks::memory::WalkBend;
 use wayword_core::{Side, motion};
 use wayword_language::lexicon::room_name;
 
-/// A style that says "go along the hallway" in at least this share of the clauses that go straight on says it wherever it can.
+/// A style with "go along the hallway" in at least this share of the clauses that go straight on has it wherever it fits.
 const ALONG_SHARE: f64 = 0.3;
 
 impl WayPlanner<'_> {
@@ -20,7 +20,7 @@ impl WayPlanner<'_> {
         self.along = true;
     }
 
-    /// Whether the text says "go along the hallway" where "go straight" says the same. Some styles hardly ever name a hallway.
+    /// Whether the text has "go along the hallway" where "go straight" means the same. Some styles hardly ever name a hallway.
     pub(super) fn says_along(&mut self) -> bool {
         let (along, straight) = (self.kind_count(ClauseKind::Along), self.kind_count(ClauseKind::Straight));
         let share = along / (along + straight).max(f64::EPSILON);
@@ -36,7 +36,7 @@ impl WayPlanner<'_> {
         self.goes_along(at) && (!knows_way || self.memory.walked_m(at - 1, left.min(turn)) >= STRETCH_M)
     }
 
-    /// Whether the walk goes far enough along the room of a frame, from there on, that "go along the hallway" says something.
+    /// Whether the walk goes far enough along the room of a frame, from there on, that "go along the hallway" helps.
     pub(super) fn goes_along(&self, at: usize) -> bool {
         let knows_way = self.brief.walk.path.motion.is_known();
         self.memory.stay_at(at).is_some_and(|stay| !knows_way || self.memory.goes_along(stay, at))

@@ -16,7 +16,7 @@ use wayword_language::lexicon::room_name;
 const MAX_SOON_HOPS: usize = 2;
 /// Share of texts that begin with leaving the start room, where the path leaves it soon.
 const LEAVE_AT_ONCE_SHARE: f64 = 0.6;
-/// A style that goes to a door in at least this share of its clauses about doors and rooms mostly says no more of the door.
+/// A style that goes to a door in at least this share of its clauses about doors and rooms mostly adds nothing about the door.
 const TO_DOOR_SHARE: f64 = 0.25;
 
 impl WayPlanner<'_> {
